@@ -1,0 +1,49 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+export module aabb:counters;
+
+export namespace aabb {
+
+/// What the work of a run is counted in. The names are the CSV columns.
+enum class work : std::uint8_t {
+    comparisons,     ///< key comparisons of the sort
+    moves,           ///< projections moved by the sort
+    box_tests,       ///< overlap tests of two boxes, full or on the axes left
+    subset_copies,   ///< entries of boxes in subsets of the partition
+    node_visits,     ///< pairs of tree nodes taken from the stack
+    triangle_tests,  ///< tests of two triangles
+};
+
+inline constexpr std::array<std::string_view, 6> work_names = {"comparisons",   "moves",       "box_tests",
+                                                               "subset_copies", "node_visits", "triangle_tests"};
+
+/// Counts nothing and costs nothing: what timing runs are made with.
+struct no_counters {
+    static constexpr bool enabled = false;
+    static constexpr void add(work, std::uint64_t = 1) noexcept {}
+    [[nodiscard]] constexpr std::uint64_t operator[](work) const noexcept { return 0; }
+};
+
+/// Counts every kind of work; for passes that are not timed.
+struct work_counters {
+    static constexpr bool enabled = true;
+    std::array<std::uint64_t, work_names.size()> counts{};
+
+    constexpr void add(work what, std::uint64_t times = 1) noexcept { counts[static_cast<std::size_t>(what)] += times; }
+    [[nodiscard]] constexpr std::uint64_t operator[](work what) const noexcept {
+        return counts[static_cast<std::size_t>(what)];
+    }
+};
+
+/// A policy that receives the work done.
+template <class C>
+concept CounterPolicy = requires(C counters, work what) {
+    counters.add(what);
+    counters.add(what, std::uint64_t{2});
+};
+
+}  // namespace aabb

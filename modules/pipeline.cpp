@@ -1,0 +1,65 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+module aabb;
+
+import :error;
+import :geometry;
+import :mesh;
+import :pipeline;
+import :policy;
+import :pose;
+import :scene;
+import :stage;
+
+namespace aabb {
+
+pipeline::pipeline(const mesh_scene& scene, global_stage& global, local_stage& local)
+    : scene_(scene), global_(global), local_(local), boxes_(scene.mesh_of.size()) {
+    for (const mesh& m : scene.meshes) {
+        local_.add_model(m);
+        mesh_bounds_.push_back(bounds_of(m));
+    }
+    for (std::uint32_t object = 0; object < scene.mesh_of.size(); ++object) global_.insert(object);
+}
+
+void pipeline::update(std::span<const pose> poses) {
+    if (poses.size() != boxes_.size())
+        throw input_error("the scene has " + std::to_string(boxes_.size()) + " objects, but the frame has " +
+                          std::to_string(poses.size()) + " poses");
+    poses_.assign(poses.begin(), poses.end());
+    for (std::size_t object = 0; object < poses.size(); ++object) {
+        try {
+            require_rigid(poses[object]);
+        } catch (const input_error& error) {
+            throw input_error("object " + std::to_string(object) + ": " + error.what());
+        }
+        boxes_[object] = world_bounds(mesh_bounds_[scene_.mesh_of[object]], poses[object]);
+    }
+    global_.update(boxes_);
+}
+
+void pipeline::search() {
+    candidates_.clear();
+    global_.search(candidates_);
+}
+
+void pipeline::detect() {
+    contacts_.clear();
+    for (const auto [a, b] : candidates_) {
+        triangle_pairs_.clear();
+        local_.all_pairs(scene_.mesh_of[a], poses_[a], scene_.mesh_of[b], poses_[b], triangle_pairs_);
+        for (const auto [s, t] : triangle_pairs_) contacts_.push_back({a, b, s, t});
+    }
+}
+
+std::size_t pipeline::bytes() const noexcept {
+    return bytes_of(mesh_bounds_) + bytes_of(poses_) + bytes_of(boxes_) + bytes_of(candidates_) +
+           bytes_of(triangle_pairs_) + bytes_of(contacts_);
+}
+
+}  // namespace aabb

@@ -1,0 +1,164 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+export module aabb:pose;
+
+import :error;
+import :geometry;
+
+export namespace aabb {
+
+/// Rigid motion x -> R x + t, in double. `rotation` is row-major.
+struct pose {
+    std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    vec3d translation = {0, 0, 0};
+
+    friend bool operator==(const pose&, const pose&) = default;
+};
+
+/// max |(R Rᵀ - I)[i][j]|, 0 for an exact rotation.
+[[nodiscard]] inline double orthonormality_error(const pose& p) noexcept {
+    double worst = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            double sum = i == j ? -1.0 : 0.0;
+            for (int k = 0; k < 3; ++k) sum += p.rotation[3 * i + k] * p.rotation[3 * j + k];
+            worst = std::max(worst, std::isnan(sum) ? std::numeric_limits<double>::infinity() : std::abs(sum));
+        }
+    return worst;
+}
+
+/// Refuses what is not a rigid motion: NaN, infinity, R not orthonormal within 1e-6, or a reflection.
+/// @throws input_error that says which.
+inline void require_rigid(const pose& p) {
+    for (const double r : p.rotation)
+        if (!std::isfinite(r)) throw input_error("the pose is not rigid: its rotation has an entry that is not finite");
+    for (const double t : p.translation.at)
+        if (!std::isfinite(t)) throw input_error("the pose has a translation that is not finite");
+    if (orthonormality_error(p) > 1e-6)
+        throw input_error(
+            "the pose is not rigid: its rotation is not orthonormal within 1e-6 (R Rᵀ differs from 1 by " +
+            std::to_string(orthonormality_error(p)) + ")");
+    const auto& r = p.rotation;
+    const double determinant =
+        r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
+    if (determinant < 0) throw input_error("the pose is not rigid: its rotation is a reflection (determinant -1)");
+}
+
+/// Takes vertices and boxes of mesh B into the frame of mesh A.
+///
+/// The image of a vertex defines the truth for every triangle test: z = Rᴬᵀ((Rᴮ x + tᴮ) - tᴬ) in double, each sum left
+/// to right, no fused multiply-add, rounded to float once. Two meshes moved together keep their answer.
+class relative_pose {
+public:
+    /// @param reach box of the vertices of B in B's frame; only boxes and vertices inside it may be taken over.
+    /// @throws input_error when they may lie beyond the range of float in A's frame.
+    relative_pose(const pose& a, const pose& b, const box& reach) : a_(a), b_(b) {
+        for (int i = 0; i < 3; ++i) {
+            shift_[i] = 0;
+            double magnitude = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double r = a.rotation[3 * k + i];
+                double row = std::abs(b.translation[k]) + std::abs(a.translation[k]);
+                for (int j = 0; j < 3; ++j)
+                    row += std::abs(b.rotation[3 * k + j]) *
+                           std::max(std::abs(double{reach.min[j]}), std::abs(double{reach.max[j]}));
+                magnitude += std::abs(r) * row;
+                shift_[i] += r * (b.translation[k] - a.translation[k]);
+            }
+            for (int j = 0; j < 3; ++j) {
+                double sum = 0;
+                for (int k = 0; k < 3; ++k) sum += a.rotation[3 * k + i] * b.rotation[3 * k + j];
+                turn_[3 * i + j] = sum;
+            }
+            // The vertex formula rounds at most 8 times on the way of any term, the box formula at most 11 times
+            // (3 in the product matrix or shift, 4 in the interval sum, and the margin's own sum): each within
+            // γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and the growing.
+            margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude +
+                         std::numeric_limits<double>::denorm_min();
+        }
+        if (!is_valid((*this)(reach)))
+            throw input_error("seen from one mesh, the other lies beyond the range of float");
+    }
+
+    /// Image of a vertex of B, as defined above.
+    [[nodiscard]] vec3f operator()(const vec3f& x) const noexcept {
+        vec3d world;
+        for (int i = 0; i < 3; ++i) {
+            const double* r = &b_.rotation[3 * i];
+            world[i] = (((r[0] * x[0] + r[1] * x[1]) + r[2] * x[2]) + b_.translation[i]) - a_.translation[i];
+        }
+        vec3f image;
+        for (int i = 0; i < 3; ++i)
+            image[i] = static_cast<float>((a_.rotation[i] * world[0] + a_.rotation[3 + i] * world[1]) +
+                                          a_.rotation[6 + i] * world[2]);
+        return image;
+    }
+
+    [[nodiscard]] triangle3f operator()(const triangle3f& t) const noexcept {
+        return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
+    }
+
+    /// A box in A's frame that holds the image of every vertex in the box. The bounds are taken in double, grown by the
+    /// margin derived above and rounded to nearest like the images: rounding is monotone, so none can leave the box.
+    [[nodiscard]] box operator()(const box& b) const noexcept {
+        box image;
+        for (int i = 0; i < 3; ++i) {
+            double low = shift_[i];
+            double high = shift_[i];
+            for (int j = 0; j < 3; ++j) {
+                const double p = turn_[3 * i + j] * b.min[j];
+                const double q = turn_[3 * i + j] * b.max[j];
+                low += std::min(p, q);
+                high += std::max(p, q);
+            }
+            image.min[i] = static_cast<float>(low - margin_[i]);
+            image.max[i] = static_cast<float>(high + margin_[i]);
+        }
+        return image;
+    }
+
+private:
+    pose a_;
+    pose b_;
+    std::array<double, 9> turn_{};  // RᴬᵀRᴮ
+    vec3d shift_{};                 // Rᴬᵀ(tᴮ - tᴬ)
+    vec3d margin_{};
+};
+
+/// The box, in the world, of a mesh at a pose, for global search: grown so that two meshes whose triangles meet in A's
+/// frame (`relative_pose`) always have overlapping world boxes.
+///
+/// What separates the two frames, over a length L = A's reach plus B's diameter, each box bearing its own share of L:
+/// - the rounding of images to float, at most 2^-24 L, or half the least denormal, 2^-150;
+/// - the distance of a pose from a rotation, at most 1e-6 an entry of R Rᵀ (`require_rigid`), so 3e-6 L;
+/// - the rounding in double of images and of the sums below, at most 16 u (|t| + L), u = 2^-53.
+/// The box grows by 2^-18 L > (2^-24 + 3e-6) L, 2^-48 (|t| + L) and 2^-146.
+[[nodiscard]] inline box world_bounds(const box& local, const pose& p) noexcept {
+    double length = 0;
+    for (int k = 0; k < 3; ++k)
+        length += std::max(std::abs(double{local.min[k]}), std::abs(double{local.max[k]})) +
+                  (double{local.max[k]} - double{local.min[k]});
+    box world;
+    for (int i = 0; i < 3; ++i) {
+        double low = p.translation[i];
+        double high = p.translation[i];
+        for (int j = 0; j < 3; ++j) {
+            const double u = p.rotation[3 * i + j] * local.min[j];
+            const double v = p.rotation[3 * i + j] * local.max[j];
+            low += std::min(u, v);
+            high += std::max(u, v);
+        }
+        const double growth = length * 0x1p-18 + (std::abs(p.translation[i]) + length) * 0x1p-48 + 0x1p-146;
+        // Rounding to nearest is monotone, so both boxes of a pair may be rounded alike.
+        world.min[i] = static_cast<float>(low - growth);
+        world.max[i] = static_cast<float>(high + growth);
+    }
+    return world;
+}
+
+}  // namespace aabb
