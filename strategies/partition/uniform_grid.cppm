@@ -1,0 +1,112 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+export module aabb.partition.uniform_grid;
+
+import aabb;
+
+export namespace aabb {
+
+/// Cubic cells of one size over the world of the frame; a box is copied into every cell it reaches into. The paper's
+/// foil ("no best size for all situations", section 2): cells, and with them bytes and time, grow with the space, not
+/// with the objects. When to use: objects of like size, evenly spread.
+class uniform_grid_partition {
+public:
+    static constexpr std::string_view name = "uniform_grid";
+    static constexpr std::string_view summary = "cubic cells of one size over the whole world";
+
+    struct config {
+        /// Edge of a cell in world units. auto: twice the mean longest extent of the boxes, enlarged until there are at
+        /// most four cells an object.
+        std::optional<double> cell_size;
+    };
+    static constexpr std::tuple parameters{number_parameter{
+        "cell_size", &config::cell_size, 0.0, std::numeric_limits<double>::max(), "edge of a cell, in world units"}};
+
+    uniform_grid_partition() = default;
+    explicit uniform_grid_partition(const config& c) : config_(c) {}
+
+    /// @throws input_error when the cells would be more than 2^26.
+    void fit(std::span<const box> boxes, std::span<const projection> present) {
+        box world = empty_box();
+        double extents = 0;
+        for (const projection& p : present) {
+            const box& b = boxes[p.id];
+            world = merged(world, b);
+            const int longest = longest_axis(b);
+            extents += double{b.max[longest]} - double{b.min[longest]};
+        }
+        cells_ = {1, 1, 1};
+        if (present.empty()) return;
+        origin_ = world.min;
+        const auto objects = static_cast<double>(present.size());
+        if (config_.cell_size) {
+            if (cells_of(world, *config_.cell_size) > most_cells)
+                throw input_error("uniform_grid: a cell_size of " + std::get<0>(parameters).show(config_) +
+                                  " cuts this world into more than 2^26 cells");
+            return;
+        }
+        const int longest = longest_axis(world);
+        const double span = double{world.max[longest]} - double{world.min[longest]};
+        double size = std::max(2 * extents / objects, span * 0x1p-20);
+        if (size == 0) return;  // all objects at one point
+        while (cells_of(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
+    }
+
+    [[nodiscard]] std::uint32_t subset_count() const noexcept { return cells_[0] * cells_[1] * cells_[2]; }
+
+    template <class Visit>
+    void for_each_subset(const box& b, Visit visit) const {
+        std::array<std::uint32_t, 3> first{};
+        std::array<std::uint32_t, 3> last{};
+        for (int k = 0; k < 3; ++k) {
+            first[static_cast<std::size_t>(k)] = cell(b.min[k], k);
+            last[static_cast<std::size_t>(k)] = cell(b.max[k], k);
+        }
+        for (std::uint32_t z = first[2]; z <= last[2]; ++z)
+            for (std::uint32_t y = first[1]; y <= last[1]; ++y)
+                for (std::uint32_t x = first[0]; x <= last[0]; ++x)
+                    visit((z * cells_[1] + y) * cells_[0] + x,
+                          axis_set{x == first[0]} | axis_set{y == first[1]} << 1 | axis_set{z == first[2]} << 2);
+    }
+
+private:
+    static constexpr double most_cells = 1U << 26;
+
+    /// Sets the grid up and says how many cells it has; more than most_cells are not to be used.
+    double cells_of(const box& world, double size) {
+        double all = 1;
+        per_unit_ = std::min(1 / size, std::numeric_limits<double>::max());  // not infinity, which times 0 is NaN
+        for (int k = 0; k < 3; ++k) {
+            const double along = std::floor((double{world.max[k]} - double{world.min[k]}) * per_unit_) + 1;
+            all *= along;
+            cells_[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(std::min(along, most_cells));
+        }
+        return all;
+    }
+
+    /// Grows with x, rounding included, so that the cell of a greater lower end lies in the range of both boxes.
+    [[nodiscard]] std::uint32_t cell(float x, int k) const noexcept {
+        const double along = (double{x} - double{origin_[k]}) * per_unit_;
+        return std::min(static_cast<std::uint32_t>(along), cells_[static_cast<std::size_t>(k)] - 1);
+    }
+
+    config config_;
+    vec3f origin_{};
+    double per_unit_ = 0;
+    std::array<std::uint32_t, 3> cells_ = {1, 1, 1};
+};
+
+static_assert(CuttingPartition<uniform_grid_partition>);
+
+}  // namespace aabb

@@ -1,0 +1,130 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <vector>
+
+export module aabb.sweep.all_axes;
+
+import aabb;
+
+export namespace aabb {
+
+/// Three sorted lists: a pair is reported when its projections overlap on all three (paper, section 2). An axis on
+/// which all boxes overlap tells nothing and is left out. When to use: to study the paper; it walks every pair that
+/// overlaps on any one axis.
+///
+/// What is known of a pair between two lists is one bit. The bits of all pairs would take n²/8 bytes, so the lists are
+/// walked once for each block of rows that fits in 16 MiB: memory is at most 16 MiB (or one row, n/8 bytes, if that is
+/// more) + 8 bytes an object.
+class all_axes_sweep {
+public:
+    static constexpr std::string_view name = "all_axes";
+    static constexpr std::string_view summary =
+        "three sorted lists; a pair is reported when its projections overlap on all three";
+
+    static axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set) {
+        vec3f last_begin = empty_box().max;
+        vec3f first_end = empty_box().min;
+        for (const projection& p : present)
+            for (int k = 0; k < 3; ++k) {
+                last_begin[k] = std::max(last_begin[k], boxes[p.id].min[k]);
+                first_end[k] = std::min(first_end[k], boxes[p.id].max[k]);
+            }
+        axis_set needed = 0;
+        for (int k = 0; k < 3; ++k)
+            if (last_begin[k] > first_end[k]) needed |= axis_set{1} << k;
+        return needed ? needed : axis_set{1};
+    }
+
+    template <class Subset, CounterPolicy Counters>
+    void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
+        std::array<std::span<const typename Subset::entry>, 3> lists;
+        std::array<int, 3> axis{};
+        std::size_t n_lists = 0;
+        for (int k = 0; k < 3; ++k)
+            if (const auto& list = subset.lists[static_cast<std::size_t>(k)]; !list.empty()) {
+                axis[n_lists] = k;
+                lists[n_lists++] = list;
+            }
+        if (n_lists == 0 || lists[0].size() < 2) return;
+        const std::size_t n = lists[0].size();
+        rank(subset.boxes, lists[0], axis[0]);
+        const auto report = [&](std::size_t i, std::size_t j) {
+            const auto& a = lists[0][i];
+            const auto& b = lists[0][j];
+            if (Subset::owns(Subset::owned(a), Subset::owned(b))) pairs.push_back(ordered_pair(a.id, b.id));
+        };
+        if (n_lists == 1) {
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t j = i + 1; j < end_[i]; ++j) report(i, j);
+            return;
+        }
+        const auto overlap_on_first = [&](std::size_t i, std::size_t j) { return j < end_[i]; };
+        if (n_lists == 2) {
+            walk(subset.boxes, lists[1], axis[1], 0, n, counters, [&](std::size_t i, std::size_t j) {
+                if (overlap_on_first(i, j)) report(i, j);
+            });
+            return;
+        }
+        const std::size_t words = (n + 63) / 64;
+        const std::size_t rows = std::clamp<std::size_t>(most_words / words, 1, n);
+        for (std::size_t first = 0; first < n; first += rows) {
+            const std::size_t last = std::min(first + rows, n);
+            marks_.assign((last - first) * words, 0);
+            walk(subset.boxes, lists[1], axis[1], first, last, counters, [&](std::size_t i, std::size_t j) {
+                if (overlap_on_first(i, j)) marks_[(i - first) * words + j / 64] |= std::uint64_t{1} << j % 64;
+            });
+            walk(subset.boxes, lists[2], axis[2], first, last, counters, [&](std::size_t i, std::size_t j) {
+                if (marks_[(i - first) * words + j / 64] >> j % 64 & 1) report(i, j);
+            });
+        }
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(marks_) + bytes_of(rank_) + bytes_of(end_); }
+
+private:
+    static constexpr std::size_t most_words = (std::size_t{16} << 20) / sizeof(std::uint64_t);
+
+    /// Numbers the objects by their place in the first list, and finds where each one's overlaps end there.
+    template <class Entry>
+    void rank(std::span<const box> boxes, std::span<const Entry> list, int axis) {
+        if (rank_.size() < boxes.size()) rank_.resize(boxes.size());
+        end_.resize(list.size());
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            rank_[list[i].id] = static_cast<std::uint32_t>(i);
+            const float upper = boxes[list[i].id].max[axis];
+            const auto past = std::ranges::upper_bound(list.subspan(i + 1), upper, {},
+                                                       [&](const Entry& e) { return boxes[e.id].min[axis]; });
+            end_[i] = static_cast<std::uint32_t>(past - list.begin());
+        }
+    }
+
+    /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last.
+    template <class Entry, CounterPolicy Counters, class Visit>
+    void walk(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first, std::size_t last,
+              Counters& counters, Visit visit) const {
+        for (std::size_t p = 0; p < list.size(); ++p) {
+            const float upper = boxes[list[p].id].max[axis];
+            const std::size_t rank_p = rank_[list[p].id];
+            for (std::size_t q = p + 1; q < list.size() && boxes[list[q].id].min[axis] <= upper; ++q) {
+                const std::size_t rank_q = rank_[list[q].id];
+                const std::size_t i = std::min(rank_p, rank_q);
+                counters.add(work::box_tests);
+                if (i >= first && i < last) visit(i, std::max(rank_p, rank_q));
+            }
+        }
+    }
+
+    std::vector<std::uint64_t> marks_;  // bit (i, j): the pair overlaps on the first two lists
+    std::vector<std::uint32_t> rank_;   // by id
+    std::vector<std::uint32_t> end_;    // by rank
+};
+
+static_assert(SweepPolicy<all_axes_sweep>);
+
+}  // namespace aabb

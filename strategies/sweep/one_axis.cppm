@@ -1,0 +1,113 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+export module aabb.sweep.one_axis;
+
+import aabb;
+
+export namespace aabb {
+
+/// One sorted list: each box is tested, on the other two axes, against those that begin before it ends. When to use:
+/// almost always; memory is linear in the objects.
+class one_axis_sweep {
+public:
+    static constexpr std::string_view name = "one_axis";
+    static constexpr std::string_view summary = "sorts along one axis and tests the other two";
+
+    enum class axis_choice : std::uint8_t { automatic, x, y, z };
+    struct config {
+        /// auto: the axis on which the boxes' centres vary most. It changes only when another varies half as much
+        /// again, since the new list must be sorted from scratch.
+        axis_choice axis = axis_choice::automatic;
+    };
+    static constexpr std::tuple parameters{choice_parameter{
+        "axis", &config::axis, std::array<std::string_view, 4>{"auto", "x", "y", "z"}, "the axis to sort along"}};
+
+    one_axis_sweep() = default;
+    explicit one_axis_sweep(const config& c) : config_(c) {}
+
+    axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set) {
+        if (config_.axis != axis_choice::automatic) {
+            axis_ = static_cast<int>(config_.axis) - 1;
+        } else {
+            const vec3d variance = variances(boxes, present);
+            const double margin = chosen_ ? 1.5 : 1.0;
+            for (int k = 0; k < 3; ++k)
+                if (variance[k] > margin * variance[axis_]) axis_ = k;
+            chosen_ |= !present.empty();
+        }
+        return axis_set{1} << axis_;
+    }
+
+    template <class Subset, CounterPolicy Counters>
+    void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
+        const auto& list = subset.lists[static_cast<std::size_t>(axis_)];
+        if (list.size() < 2) return;
+        swept_.clear();
+        for (const auto& e : list) swept_.push_back({subset.boxes[e.id], e.id, Subset::owned(e)});
+        switch (axis_) {
+            case 0: return scan<0, Subset>(pairs, counters);
+            case 1: return scan<1, Subset>(pairs, counters);
+            default: return scan<2, Subset>(pairs, counters);
+        }
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(swept_); }
+
+private:
+    struct swept_box {
+        box bounds;
+        std::uint32_t id;
+        axis_set owned;
+    };
+
+    template <int Axis, class Subset, CounterPolicy Counters>
+    void scan(std::vector<index_pair>& pairs, Counters& counters) const {
+        for (std::size_t i = 0; i < swept_.size(); ++i) {
+            const swept_box& a = swept_[i];
+            for (std::size_t j = i + 1; j < swept_.size() && swept_[j].bounds.min[Axis] <= a.bounds.max[Axis]; ++j) {
+                const swept_box& b = swept_[j];
+                counters.add(work::box_tests);
+                if (overlaps(a.bounds, b.bounds) && Subset::owns(a.owned, b.owned))
+                    pairs.push_back(ordered_pair(a.id, b.id));
+            }
+        }
+    }
+
+    /// Of the doubled centres, taken from the first one, so that far from the origin no digits are lost.
+    [[nodiscard]] static vec3d variances(std::span<const box> boxes, std::span<const projection> present) {
+        const auto centre = [&](const projection& p, int k) {
+            return double{boxes[p.id].min[k]} + double{boxes[p.id].max[k]};
+        };
+        vec3d sum{};
+        vec3d squares{};
+        for (const projection& p : present)
+            for (int k = 0; k < 3; ++k) {
+                const double from_first = centre(p, k) - centre(present[0], k);
+                sum[k] += from_first;
+                squares[k] += from_first * from_first;
+            }
+        const auto n = static_cast<double>(present.size());
+        vec3d variance{};
+        if (!present.empty())
+            for (int k = 0; k < 3; ++k) variance[k] = std::max(0.0, squares[k] - sum[k] / n * sum[k]);
+        return variance;
+    }
+
+    config config_;
+    int axis_ = 0;
+    bool chosen_ = false;
+    std::vector<swept_box> swept_;  // the boxes of the subset at hand, in sorted order
+};
+
+static_assert(SweepPolicy<one_axis_sweep>);
+
+}  // namespace aabb
