@@ -1,0 +1,86 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+module aabb.validation;
+
+import aabb;
+import :parts;
+
+namespace aabb {
+
+namespace {
+
+/// Every pair, in the plainest loop that vectorises: no order of the boxes, no data structure to get wrong.
+class brute_force_boxes final : public box_engine {
+public:
+    void search(std::vector<index_pair>& pairs) override {
+        std::array<std::uint32_t, 512> hits{};
+        for (std::size_t i = 0; i < ids_.size(); ++i)
+            for (std::size_t begin = i + 1; begin < ids_.size(); begin += hits.size()) {
+                const std::size_t count = std::min(hits.size(), ids_.size() - begin);
+                if (!test_block(i, begin, count, hits)) continue;
+                for (std::size_t j = 0; j < count; ++j)
+                    if (hits[j]) pairs.push_back({ids_[i], ids_[begin + j]});
+            }
+    }
+
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        std::size_t all = bytes_of(ids_);
+        for (std::size_t k = 0; k < 3; ++k) all += bytes_of(min_[k]) + bytes_of(max_[k]);
+        return {{"engine", all}};
+    }
+
+private:
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+        ids_.assign(ids.begin(), ids.end());
+        for (std::size_t k = 0; k < 3; ++k) {
+            min_[k].clear();
+            max_[k].clear();
+            for (const std::uint32_t id : ids) {
+                min_[k].push_back(boxes[id].min[static_cast<int>(k)]);
+                max_[k].push_back(boxes[id].max[static_cast<int>(k)]);
+            }
+        }
+    }
+
+    /// Tests box i against `count` boxes from `begin` on; says whether any overlaps.
+    [[nodiscard]] bool test_block(std::size_t i, std::size_t begin, std::size_t count,
+                                  std::array<std::uint32_t, 512>& hits) const {
+        const box one{{min_[0][i], min_[1][i], min_[2][i]}, {max_[0][i], max_[1][i], max_[2][i]}};
+        const std::array<const float*, 3> low = {&min_[0][begin], &min_[1][begin], &min_[2][begin]};
+        const std::array<const float*, 3> high = {&max_[0][begin], &max_[1][begin], &max_[2][begin]};
+        std::uint32_t any = 0;
+        for (std::size_t j = 0; j < count; ++j) {
+            hits[j] = overlaps(one, {{low[0][j], low[1][j], low[2][j]}, {high[0][j], high[1][j], high[2][j]}});
+            any |= hits[j];
+        }
+        return any != 0;
+    }
+
+    // Bounds of the present objects by axis, in the order of their ids.
+    std::vector<std::uint32_t> ids_;
+    std::array<std::vector<float>, 3> min_;
+    std::array<std::vector<float>, 3> max_;
+};
+
+}  // namespace
+
+std::unique_ptr<global_stage> make_brute_force_boxes() {
+    return std::make_unique<brute_force_boxes>();
+}
+
+std::vector<index_pair> candidates_by_double_loop(std::span<const box> a, std::span<const box> b) {
+    std::vector<index_pair> pairs;
+    for (std::uint32_t s = 0; s < a.size(); ++s)
+        for (std::uint32_t t = 0; t < b.size(); ++t)
+            if (overlaps(a[s], b[t])) pairs.push_back({s, t});
+    return pairs;
+}
+
+}  // namespace aabb

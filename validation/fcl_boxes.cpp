@@ -1,0 +1,85 @@
+module;
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+module aabb.validation;
+
+import aabb;
+import :parts;
+
+namespace aabb {
+
+namespace {
+
+// The size in Debian's libfcl. Wider Eigen alignment than EIGEN_MAX_ALIGN_BYTES=16 gives 256 and corrupts memory.
+static_assert(sizeof(fcl::CollisionObjectd) == 224);
+
+/// An object without geometry, whose box is ours to the bit: FCL would compute boxes of geometries anew, with rounding.
+class fcl_object final : public fcl::CollisionObjectd {
+public:
+    explicit fcl_object(std::uint32_t id) : fcl::CollisionObjectd(nullptr), id_(id) {}
+
+    [[nodiscard]] std::uint32_t id() const { return id_; }
+    void set_bounds(const box& b) {
+        aabb.min_ = {b.min[0], b.min[1], b.min[2]};
+        aabb.max_ = {b.max[0], b.max[1], b.max[2]};
+    }
+
+private:
+    std::uint32_t id_;
+};
+
+class fcl_boxes final : public box_engine {
+public:
+    void search(std::vector<index_pair>& pairs) override {
+        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* found) {
+            static_cast<std::vector<index_pair>*>(found)->push_back(
+                ordered_pair(static_cast<fcl_object*>(a)->id(), static_cast<fcl_object*>(b)->id()));
+            return false;
+        });
+    }
+
+    /// Objects and nodes of the tree; FCL's table from one to the other is left out.
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        const std::size_t n = manager_.size();
+        using node = fcl::DynamicAABBTreeCollisionManagerd::DynamicAABBNode;
+        return {{"engine", bytes_of(objects_) + n * sizeof(fcl_object) + (n ? 2 * n - 1 : 0) * sizeof(node)}};
+    }
+
+private:
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+        for (std::uint32_t id = 0; id < objects_.size(); ++id)
+            if (objects_[id] && !is_present(id)) {
+                manager_.unregisterObject(objects_[id].get());
+                objects_[id].reset();
+            }
+        if (!ids.empty() && objects_.size() <= ids.back()) objects_.resize(std::size_t{ids.back()} + 1);
+        std::vector<fcl::CollisionObjectd*> arrivals;
+        for (const std::uint32_t id : ids) {
+            if (!objects_[id]) {
+                objects_[id] = std::make_unique<fcl_object>(id);
+                arrivals.push_back(objects_[id].get());
+            }
+            objects_[id]->set_bounds(boxes[id]);
+        }
+        manager_.registerObjects(arrivals);
+        manager_.update();
+    }
+
+    std::vector<std::unique_ptr<fcl_object>> objects_;  // by id; null where absent
+    fcl::DynamicAABBTreeCollisionManagerd manager_;     // goes first: it points to the objects
+};
+
+}  // namespace
+
+std::unique_ptr<global_stage> make_fcl_boxes() {
+    return std::make_unique<fcl_boxes>();
+}
+
+}  // namespace aabb

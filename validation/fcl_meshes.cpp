@@ -1,0 +1,102 @@
+module;
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+module aabb.validation;
+
+import aabb;
+import :parts;
+
+namespace aabb {
+
+namespace {
+
+using fcl_model = fcl::BVHModel<fcl::OBBRSSd>;
+
+/// FCL's trees of oriented boxes in double. It takes the raw poses, so that no vertex is rounded to float.
+class fcl_meshes final : public local_stage {
+public:
+    std::uint32_t add_model(const mesh& m) override {
+        require_valid(m);
+        std::vector<fcl::Vector3d> vertices;
+        for (const vec3f& v : m.vertices) vertices.emplace_back(v[0], v[1], v[2]);
+        std::vector<fcl::Triangle> triangles;
+        for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+        auto model = std::make_unique<fcl_model>();
+        model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+        model->addSubModel(vertices, triangles);
+        model->endModel();
+        models_.push_back(std::move(model));
+        return static_cast<std::uint32_t>(models_.size() - 1);
+    }
+
+    void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                   std::vector<index_pair>& pairs) override {
+        const fcl::CollisionResultd result =
+            collide(model_a, pose_a, model_b, pose_b, std::numeric_limits<std::size_t>::max());
+        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
+    }
+
+    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                                       const pose& pose_b) override {
+        const fcl::CollisionResultd result = collide(model_a, pose_a, model_b, pose_b, 1);
+        if (!result.isCollision()) return std::nullopt;
+        return pair_of(result.getContact(0));
+    }
+
+    [[nodiscard]] work_counters counters() const override { return {}; }
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        std::size_t all = 0;
+        for (const auto& m : models_)
+            all += static_cast<std::size_t>(m->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSSd>) +
+                   static_cast<std::size_t>(m->num_tris) * sizeof(fcl::Triangle) +
+                   static_cast<std::size_t>(m->num_vertices) * sizeof(fcl::Vector3d);
+        return {{"engine", all}};
+    }
+    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+
+private:
+    [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
+        fcl::Transform3d all = fcl::Transform3d::Identity();
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) all.linear()(i, j) = p.rotation[static_cast<std::size_t>(3 * i + j)];
+            all.translation()[i] = p.translation[i];
+        }
+        return all;
+    }
+
+    [[nodiscard]] static index_pair pair_of(const fcl::Contactd& contact) {
+        return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
+    }
+
+    /// Without contact points each pair of triangles is reported once.
+    [[nodiscard]] fcl::CollisionResultd collide(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                                const pose& pose_b, std::size_t most) const {
+        fcl::CollisionRequestd request;
+        request.num_max_contacts = most;
+        request.enable_contact = false;
+        fcl::CollisionResultd result;
+        fcl::collide(models_[model_a].get(), transform(pose_a), models_[model_b].get(), transform(pose_b), request,
+                     result);
+        return result;
+    }
+
+    std::vector<std::unique_ptr<fcl_model>> models_;
+};
+
+}  // namespace
+
+std::unique_ptr<local_stage> make_fcl_meshes() {
+    return std::make_unique<fcl_meshes>();
+}
+
+}  // namespace aabb
