@@ -1,0 +1,61 @@
+module;
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+/// A whole file in memory, and how its words are quoted to the user.
+module aabblab.files:file_text;
+
+import aabb;
+
+namespace aabblab {
+
+struct file_text {
+    std::string name;  ///< as the user gave it
+    std::string text;
+};
+
+/// The word in quotes, for a sentence: at most 40 bytes of it, unprintable ones as '?'.
+[[nodiscard]] inline std::string quoted(std::string_view word) {
+    std::string text = "'";
+    for (const char c : word.substr(0, 40))
+        text += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f ? '?' : c;
+    return text + (word.size() > 40 ? "…'" : "'");
+}
+
+/// Refuses what is not a file with something in it.
+/// @return its size in bytes.
+/// @throws aabb::input_error that says what it is instead.
+[[nodiscard]] inline std::size_t require_file(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (status.type() == std::filesystem::file_type::not_found)
+        throw aabb::input_error(file.string() + ": no such file");
+    if (is_directory(status)) throw aabb::input_error(file.string() + ": is a folder, not a file");
+    if (!is_regular_file(status)) throw aabb::input_error(file.string() + ": is not a regular file");
+    const auto size = std::filesystem::file_size(file, error);
+    if (error) throw aabb::input_error(file.string() + ": cannot be read: " + error.message());
+    if (size == 0) throw aabb::input_error(file.string() + ": is empty");
+    return size;
+}
+
+struct close_file {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+using file_handle = std::unique_ptr<std::FILE, close_file>;
+
+/// @throws aabb::input_error when the file cannot be opened.
+[[nodiscard]] inline file_handle open_to_read(const std::filesystem::path& file) {
+    file_handle opened{std::fopen(file.c_str(), "rb")};
+    if (!opened)
+        throw aabb::input_error(file.string() +
+                                ": cannot be read: " + std::error_code(errno, std::generic_category()).message());
+    return opened;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,67 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Files of the user: meshes, recordings of boxes, pairs. Everything wrong with one is an input_error whose sentence
+/// names the file, the line where there is one, and what was expected.
+export module aabblab.files;
+
+import aabb;
+export import :loaded_mesh;
+
+export namespace aabblab {
+
+/// Reads OFF, OBJ, PLY, STL (text or binary) or glTF, by the file's ending.
+/// @throws aabb::input_error on a file that is missing, empty, malformed, truncated or without triangles, with NaN,
+/// infinity or an index out of range.
+[[nodiscard]] loaded_mesh read_mesh(const std::filesystem::path& file);
+
+/// Refuses work that does not fit into the machine's memory, before anything is allocated.
+/// @throws aabb::input_error that says what takes how many bytes.
+void require_memory(const std::string& what, double bytes);
+
+/// The endings of mesh files, ".off" and so on.
+[[nodiscard]] std::vector<std::string> mesh_endings();
+
+/// Writes OFF with the shortest decimals that read back to the same floats.
+void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
+
+/// Opens a recording (.aabbs) for playing; frames are read one by one.
+/// @throws aabb::input_error where the header is cut off, is not one, lies about the file's size, or announces a
+/// million frames or more of nothing.
+[[nodiscard]] std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file);
+
+/// Plays the scene to its end into a recording. `progress` hears frames done. Nothing half-written stays behind.
+/// @throws aabb::input_error when the file cannot be written or would not fit on the disk.
+void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
+                     const std::filesystem::path& file, const std::function<void(std::size_t)>& progress);
+
+/// A file that appears under its name only when it is complete; gone if not committed. Until then it has no name at all
+/// where the file system allows that, so that an interrupted process leaves nothing behind; elsewhere one beside it.
+/// What is not a regular file, such as /dev/stdout, is written at once. Every member throws aabb::input_error when
+/// writing fails, on a full disk too.
+class output_file {
+public:
+    explicit output_file(std::filesystem::path file);
+    output_file(const output_file&) = delete;
+    output_file& operator=(const output_file&) = delete;
+    ~output_file();
+    /// Refuses, before anything is written, what the disk has no room for.
+    void require_space(double bytes) const;
+    void write(const void* data, std::size_t bytes);
+    void write(const std::string& text);
+    /// Replaces bytes already written; what is written next still goes to the end.
+    void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
+    void commit();
+
+private:
+    struct state;
+    std::unique_ptr<state> state_;
+};
+
+}  // namespace aabblab

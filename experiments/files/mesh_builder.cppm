@@ -1,0 +1,70 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+/// A mesh as its file brings it: vertices, faces of any number of corners, and what became of them.
+module aabblab.files:mesh_builder;
+
+import aabb;
+import :loaded_mesh;
+
+namespace aabblab {
+
+/// Exactly: the corners of a triangle lie on one line (or are one point).
+[[nodiscard]] bool has_zero_area(const aabb::triangle3f& t);
+
+class mesh_builder {
+public:
+    explicit mesh_builder(std::string file) : file_(std::move(file)) {}
+
+    void add_vertex(const aabb::vec3f& p) { loaded_.mesh.vertices.push_back(p); }
+    [[nodiscard]] std::size_t vertices() const noexcept { return loaded_.mesh.vertices.size(); }
+
+    /// A polygon is fanned from its first corner; fewer than three corners are dropped.
+    /// @param place where it stands in the file, for the error about a corner that is no vertex: a line or a face.
+    void add_face(std::span<const std::uint32_t> corners, std::size_t place) {
+        for (const std::uint32_t corner : corners)
+            if (corner >= greatest_) {
+                greatest_ = std::size_t{corner} + 1;
+                greatest_at_ = place;
+            }
+        if (corners.size() < 3) return drop();
+        loaded_.report.polygons += corners.size() > 3;
+        for (std::size_t i = 2; i < corners.size(); ++i)
+            loaded_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+    void drop() { ++loaded_.report.dropped; }
+
+    /// The mesh, checked.
+    /// @param before "FILE:" or "FILE: face ", what the place of a face is appended to
+    /// @param first the number of the first vertex in this format: 0 or 1
+    /// @throws aabb::input_error on no triangles or a corner that is no vertex.
+    [[nodiscard]] loaded_mesh finish(std::size_t rounded, std::string_view before, std::size_t first) {
+        aabb::mesh& m = loaded_.mesh;
+        if (greatest_ > m.vertices.size())
+            throw aabb::input_error(std::string(before) + std::to_string(greatest_at_) + ": a face uses vertex " +
+                                    std::to_string(greatest_ - 1 + first) + ", but there are " +
+                                    std::to_string(m.vertices.size()) + " vertices" +
+                                    (first == 0 ? ", counted from 0" : ", counted from 1"));
+        try {
+            aabb::require_valid(m);
+        } catch (const aabb::input_error& error) {
+            throw aabb::input_error(file_ + ": " + error.what());
+        }
+        loaded_.report.rounded = rounded;
+        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) loaded_.report.zero_area += has_zero_area(m.triangle(t));
+        return std::move(loaded_);
+    }
+
+private:
+    std::string file_;
+    loaded_mesh loaded_;
+    std::size_t greatest_ = 0;  // one more than the greatest corner so far
+    std::size_t greatest_at_ = 0;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,74 @@
+module;
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+module aabblab.files;
+
+import aabb;
+import :file_text;
+import :mesh_builder;
+import :readers;
+import :text_scanner;
+
+namespace aabblab {
+
+namespace {
+
+/// The next word of a statement, which a backslash at the end of a line carries on to the next line.
+std::string_view statement_word(text_scanner& in) {
+    std::string_view word = in.word();
+    while (word == "\\" && !in.more()) {
+        if (!in.next_line()) in.ends("after a backslash");
+        word = in.word();
+    }
+    return word;
+}
+
+/// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Numbers count from 1, negative ones from the last
+/// vertex so far.
+std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
+    const std::string_view number = word.substr(0, word.find('/'));
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc{} || end != number.data() + number.size()) in.expected("the number of a vertex", word);
+    if (value == 0) in.fail("a face uses vertex 0, but vertices are counted from 1");
+    const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(vertices) + value;
+    if (index < 0 || index > std::numeric_limits<std::uint32_t>::max())
+        in.fail("a face uses vertex " + std::string(number) + ", but there are " + std::to_string(vertices) +
+                " vertices so far");
+    return static_cast<std::uint32_t>(index);
+}
+
+}  // namespace
+
+loaded_mesh read_obj(const file_text& file) {
+    text_scanner in(file, '#');
+    mesh_builder mesh(file.name);
+    std::vector<std::uint32_t> corners;
+    while (in.next_line()) {
+        const std::string_view statement = in.word();
+        if (statement == "v") {
+            aabb::vec3f p{};
+            for (int k = 0; k < 3; ++k) p[k] = in.coordinate(statement_word(in));
+            mesh.add_vertex(p);
+        } else if (statement == "f") {
+            const std::size_t line = in.line();
+            corners.clear();
+            for (std::string_view word = statement_word(in); !word.empty(); word = statement_word(in))
+                corners.push_back(corner(in, word, mesh.vertices()));
+            mesh.add_face(corners, line);
+        } else {
+            if (statement == "l" || statement == "p") mesh.drop();
+            while (!statement_word(in).empty()) continue;
+        }
+    }
+    return mesh.finish(in.rounded(), file.name + ":", 1);
+}
+
+}  // namespace aabblab

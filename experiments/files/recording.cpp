@@ -1,0 +1,169 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+module aabblab.files;
+
+import aabb;
+import :file_text;
+
+// The format is Broadmark's (Serpa and Rodrigues, "Broadmark: a testing framework for broad-phase collision detection
+// algorithms", Computer Graphics Forum 2020): a header, then F + 1 frames of N boxes.
+namespace aabblab {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "recordings are little-endian");
+
+/// min xyz 0, max xyz 0
+using box_record = std::array<float, 8>;
+
+struct header {
+    std::array<char, 128> name;
+    std::array<char, 128> type;
+    std::int32_t objects;
+    std::int32_t last_frame;
+    std::array<std::int32_t, 2> zero;
+    box_record world;
+};
+static_assert(sizeof(header) == 304 && std::is_trivially_copyable_v<header>);
+
+aabb::box unpacked(const box_record& r) {
+    return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}};
+}
+box_record packed(const aabb::box& b) {
+    return {b.min[0], b.min[1], b.min[2], 0, b.max[0], b.max[1], b.max[2], 0};
+}
+
+class recording final : public aabb::box_scene {
+public:
+    recording(std::string name, file_handle file, const header& h)
+        : name_(std::move(name)),
+          file_(std::move(file)),
+          records_(static_cast<std::size_t>(h.objects)),
+          frames_(static_cast<std::size_t>(h.last_frame) + 1) {}
+
+    [[nodiscard]] std::size_t objects() const override { return records_.size(); }
+    [[nodiscard]] std::size_t frames() const override { return frames_; }
+
+    bool next(std::vector<aabb::box>& boxes) override {
+        if (frame_ == frames_) return false;
+        const std::string here = "frame " + std::to_string(frame_);
+        if (std::fread(records_.data(), sizeof(box_record), records_.size(), file_.get()) != records_.size())
+            throw aabb::input_error(name_ + ": ends in " + here);
+        boxes.resize(records_.size());
+        std::ranges::transform(records_, boxes.begin(), unpacked);
+        try {
+            aabb::require_valid(boxes);
+        } catch (const aabb::input_error& error) {
+            throw aabb::input_error(name_ + ": " + here + ": " + error.what());
+        }
+        ++frame_;
+        return true;
+    }
+
+private:
+    std::string name_;
+    file_handle file_;
+    std::vector<box_record> records_;
+    std::size_t frames_;
+    std::size_t frame_ = 0;
+};
+
+/// Without objects no size bounds the number of frames, and playing them does nothing for hours.
+void require_few_empty_frames(const std::string& name, std::size_t objects, std::size_t frames) {
+    if (objects == 0 && frames > 1'000'000)
+        throw aabb::input_error(name + ": a recording of 0 objects holds at most 1000000 frames, not " +
+                                std::to_string(frames));
+}
+
+/// The text in a field of the header, cut to what fits; never empty, which Broadmark refuses.
+std::array<char, 128> field(const std::string& text, const std::string& otherwise) {
+    const std::string& used = text.empty() ? otherwise : text;
+    std::array<char, 128> padded{};
+    std::copy_n(used.begin(), std::min(used.size(), padded.size() - 1), padded.begin());
+    return padded;
+}
+
+}  // namespace
+
+std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file) {
+    const std::size_t size = require_file(file);
+    const std::string name = file.string();
+    if (size < sizeof(header))
+        throw aabb::input_error(name + ": is no recording: its header takes " + std::to_string(sizeof(header)) +
+                                " bytes, but the file has " + std::to_string(size));
+    file_handle opened = open_to_read(file);
+    header h{};
+    if (std::fread(&h, sizeof h, 1, opened.get()) != 1) throw aabb::input_error(name + ": cannot be read");
+    if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
+        throw aabb::input_error(name + ": is no recording: its header does not hold two names and two zeros");
+    if (h.objects < 0 || h.last_frame < 0)
+        throw aabb::input_error(name + ": its header announces " + std::to_string(h.objects) + " objects and " +
+                                std::to_string(h.last_frame) + " frames; neither can be negative");
+    if (!aabb::is_valid(unpacked(h.world)))
+        throw aabb::input_error(name + ": the world box in its header is not finite or inverted");
+    // Counted in boxes: in bytes the announced size may not fit a number.
+    const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
+    const std::uint64_t held = (size - sizeof(header)) / sizeof(box_record);
+    if (boxes != held || (size - sizeof(header)) % sizeof(box_record) != 0)
+        throw aabb::input_error(name + ": its header announces " + std::to_string(boxes) + " boxes (" +
+                                std::to_string(h.objects) + " objects, " + std::to_string(h.last_frame) +
+                                " + 1 frames), but the file has " + std::to_string(size - sizeof(header)) +
+                                " bytes of them, " + std::to_string(sizeof(box_record)) + " each");
+    require_few_empty_frames(name, static_cast<std::size_t>(h.objects), static_cast<std::size_t>(h.last_frame) + 1);
+    require_memory(name + ": a frame of " + std::to_string(h.objects) + " boxes",
+                   static_cast<double>(h.objects) * (sizeof(box_record) + sizeof(aabb::box)));
+    return std::make_unique<recording>(name, std::move(opened), h);
+}
+
+void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
+                     const std::filesystem::path& file, const std::function<void(std::size_t)>& progress) {
+    constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
+    if (scene.objects() > most || scene.frames() > most || scene.frames() == 0)
+        throw aabb::input_error(file.string() +
+                                ": a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not " +
+                                std::to_string(scene.objects()) + " and " + std::to_string(scene.frames()));
+    require_few_empty_frames(file.string(), scene.objects(), scene.frames());
+    header h{field(name, "scene"),
+             field(type, "boxes"),
+             static_cast<std::int32_t>(scene.objects()),
+             static_cast<std::int32_t>(scene.frames() - 1),
+             {},
+             {}};
+    output_file out(file);
+    out.require_space(sizeof h +
+                      sizeof(box_record) * static_cast<double>(scene.objects()) * static_cast<double>(scene.frames()));
+    out.write(&h, sizeof h);
+    aabb::box world = aabb::empty_box();
+    std::vector<aabb::box> boxes;
+    std::vector<box_record> records;
+    for (std::size_t done = 1; scene.next(boxes); ++done) {
+        records.clear();
+        for (const aabb::box& b : boxes) {
+            world = aabb::merged(world, b);
+            records.push_back(packed(b));
+        }
+        out.write(records.data(), records.size() * sizeof(box_record));
+        if (progress) progress(done);
+    }
+    if (scene.objects() > 0) {
+        h.world = packed(world);
+        out.overwrite(0, &h, sizeof h);
+    }
+    out.commit();
+}
+
+}  // namespace aabblab

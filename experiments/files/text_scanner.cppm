@@ -1,0 +1,135 @@
+module;
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+/// Words of a text file, line by line; numbers in them; errors with the file and the line.
+module aabblab.files:text_scanner;
+
+import aabb;
+import :file_text;
+
+namespace aabblab {
+
+class text_scanner {
+public:
+    /// @param comment what begins a comment that runs to the end of the line; '\0' for none.
+    text_scanner(const file_text& file, char comment) : file_(file.name), rest_(file.text), comment_(comment) {}
+
+    /// Goes to the next line that holds a word; false at the end of the file.
+    bool next_line() {
+        while (!rest_.empty()) {
+            const std::size_t end = rest_.find('\n');
+            line_ = rest_.substr(0, end);
+            rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+            ++number_;
+            if (comment_ != '\0') line_ = line_.substr(0, line_.find(comment_));
+            skip_blanks();
+            if (!line_.empty()) return true;
+        }
+        return false;
+    }
+
+    /// The next word of the line; empty at its end.
+    std::string_view word() {
+        skip_blanks();
+        std::size_t length = 0;
+        while (length < line_.size() && !is_blank(line_[length])) ++length;
+        const std::string_view found = line_.substr(0, length);
+        line_.remove_prefix(length);
+        return found;
+    }
+
+    /// Whether words are left on the line.
+    [[nodiscard]] bool more() {
+        skip_blanks();
+        return !line_.empty();
+    }
+
+    /// Begins to read the line at a part of it.
+    void back_to(std::string_view word) {
+        line_ = {word.data(), static_cast<std::size_t>(line_.data() + line_.size() - word.data())};
+    }
+
+    [[nodiscard]] std::size_t line() const noexcept { return number_; }
+    /// What comes after the line.
+    [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
+
+    /// @throws aabb::input_error with the file, the line and the sentence.
+    [[noreturn]] void fail(const std::string& sentence) const {
+        throw aabb::input_error(file_ + ":" + std::to_string(number_) + ": " + sentence);
+    }
+    [[noreturn]] void expected(const std::string& what, std::string_view found) const {
+        fail("expected " + what + ", found " + (found.empty() ? "the end of the line" : quoted(found)));
+    }
+    /// For a file that ends too early.
+    [[noreturn]] void ends(const std::string& where) const { throw aabb::input_error(file_ + ": ends " + where); }
+
+    /// A whole number that fits.
+    template <std::integral Whole>
+    [[nodiscard]] Whole whole(const std::string& what) {
+        const std::string_view text = word();
+        Whole value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc{} || end != text.data() + text.size()) expected(what, text);
+        return value;
+    }
+
+    /// Three coordinates, each correctly rounded to float.
+    [[nodiscard]] aabb::vec3f point() {
+        aabb::vec3f p{};
+        for (int k = 0; k < 3; ++k) p[k] = coordinate(word());
+        return p;
+    }
+
+    /// One coordinate, correctly rounded to float.
+    [[nodiscard]] float coordinate(std::string_view text) {
+        // from_chars takes no plus sign.
+        const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-"));
+        const char* const end = text.data() + text.size();
+        float value = 0;
+        const auto [stopped, error] = std::from_chars(begin, end, value);
+        if (stopped != end || error == std::errc::invalid_argument) expected("three coordinates", text);
+        double fine = value;
+        if (error == std::errc::result_out_of_range) {
+            // Too small for a float is a rounded zero, too large is refused; only strtof tells which it was.
+            value = std::strtof(std::string(text).c_str(), nullptr);
+            fine = std::numeric_limits<double>::quiet_NaN();
+            if (std::isinf(value)) fail("the coordinate " + quoted(text) + " is too large for a float");
+        } else {
+            std::from_chars(begin, end, fine);
+        }
+        if (!std::isfinite(value)) fail("the coordinate " + quoted(text) + " is not finite");
+        rounded_ += fine != value;
+        return value;
+    }
+
+    /// Coordinates so far whose text, read as a double, differs from the float.
+    [[nodiscard]] std::size_t rounded() const noexcept { return rounded_; }
+
+private:
+    [[nodiscard]] static bool is_blank(char c) noexcept {
+        return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+    }
+    void skip_blanks() {
+        std::size_t blanks = 0;
+        while (blanks < line_.size() && is_blank(line_[blanks])) ++blanks;
+        line_.remove_prefix(blanks);
+    }
+
+    std::string file_;
+    std::string_view rest_;
+    std::string_view line_;
+    std::size_t number_ = 0;
+    std::size_t rounded_ = 0;
+    char comment_;
+};
+
+}  // namespace aabblab

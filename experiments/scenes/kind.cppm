@@ -1,0 +1,67 @@
+module;
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// What makes a class a kind of scene. It has a name, a summary and parameters like a strategy, and is made from its
+/// configuration and a seed (a scene of boxes), or from its configuration, meshes and a seed (a scene of meshes).
+module aabblab.scenes:kind;
+
+import aabb;
+import aabblab.files;
+import :scene_choice;
+
+namespace aabblab {
+
+template <class S>
+concept BoxScene = aabb::Configurable<S> && std::derived_from<S, aabb::box_scene> &&
+                   std::constructible_from<S, const aabb::config_of<S>&, std::uint64_t>;
+
+/// `default_meshes` are names for `make_mesh`; `most_meshes` is how many it can take.
+template <class S>
+concept MeshScene =
+    aabb::Configurable<S> && std::derived_from<S, aabb::mesh_scene> &&
+    std::constructible_from<S, const aabb::config_of<S>&, std::vector<aabb::mesh>, std::uint64_t> && requires {
+        S::default_meshes;
+        { S::most_meshes } -> std::convertible_to<std::size_t>;
+    };
+
+/// Either of the two functions is null.
+struct scene_kind {
+    scene_info info;
+    std::unique_ptr<aabb::box_scene> (*make_boxes)(const scene_choice&) = nullptr;
+    std::unique_ptr<aabb::mesh_scene> (*make_meshes)(const scene_choice&) = nullptr;
+};
+
+/// All kinds, in the order of CMakeLists.txt.
+[[nodiscard]] std::span<const scene_kind> kinds();
+
+/// The meshes of these names. @throws aabb::input_error on more names than `most`.
+[[nodiscard]] std::vector<aabb::mesh> meshes_named(std::string_view kind, std::span<const std::string> names,
+                                                   std::size_t most);
+
+template <class S>
+[[nodiscard]] scene_kind kind_of() {
+    scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S>, aabb::parameters_of<S>()}};
+    if constexpr (BoxScene<S>) {
+        kind.make_boxes = [](const scene_choice& choice) -> std::unique_ptr<aabb::box_scene> {
+            return std::make_unique<S>(aabb::configured<S>(choice.settings), choice.seed);
+        };
+    } else {
+        static_assert(MeshScene<S>, "a scene has boxes or meshes");
+        kind.make_meshes = [](const scene_choice& choice) -> std::unique_ptr<aabb::mesh_scene> {
+            const aabb::config_of<S> config = aabb::configured<S>(choice.settings);
+            std::vector<std::string> names = choice.meshes;
+            if (names.empty()) names.assign(S::default_meshes.begin(), S::default_meshes.end());
+            return std::make_unique<S>(config, meshes_named(S::name, names, S::most_meshes), choice.seed);
+        };
+    }
+    return kind;
+}
+
+}  // namespace aabblab

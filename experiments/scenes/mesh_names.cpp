@@ -1,0 +1,95 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+module aabblab.scenes;
+
+import aabb;
+import aabblab.files;
+import :icosphere;
+import :kind;
+import :noise_sphere;
+import :torus_knot;
+
+namespace aabblab {
+
+namespace {
+
+using shapes = aabb::type_list<icosphere, torus_knot, noise_sphere>;
+
+template <class... Shapes>
+std::vector<std::string> names_of(aabb::type_list<Shapes...>) {
+    return {std::string(Shapes::name)...};
+}
+
+template <class... Shapes>
+aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& choice) {
+    aabb::mesh made;
+    const auto try_one = [&]<class Shape>(aabb::type_list<Shape>) {
+        if (Shape::name != choice.name) return;
+        const auto config = aabb::configured<Shape>(choice.settings);
+        // A triangle's corners and half a vertex, twice: vectors grow by doubling.
+        require_memory(aabb::to_text(choice), 2.0 * config.triangles * (3 * 4 + 0.5 * sizeof(aabb::vec3f)));
+        made = Shape::make(config);
+    };
+    (try_one(aabb::type_list<Shapes>{}), ...);
+    return made;
+}
+
+/// Names of what could have been meant: shapes and the meshes of the data folder.
+std::vector<std::string> known_names() {
+    std::vector<std::string> names = shape_names();
+    const std::vector<std::string> endings = mesh_endings();
+    std::vector<std::string> files;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(data_folder(), error), end; !error && entry != end;
+         entry.increment(error))
+        if (std::ranges::find(endings, entry->path().extension().string()) != endings.end())
+            files.push_back(entry->path().filename().string());
+    std::ranges::sort(files);
+    names.insert(names.end(), files.begin(), files.end());
+    return names;
+}
+
+}  // namespace
+
+std::vector<std::string> shape_names() {
+    return names_of(shapes{});
+}
+
+std::filesystem::path data_folder() {
+    const char* const set = std::getenv("AABBLAB_DATA");
+    return set != nullptr && *set != '\0' ? set : AABBLAB_DATA_FOLDER;
+}
+
+loaded_mesh make_mesh(std::string_view name) {
+    std::error_code ignored;
+    for (const std::filesystem::path& file : {std::filesystem::path(name), data_folder() / name})
+        if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
+    const std::vector<std::string> shapes_known = shape_names();
+    if (std::ranges::find(shapes_known, name.substr(0, name.find(':'))) != shapes_known.end())
+        return {make_shape(shapes{}, aabb::parse_strategy(name)), {}};
+    if (std::filesystem::exists(name, ignored)) return read_mesh(name);  // says what it is instead of a file
+    throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here or in " +
+                            data_folder().string() + ", or a shape)");
+}
+
+std::vector<aabb::mesh> meshes_named(std::string_view kind, std::span<const std::string> names, std::size_t most) {
+    if (names.size() > most)
+        throw aabb::input_error(std::string(kind) + " takes at most " + std::to_string(most) + " meshes, not " +
+                                std::to_string(names.size()));
+    std::vector<aabb::mesh> meshes;
+    for (const std::string& name : names) meshes.push_back(make_mesh(name).mesh);
+    return meshes;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,82 @@
+module;
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// Points that drift in a cube.
+module aabblab.scenes:motion;
+
+import aabb;
+import :random;
+
+namespace aabblab {
+
+/// The positive root of x^3 = value >= 0 by Newton's method: std::cbrt differs between libraries in its last digit.
+[[nodiscard]] inline double cube_root(double value) {
+    if (value == 0) return 0;
+    double root = value > 1 ? value : 1;
+    while (true) {
+        const double next = (2 * root + value / (root * root)) / 3;
+        if (!(next < root)) return root;
+        root = next;
+    }
+}
+
+/// Points in the cube [0, width]^3, each on a straight line with a constant step a frame. The walls reflect; a
+/// hundredth of the points, drawn anew, change their direction every frame.
+class drifting_points {
+public:
+    /// Steps are spread evenly from 0 to `most_step`.
+    drifting_points(std::uint32_t count, double width, double most_step, random_source& random)
+        : width_(width > 0 ? width : 0) {
+        points_.reserve(count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            point p{{random.unit() * width_, random.unit() * width_, random.unit() * width_},
+                    {},
+                    random.unit() * most_step};
+            p.direction = random.direction();
+            points_.push_back(p);
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
+    [[nodiscard]] const aabb::vec3d& operator[](std::size_t i) const noexcept { return points_[i].at; }
+
+    void advance(random_source& random) {
+        const auto count = static_cast<std::uint32_t>(points_.size());
+        // What is left of a hundredth is carried over, so that few objects turn as often as many do.
+        for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100)
+            points_[random.below(count)].direction = random.direction();
+        for (point& p : points_)
+            for (int k = 0; k < 3; ++k) move(p, k);
+    }
+
+    static constexpr double bytes_each = 56;
+
+private:
+    struct point {
+        aabb::vec3d at;
+        aabb::vec3d direction;
+        double step;
+    };
+    static_assert(sizeof(point) == static_cast<std::size_t>(bytes_each));
+
+    void move(point& p, int k) const {
+        if (width_ == 0) return;
+        // Unfolded, the way between two walls repeats after twice the width.
+        double along = std::fmod(p.at[k] + p.step * p.direction[k], 2 * width_);
+        if (along < 0) along += 2 * width_;
+        if (along > width_) {
+            along = 2 * width_ - along;
+            p.direction[k] = -p.direction[k];
+        }
+        p.at[k] = along;
+    }
+
+    double width_;
+    std::vector<point> points_;
+    std::uint64_t to_turn_ = 0;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,44 @@
+module;
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+/// Random numbers that are the same with every compiler and on every machine: the standard fixes the engine, not its
+/// distributions, and of functions only the square root is rounded alike everywhere.
+module aabblab.scenes:random;
+
+import aabb;
+
+namespace aabblab {
+
+class random_source {
+public:
+    explicit random_source(std::uint64_t seed) : engine_(seed) {}
+
+    /// In [0, 1), a multiple of 2^-53.
+    [[nodiscard]] double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+    /// In [0, count); count > 0.
+    [[nodiscard]] std::uint32_t below(std::uint32_t count) {
+        return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
+    }
+
+    /// Evenly over the unit sphere.
+    [[nodiscard]] aabb::vec3d direction() {
+        while (true) {
+            const aabb::vec3d p = {within(), within(), within()};
+            const double square = aabb::dot(p, p);
+            if (square > 1 || square < 1e-6) continue;
+            const double length = std::sqrt(square);
+            return {p[0] / length, p[1] / length, p[2] / length};
+        }
+    }
+
+    /// In [-1, 1).
+    [[nodiscard]] double within() { return 2 * unit() - 1; }
+
+private:
+    std::mt19937_64 engine_;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,29 @@
+module;
+#include <cstdint>
+#include <string>
+#include <vector>
+
+export module aabblab.scenes:scene_choice;
+
+import aabb;
+
+export namespace aabblab {
+
+/// A kind of scene as `aabblab list` shows it. Its parameters have names, defaults and limits like a strategy's.
+struct scene_info {
+    std::string name;  ///< "brownian", "lattice"; "mesh_pair", "mesh_swarm"
+    std::string summary;
+    bool has_meshes;
+    std::vector<aabb::parameter_info> parameters;
+};
+
+/// A scene wanted: its kind, settings that differ from the defaults, a seed. Meshes are files, looked for as given,
+/// then in `experiments/data/`, or generated shapes: "icosphere", "torus_knot:triangles=20000", "noise_sphere".
+struct scene_choice {
+    std::string kind;
+    std::vector<aabb::setting> settings;  ///< "objects", "frames", "displacement", … as text
+    std::vector<std::string> meshes;
+    std::uint64_t seed = 1;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,53 @@
+module;
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+module aabblab.scenes;
+
+import aabb;
+import :kind;
+
+namespace aabblab {
+
+namespace {
+
+const scene_kind& kind_named(const std::string& name) {
+    const auto found = std::ranges::find(kinds(), name, [](const scene_kind& k) { return k.info.name; });
+    if (found == kinds().end()) throw aabb::input_error(aabb::unknown_name("scene", name, scene_names()));
+    return *found;
+}
+
+}  // namespace
+
+std::span<const scene_info> scene_kinds() {
+    static const std::vector<scene_info> infos = [] {
+        std::vector<scene_info> all;
+        for (const scene_kind& k : kinds()) all.push_back(k.info);
+        return all;
+    }();
+    return infos;
+}
+
+std::vector<std::string> scene_names() {
+    std::vector<std::string> names;
+    for (const scene_kind& k : kinds()) names.push_back(k.info.name);
+    return names;
+}
+
+std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice) {
+    const scene_kind& kind = kind_named(choice.kind);
+    if (kind.make_boxes == nullptr) throw aabb::input_error(choice.kind + " is a scene of meshes, not of boxes");
+    if (!choice.meshes.empty()) throw aabb::input_error(choice.kind + " is a scene of boxes and takes no meshes");
+    return kind.make_boxes(choice);
+}
+
+std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice) {
+    const scene_kind& kind = kind_named(choice.kind);
+    if (kind.make_meshes == nullptr) throw aabb::input_error(choice.kind + " is a scene of boxes, not of meshes");
+    return kind.make_meshes(choice);
+}
+
+}  // namespace aabblab

@@ -1,0 +1,36 @@
+module;
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Scenes by name: boxes or meshes that move, the same for the same seed on every machine.
+export module aabblab.scenes;
+
+import aabb;
+import aabblab.files;
+export import :scene_choice;
+
+export namespace aabblab {
+
+[[nodiscard]] std::span<const scene_info> scene_kinds();
+[[nodiscard]] std::vector<std::string> scene_names();
+
+/// @throws aabb::input_error on an unknown kind, parameter or value, or on meshes for a scene of boxes.
+[[nodiscard]] std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice);
+[[nodiscard]] std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice);
+
+/// A mesh by the name it has in a scene.
+/// @throws aabb::input_error on a name that is neither a file nor a shape, with the nearest one.
+[[nodiscard]] loaded_mesh make_mesh(std::string_view name);
+
+/// "icosphere", "torus_knot", "noise_sphere".
+[[nodiscard]] std::vector<std::string> shape_names();
+
+/// Where `aabblab data` puts real meshes: AABBLAB_DATA in the environment, else experiments/data of the source tree.
+[[nodiscard]] std::filesystem::path data_folder();
+
+}  // namespace aabblab

@@ -1,0 +1,89 @@
+module;
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+
+module aabblab.scenes:noise_sphere;
+
+import aabb;
+import :circle;
+import :random;
+import :rings;
+
+namespace aabblab {
+
+/// A sphere whose radius waves, like a scanned lump: dents and bumps of many sizes, always the same ones. Rings of
+/// latitude between two poles.
+struct noise_sphere {
+    static constexpr std::string_view name = "noise_sphere";
+    static constexpr std::string_view summary = "a sphere with dents and bumps";
+
+    struct config {
+        /// About how many: rings · vertices of a ring · 2, the nearest to it that keeps the triangles' shape.
+        std::uint32_t triangles = 5000;
+    };
+    static constexpr std::tuple parameters{
+        aabb::integer_parameter{"triangles", &config::triangles, 18U, 100'000'000U, "about how many triangles"}};
+
+    [[nodiscard]] static aabb::mesh make(const config& c) {
+        const auto [rings, around] = rings_for(c.triangles, 0.5);
+        const noise waves;
+        aabb::mesh m;
+        m.vertices.push_back(waves.surface({0, 0, 1}));
+        for (std::uint32_t ring = 1; ring <= rings; ++ring) {
+            const circle_point latitude = on_circle(ring / (2.0 * (rings + 1)));
+            for (std::uint32_t i = 0; i < around; ++i) {
+                const circle_point longitude = on_circle(static_cast<double>(i) / around);
+                m.vertices.push_back(
+                    waves.surface({latitude.sin * longitude.cos, latitude.sin * longitude.sin, latitude.cos}));
+            }
+        }
+        m.vertices.push_back(waves.surface({0, 0, -1}));
+
+        const std::uint32_t south = rings * around + 1;
+        const auto at = [=](std::uint32_t ring, std::uint32_t i) { return 1 + ring * around + i % around; };
+        for (std::uint32_t i = 0; i < around; ++i) m.triangles.push_back({0, at(0, i), at(0, i + 1)});
+        for (std::uint32_t ring = 0; ring + 1 < rings; ++ring)
+            for (std::uint32_t i = 0; i < around; ++i) {
+                m.triangles.push_back({at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
+                m.triangles.push_back({at(ring, i), at(ring + 1, i + 1), at(ring, i + 1)});
+            }
+        for (std::uint32_t i = 0; i < around; ++i)
+            m.triangles.push_back({at(rings - 1, i), south, at(rings - 1, i + 1)});
+        return m;
+    }
+
+private:
+    /// Plane waves of random direction; the shorter, the lower.
+    class noise {
+    public:
+        noise() {
+            random_source random(1);
+            double frequency = 0.35;
+            for (wave& w : waves_) {
+                w = {random.direction(), frequency, random.unit(), 0.06 / frequency};
+                frequency *= 1.2;
+            }
+        }
+        /// The point of the surface in this direction.
+        [[nodiscard]] aabb::vec3f surface(const aabb::vec3d& direction) const {
+            double radius = 1;
+            for (const wave& w : waves_)
+                radius += w.height * on_circle(w.frequency * aabb::dot(w.direction, direction) + w.phase).sin;
+            return {static_cast<float>(radius * direction[0]), static_cast<float>(radius * direction[1]),
+                    static_cast<float>(radius * direction[2])};
+        }
+
+    private:
+        struct wave {
+            aabb::vec3d direction;
+            double frequency;  // periods a unit of length
+            double phase;      // turns
+            double height;
+        };
+        std::array<wave, 12> waves_{};
+    };
+};
+
+}  // namespace aabblab

@@ -1,0 +1,34 @@
+module;
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+/// Meshes of rings: how many rings of how many vertices.
+module aabblab.scenes:rings;
+
+namespace aabblab {
+
+struct ring_counts {
+    std::uint32_t rings;
+    std::uint32_t around;  ///< vertices of a ring
+};
+
+/// 2 · rings · around triangles, as near to `triangles` as rings of a fitting size allow; the nearest in size to
+/// rings = aspect · around where several are equally near.
+[[nodiscard]] inline ring_counts rings_for(std::uint32_t triangles, double aspect) {
+    const double half = triangles / 2.0;
+    const double ideal = std::fmax(3, std::sqrt(half / aspect));
+    ring_counts best{3, 3};
+    double best_error = 1e300;
+    for (auto around = static_cast<std::uint32_t>(std::fmax(3, ideal * 0.7)); around <= ideal * 1.4; ++around) {
+        const double rings = std::fmax(3, std::floor(half / around + 0.5));
+        const double off_shape = std::fabs(around / ideal - 1);
+        const double error = std::fabs(rings * around - half) + off_shape / 2;
+        if (error >= best_error) continue;
+        best = {static_cast<std::uint32_t>(rings), around};
+        best_error = error;
+    }
+    return best;
+}
+
+}  // namespace aabblab
