@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <istream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "commands.hpp"
+#include "number.hpp"
+#include "output.hpp"
+
+import aabb;
+import aabb.registry;
+import aabblab.progress;
+
+namespace aabblab {
+
+namespace {
+
+struct classify_request {
+    std::string file;
+    std::string triangle = aabb::local_composition{}.triangle.name;
+    bool keep_doubles = false;
+};
+
+/// @param words 18 numbers: the corners of one triangle, then of the other
+template <class Real>
+bool intersects(const aabb::triangle_test& test, const std::vector<std::string>& words) {
+    if (words.size() != 18)
+        throw aabb::input_error(fmt::format("expected 18 numbers, two triangles, not {}", words.size()));
+    aabb::triangle3<Real> triangles[2];
+    for (std::size_t i = 0; i < 18; ++i) {
+        try {
+            triangles[i / 9][static_cast<int>(i % 9 / 3)][static_cast<int>(i % 3)] = parse_number<Real>(words[i]);
+        } catch (const aabb::input_error& error) {
+            throw aabb::input_error(fmt::format("number {} of 18: {}", i + 1, error.what()));
+        }
+    }
+    return test.intersects(triangles[0], triangles[1]);
+}
+
+/// Answers that stand before a line that is wrong are printed; the program writes them out with the sentence.
+void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t size, const aabb::triangle_test& test,
+                    bool keep_doubles) {
+    std::optional<progress> shown;  // answers that go to the terminal are progress enough
+    if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", size);
+    std::size_t read = 0;
+    std::string line;
+    for (std::size_t number = 1; std::getline(lines, line); ++number) {
+        if (shown) shown->at(read += line.size() + 1);
+        const std::vector<std::string> words = split_numbers(std::string_view(line).substr(0, line.find('#')));
+        if (words.empty()) continue;
+        try {
+            const bool answer = keep_doubles ? intersects<double>(test, words) : intersects<float>(test, words);
+            print(answer ? "1\n" : "0\n");
+        } catch (const aabb::input_error& error) {
+            throw aabb::input_error(fmt::format("{}:{}: {}", name, number, error.what()));
+        }
+    }
+    if (lines.bad()) throw aabb::input_error("cannot read " + name);
+}
+
+void classify(const classify_request& request) {
+    const aabb::strategy_choice choice = aabb::parse_strategy(request.triangle);
+    const auto test = aabb::make_triangle_test(choice);
+    if (request.keep_doubles && !test->takes_double())
+        throw aabb::input_error("--double: " + choice.name + " tests triangles of floats only");
+    if (request.file == "-") return classify_lines(std::cin, "standard input", 0, *test, request.keep_doubles);
+    // A pipe under a name may be read, but has no size; a directory opens like a file.
+    std::error_code unknown;
+    const bool readable = !std::filesystem::is_directory(request.file, unknown);
+    std::ifstream file(request.file);
+    if (!readable || !file)
+        throw aabb::input_error("cannot read " + request.file + ": " +
+                                std::generic_category().message(readable ? errno : EISDIR));
+    const std::uintmax_t size = std::filesystem::file_size(request.file, unknown);
+    classify_lines(file, request.file, unknown ? 0 : size, *test, request.keep_doubles);
+}
+
+}  // namespace
+
+void add_classify(CLI::App& program, int&) {
+    auto* command =
+        program.add_subcommand("classify", "Do two triangles intersect? One pair a line, one 0 or 1 a line");
+    auto request = std::make_shared<classify_request>();
+    command
+        ->add_option("FILE", request->file,
+                     "18 numbers a line, decimal or C99 hexadecimal, with blanks or commas between; - reads "
+                     "standard input; # begins a comment")
+        ->required()
+        ->type_name("");
+    command->add_option("--triangle", request->triangle, "Triangle test (default exact)")->type_name("R");
+    command->add_flag("--double", request->keep_doubles, "Keep the numbers as doubles instead of rounding to float");
+    command->callback([request] { classify(*request); });
+}
+
+}  // namespace aabblab

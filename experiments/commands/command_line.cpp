@@ -1,0 +1,69 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+import aabb;
+
+namespace aabblab {
+
+namespace {
+
+std::vector<std::string> command_names(const CLI::App& program) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+std::string unknown_option(const CLI::App& command, const std::string& argument) {
+    return aabb::unknown_name("option", argument.substr(0, argument.find('=')), option_names(command));
+}
+
+std::string unexpected(const CLI::App& program, const CLI::App& command, const std::string& argument) {
+    if (argument.size() > 1 && argument[0] == '-') return unknown_option(command, argument);
+    if (&command != &program)
+        return "unexpected argument '" + argument + "'; see aabblab " + command.get_name() + " --help";
+    std::vector<std::string> names = command_names(program);
+    const std::vector<std::string> of_script = {"test", "data"};
+    if (std::ranges::find(of_script, argument) != of_script.end())
+        return "'" + argument + "' is a command of the script aabblab at the root of the source tree";
+    names.insert(names.end(), of_script.begin(), of_script.end());
+    return aabb::unknown_name("command", argument, names);
+}
+
+}  // namespace
+
+std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
+    const auto chosen = program.get_subcommands();
+    const CLI::App& command = chosen.empty() ? program : *chosen.front();
+    const std::string prefix = chosen.empty() ? "" : command.get_name() + ": ";
+    // A typing error makes the parser miss what was meant, so it comes before what the parser says.
+    if (const auto rest = command.remaining(); !rest.empty())
+        return prefix + unexpected(program, command, rest.front());
+    if (const auto rest = program.remaining(); !rest.empty()) return unexpected(program, program, rest.front());
+    const std::string said = error.what();
+    // The parser counts values; every option of ours that takes a value takes one.
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+        return prefix + said.substr(0, said.find(':')) + " takes one value";
+    return prefix + said;
+}
+
+void require_command(const CLI::App& program) {
+    if (!program.get_subcommands().empty()) return;
+    std::string names;
+    for (const std::string& name : command_names(program)) names += (names.empty() ? "" : ", ") + name;
+    throw aabb::input_error("expected a command, one of " + names + "; see aabblab --help");
+}
+
+}  // namespace aabblab

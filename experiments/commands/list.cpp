@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "output.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.validation;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+struct metric_info {
+    std::string_view name;
+    std::string_view summary;
+};
+constexpr metric_info metrics[] = {
+    {"time", "wall time of build, update and search, apart, in milliseconds"},
+    {"counts", "work done, counted in a pass of its own"},
+    {"bytes", "memory allocated, by part"},
+    {"error", "pairs missed and pairs invented against the exact answer"},
+};
+
+nlohmann::ordered_json to_json(std::span<const aabb::parameter_info> parameters) {
+    auto all = nlohmann::ordered_json::array();
+    for (const auto& p : parameters)
+        all.push_back({{"name", p.name}, {"expected", p.expected}, {"default", p.fallback}, {"help", p.help}});
+    return all;
+}
+
+nlohmann::ordered_json everything() {
+    nlohmann::ordered_json all;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        auto& of_kind = all["strategies"][std::string(aabb::name_of(kind))];
+        for (const auto& s : aabb::strategies(kind))
+            of_kind.push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
+    }
+    for (const auto& e : aabb::engines())
+        all["engines"].push_back({{"name", e.name},
+                                  {"summary", e.summary},
+                                  {"searches_boxes", e.searches_boxes},
+                                  {"collides_meshes", e.collides_meshes},
+                                  {"exact", e.exact}});
+    for (const auto& s : scene_kinds())
+        all["scenes"].push_back({{"name", s.name},
+                                 {"summary", s.summary},
+                                 {"has_meshes", s.has_meshes},
+                                 {"parameters", to_json(s.parameters)}});
+    all["shapes"] = shape_names();
+    for (const auto& m : metrics) all["metrics"].push_back({{"name", m.name}, {"summary", m.summary}});
+    return all;
+}
+
+/// Lines of a heading's entries, the second column aligned.
+class listing {
+public:
+    void heading(std::string_view text) { lines_.push_back({std::string(text), ""}); }
+    void entry(std::string_view name, std::string_view text) {
+        lines_.push_back({fmt::format("  {}", name), std::string(text)});
+    }
+    void parameters(std::span<const aabb::parameter_info> all) {
+        for (const auto& p : all)
+            lines_.push_back({fmt::format("    {}={}", p.name, p.fallback), fmt::format("{}: {}", p.help, p.expected)});
+    }
+    void print_all() const {
+        std::size_t width = 0;
+        for (const line& l : lines_)
+            if (!l.right.empty()) width = std::max(width, l.left.size());
+        for (const line& l : lines_)
+            print(l.right.empty() ? l.left + "\n" : fmt::format("{:<{}}  {}\n", l.left, width, l.right));
+    }
+
+private:
+    struct line {
+        std::string left, right;
+    };
+    std::vector<line> lines_;
+};
+
+std::string scope_of(const aabb::engine_info& engine) {
+    const std::string scope = !engine.collides_meshes ? "boxes" : engine.searches_boxes ? "boxes and meshes" : "meshes";
+    return engine.exact ? scope + ", exact" : scope;
+}
+
+void print_text() {
+    listing all;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        all.heading(aabb::name_of(kind));
+        for (const auto& s : aabb::strategies(kind)) {
+            all.entry(s.name, s.summary);
+            all.parameters(s.parameters);
+        }
+    }
+    all.heading("engines");
+    for (const auto& e : aabb::engines()) all.entry(e.name, e.summary + " (" + scope_of(e) + ")");
+    all.heading("scenes");
+    for (const auto& s : scene_kinds()) {
+        all.entry(s.name, s.summary);
+        all.parameters(s.parameters);
+    }
+    all.heading("shapes, in place of a mesh file");
+    for (const std::string& name : shape_names()) all.entry(name, "");
+    all.heading("metrics");
+    for (const auto& m : metrics) all.entry(m.name, m.summary);
+    all.print_all();
+}
+
+}  // namespace
+
+void add_list(CLI::App& program, int&) {
+    auto* command = program.add_subcommand("list", "Strategies with their parameters, engines, scenes and metrics");
+    auto json = std::make_shared<bool>(false);
+    command->add_flag("--json", *json, "Print it as JSON");
+    command->callback([json] {
+        if (*json)
+            print(everything().dump(2) + "\n");
+        else
+            print_text();
+    });
+}
+
+}  // namespace aabblab

@@ -1,0 +1,43 @@
+#include "output.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+import aabb;
+
+namespace aabblab {
+
+namespace {
+
+[[noreturn]] void refuse_output(int error) {
+    if (error == EPIPE) throw output_closed();
+    throw aabb::input_error("cannot write to standard output: " + std::generic_category().message(error));
+}
+
+}  // namespace
+
+void print(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) refuse_output(errno);
+}
+
+void flush_output() {
+    if (std::fflush(stdout) != 0) refuse_output(errno);
+}
+
+void note(std::string_view text) {
+    std::fprintf(stderr, "aabblab: %.*s\n", static_cast<int>(text.size()), text.data());
+}
+
+void require_other_file(const std::string& out, std::span<const std::string> inputs) {
+    std::error_code ignored;  // a file that is not there is no other's
+    for (const std::string& input : inputs)
+        if (std::filesystem::equivalent(out, input, ignored))
+            throw aabb::input_error("--out " + out + " would write over " + input + ", which this command reads");
+}
+
+}  // namespace aabblab

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace aabblab {
+
+/// Whoever read our standard output has gone, as `head` does: the end of the program, but no error.
+class output_closed : public std::runtime_error {
+public:
+    output_closed() : runtime_error("standard output was closed") {}
+};
+
+/// Writes to standard output, which is buffered.
+/// @throws output_closed, or aabb::input_error when it cannot be written (a full disk).
+void print(std::string_view text);
+
+/// Writes out what the buffer still holds; throws as `print` does.
+void flush_output();
+
+/// A note for the user, on standard error.
+void note(std::string_view text);
+
+/// Refuses to write over a file that the same command reads.
+/// @throws aabb::input_error where `out` is one of `inputs`, by whatever path.
+void require_other_file(const std::string& out, std::span<const std::string> inputs);
+
+}  // namespace aabblab

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "output.hpp"
+#include "stopwatch.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.validation;
+import aabblab.files;
+import aabblab.pair_output;
+import aabblab.progress;
+
+namespace aabblab {
+
+namespace {
+
+struct pairs_request {
+    std::string recording;
+    std::optional<std::string> sort, partition, sweep, engine, out;
+    bool json = false;
+};
+
+struct search_method {
+    std::string name;
+    std::unique_ptr<aabb::global_stage> stage;
+};
+
+struct search_result {
+    std::size_t objects = 0;
+    std::size_t pairs = 0;
+    std::string digest;
+    std::vector<double> milliseconds;  ///< of update and search, by frame
+};
+
+search_method method_of(const pairs_request& request) {
+    if (request.engine) {
+        if (request.sort || request.partition || request.sweep)
+            throw aabb::input_error("--engine stands in for --sort, --partition and --sweep, so give it alone");
+        return {*request.engine, aabb::make_box_engine(*request.engine)};
+    }
+    aabb::global_composition composition;
+    if (request.sort) composition.sort = aabb::parse_strategy(*request.sort);
+    if (request.partition) composition.partition = aabb::parse_strategy(*request.partition);
+    if (request.sweep) composition.sweep = aabb::parse_strategy(*request.sweep);
+    return {aabb::to_text(composition), aabb::compose(composition, aabb::instrumentation::none)};
+}
+
+search_result search_all(aabb::box_scene& scene, const search_method& method, std::optional<pair_table>& table) {
+    search_result result;
+    result.objects = scene.objects();
+    for (std::uint32_t id = 0; id < result.objects; ++id) method.stage->insert(id);
+    progress shown("frames searched", scene.frames());
+    aabb::digest digest;
+    std::vector<aabb::box> boxes;
+    std::vector<aabb::index_pair> pairs;
+    for (std::uint32_t frame = 0; scene.next(boxes); ++frame) {
+        pairs.clear();
+        result.milliseconds.push_back(milliseconds_of([&] {
+            method.stage->update(boxes);
+            method.stage->search(pairs);
+        }));
+        sort_each_once(pairs, fmt::format("{}, frame {}", method.name, frame));
+        digest.add(frame, pairs);
+        if (table) table->add(frame, pairs);
+        result.pairs += pairs.size();
+        shown.at(frame + 1);
+    }
+    result.digest = digest.text();
+    return result;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    if (values.size() % 2 == 1) return *middle;
+    return (*std::max_element(values.begin(), middle) + *middle) / 2;
+}
+
+void print_json(const search_result& result) {
+    const nlohmann::ordered_json summary = {{"objects", result.objects},
+                                            {"frames", result.milliseconds.size()},
+                                            {"pairs", result.pairs},
+                                            {"digest", result.digest},
+                                            {"ms", result.milliseconds}};
+    print(summary.dump() + "\n");
+}
+
+void print_text(const pairs_request& request, const search_method& method, const search_result& result) {
+    print(fmt::format("{}: {} objects, {} frames\n", request.recording, result.objects, result.milliseconds.size()));
+    print(fmt::format("{} overlapping pairs, digest {}\n", result.pairs, result.digest));
+    if (!result.milliseconds.empty())
+        print(fmt::format("{}: {:.3f} ms a frame (median)\n", method.name, median(result.milliseconds)));
+}
+
+void find_pairs(const pairs_request& request) {
+    const search_method method = method_of(request);
+    const std::unique_ptr<aabb::box_scene> scene = open_recording(request.recording);
+    std::optional<pair_table> table;
+    if (request.out) {
+        require_other_file(*request.out, {&request.recording, 1});
+        table.emplace(*request.out, pair_table::columns::frame_a_b);
+    }
+    const search_result result = search_all(*scene, method, table);
+    if (table) table->commit();
+    if (request.json)
+        print_json(result);
+    else
+        print_text(request, method, result);
+}
+
+}  // namespace
+
+void add_pairs(CLI::App& program, int&) {
+    auto* command = program.add_subcommand("pairs", "Global search on a recording: every pair of overlapping boxes");
+    auto request = std::make_shared<pairs_request>();
+    command->add_option("SCENE", request->recording, "Recording of boxes (.aabbs)")->required()->type_name("");
+    command->add_option("--sort", request->sort, "Sort (default std)")->type_name("S");
+    command->add_option("--partition", request->partition, "Partition (default none)")->type_name("P");
+    command->add_option("--sweep", request->sweep, "Sweep, as in one_axis:axis=x (default one_axis)")->type_name("W");
+    command->add_option("--engine", request->engine, "Reference system in place of sort, partition and sweep")
+        ->type_name("E");
+    command->add_option("--out", request->out, "Write the pairs, rows frame,a,b, to this CSV file")->type_name("FILE");
+    command->add_flag("--json", request->json, "Print the summary as JSON");
+    command->callback([request] { find_pairs(*request); });
+}
+
+}  // namespace aabblab

@@ -1,0 +1,106 @@
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "output.hpp"
+
+#include "experiments.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.validation;
+import aabblab.config;
+import aabblab.report;
+import aabblab.results;
+import aabblab.runner;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+/// Every global search once and every local detection once. The stages know nothing of each other, so that combinations
+/// of both would show nothing new.
+std::vector<composition> every_composition() {
+    std::vector<composition> all;
+    const auto names = aabb::strategy_names;
+    for (const std::string& sort : names(aabb::strategy_kind::sort))
+        for (const std::string& partition : names(aabb::strategy_kind::partition))
+            for (const std::string& sweep : names(aabb::strategy_kind::sweep)) {
+                composition c;
+                c.global = {{sort, {}}, {partition, {}}, {sweep, {}}};
+                if (aabb::refusal_of(c.global).empty()) all.push_back(c);
+            }
+    for (const std::string& tree : names(aabb::strategy_kind::tree))
+        for (const std::string& triangle : names(aabb::strategy_kind::triangle)) {
+            composition c;
+            c.local = {{tree, {}}, {triangle, {}}};
+            if (aabb::refusal_of(c.local).empty() && std::ranges::find(all, c) == all.end()) all.push_back(c);
+        }
+    return all;
+}
+
+experiment built_in_experiment() {
+    experiment e;
+    e.scenes = {{"brownian", {{"objects", "1000"}, {"frames", "5"}}, {}, 1},
+                {"lattice", {{"objects", "1000"}, {"frames", "5"}}, {}, 1},
+                {"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, 1},
+                {"mesh_swarm",
+                 {{"objects", "40"}, {"frames", "4"}},
+                 {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
+                 1}};
+    e.compositions = every_composition();
+    for (const aabb::engine_info& engine : aabb::engines()) e.engines.push_back(engine.name);
+    return e;
+}
+
+/// "exact", "wrong", or what is different by class.
+std::string answer_of(const verdict& v) {
+    if (!v.failure.empty()) return "WRONG";
+    if (v.differences.empty()) return "exact";
+    std::string text = "inexact:";
+    for (const difference& d : v.differences)
+        text += " " + std::to_string(d.count) + " " + d.what + " (" + d.kind + ")";
+    return text;
+}
+
+int validate(const std::optional<std::string>& config) {
+    const experiment e = config ? open_experiment(*config, false) : built_in_experiment();
+    std::size_t wrong = 0;
+    for (const scene_choice& scene : e.scenes) {
+        const scene_verdicts result = validate_scene(scene, contenders_for(e, scene));
+        print(scene.kind + " (" + parameters_text(scene) + "), all pairs of " + std::to_string(result.frames) +
+              " frames against " + result.judge + ", digest " + result.digest + "\n\n");
+        table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
+        for (const verdict& v : result.verdicts) {
+            t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
+                              v.contacts ? std::to_string(*v.contacts) : "-", answer_of(v)});
+            if (v.failure.empty()) continue;
+            ++wrong;
+            note(v.failure);
+        }
+        print(to_text(t) + "\n");
+        flush_output();
+    }
+    print(wrong == 0 ? "Every composition that must be exact is exact.\n" : std::to_string(wrong) + " are wrong.\n");
+    return wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& program, int& status) {
+    auto* command = program.add_subcommand(
+        "validate", "Exactness of every composition of an experiment, or of all there are, against the references");
+    auto config = std::make_shared<std::optional<std::string>>();
+    command->add_option("CONFIG", *config, "Config of the experiment (.toml); without one, every composition")
+        ->type_name("");
+    command->callback([config, &status] { status = validate(*config); });
+}
+
+}  // namespace aabblab

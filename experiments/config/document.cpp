@@ -1,0 +1,161 @@
+module;
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.config;
+
+import :document;
+import aabb;
+
+namespace aabblab {
+
+namespace {
+
+std::string shortest(double value) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+node converted(const toml::node& value) {
+    node result;
+    result.line = static_cast<int>(value.source().begin.line);
+    if (const toml::table* table = value.as_table()) {
+        result.kind = node_kind::table;
+        // The library sorts by key; a product of lists follows the file.
+        std::vector<std::pair<toml::source_position, node>> entries;
+        for (const auto& [key, value_of_key] : *table) {
+            node entry = converted(value_of_key);
+            entry.line = static_cast<int>(key.source().begin.line);
+            entry.key = key.str();
+            entries.emplace_back(key.source().begin, std::move(entry));
+        }
+        std::ranges::sort(entries, std::ranges::less{},
+                          [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
+        for (auto& [position, entry] : entries) result.items.push_back(std::move(entry));
+    } else if (const toml::array* list = value.as_array()) {
+        result.kind = node_kind::list;
+        for (const toml::node& item : *list) result.items.push_back(converted(item));
+    } else if (const auto* text = value.as_string()) {
+        result.kind = node_kind::text;
+        result.text = text->get();
+    } else if (const auto* integer = value.as_integer()) {
+        result.kind = node_kind::integer;
+        result.text = std::to_string(integer->get());
+    } else if (const auto* real = value.as_floating_point()) {
+        result.kind = node_kind::real;
+        result.text = shortest(real->get());
+    } else if (const auto* flag = value.as_boolean()) {
+        result.kind = node_kind::boolean;
+        result.text = flag->get() ? "true" : "false";
+    } else {
+        result.kind = node_kind::date;
+    }
+    return result;
+}
+
+std::string_view name_of(node_kind kind) {
+    constexpr std::array<std::string_view, 7> names = {"a name",         "a number", "a number", "true or false",
+                                                       "a date or time", "a list",   "a table"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace
+
+const node* node::find(std::string_view wanted) const {
+    const auto found = std::ranges::find(items, wanted, &node::key);
+    return found == items.end() ? nullptr : &*found;
+}
+
+document::document(const std::string& text, std::string file) : file_(std::move(file)) {
+    try {
+        root_ = converted(toml::parse(text, file_));
+    } catch (const toml::parse_error& error) {
+        const toml::source_position& at = error.source().begin;
+        throw aabb::input_error(file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
+                                ": this is not TOML: " + std::string(error.description()));
+    }
+}
+
+void document::fail(int line, const std::string& sentence) const {
+    throw aabb::input_error(file_ + ":" + std::to_string(line) + ": " + sentence);
+}
+
+void document::fail_type(const std::string& key, const node& value, std::string_view expected) const {
+    fail(value.line, key + " is " + std::string(name_of(value.kind)) + "; expected " + std::string(expected));
+}
+
+void document::require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const {
+    for (const node& entry : table.items)
+        if (std::ranges::find(known, entry.key) == known.end())
+            fail(entry.line, aabb::unknown_name("key" + of, entry.key, known));
+}
+
+void document::require_table(const std::string& key, const node& value) const {
+    if (value.kind != node_kind::table) fail_type(key, value, "a table");
+}
+
+const std::string& document::text_of(const std::string& key, const node& value) const {
+    if (value.kind != node_kind::text) fail_type(key, value, "a name");
+    return value.text;
+}
+
+std::uint64_t document::integer_of(const std::string& key, const node& value, std::uint64_t least) const {
+    std::uint64_t number = 0;
+    const char* end = value.text.data() + value.text.size();
+    const bool parsed = value.kind == node_kind::integer &&
+                        std::from_chars(value.text.data(), end, number) == std::from_chars_result{end, std::errc{}};
+    if (!parsed || number < least)
+        fail(value.line, key + " must be a whole number, at least " + std::to_string(least) +
+                             (value.is_scalar() ? ", not " + value.text : ", not " + std::string(name_of(value.kind))));
+    return number;
+}
+
+std::vector<located_text> document::texts_of(const std::string& key, const node& value) const {
+    if (value.kind == node_kind::text) return {{value.text, value.line}};
+    if (value.kind != node_kind::list) fail_type(key, value, "a list or a name");
+    std::vector<located_text> texts;
+    for (const node& item : value.items) {
+        if (item.kind != node_kind::text) fail_type("an entry of " + key, item, "a name");
+        texts.push_back({item.text, item.line});
+    }
+    return texts;
+}
+
+std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
+    if (value.is_scalar()) return {{value.text, value.line}};
+    if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
+    if (value.items.empty()) fail(value.line, key + " is an empty list; expected at least one value");
+    std::vector<located_text> all;
+    for (const node& item : value.items) {
+        if (!item.is_scalar()) fail_type("an entry of " + key, item, "a value");
+        if (std::ranges::find(all, item.text, &located_text::text) != all.end())
+            fail(item.line, key + " lists '" + item.text + "' twice");
+        all.push_back({item.text, item.line});
+    }
+    return all;
+}
+
+std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys) {
+    std::vector<std::vector<aabb::setting>> products{{}};
+    for (const auto& [key, values] : keys) {
+        std::vector<std::vector<aabb::setting>> longer;
+        for (const std::vector<aabb::setting>& product : products)
+            for (const located_text& value : values) {
+                longer.push_back(product);
+                longer.back().push_back({key, value.text});
+            }
+        products = std::move(longer);
+    }
+    return products;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,96 @@
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "commands/command_line.hpp"
+#include "commands/commands.hpp"
+#include "commands/output.hpp"
+
+import aabb;
+import aabblab.pair_output;
+
+namespace aabblab {
+
+namespace {
+
+constexpr int check_failed = 1;
+constexpr int bad_input = 2;
+
+void run(CLI::App& program, int argc, char** argv) {
+    try {
+        program.parse(argc, argv);
+        require_command(program);
+    } catch (const CLI::CallForVersion& version) {
+        print(std::string(version.what()) + "\n");
+    } catch (const CLI::CallForHelp&) {
+        print(program.help());
+    } catch (const CLI::ParseError& error) {
+        throw aabb::input_error(refusal_of(program, error));
+    }
+    flush_output();
+}
+
+/// Says what went wrong, after what was printed before it.
+int fail(int status, const std::string& sentence) {
+    try {
+        flush_output();
+    } catch (const std::exception&) {
+        // The sentence at hand is the earlier one.
+    }
+    note(sentence);
+    return status;
+}
+
+int main_of(int argc, char** argv) {
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is the error EPIPE, told apart from others in print()
+    int status = 0;
+    try {
+        CLI::App program(
+            "AABB Lab: collision detection with axis-aligned bounding boxes, composed, proved and measured", "aabblab");
+        program.set_version_flag("--version", "aabblab " AABBLAB_VERSION, "Print the version");
+        program.set_help_flag("-h,--help", "Print this help");
+        program.require_subcommand(0, 1);
+        add_reproduce(program, status);
+        add_run(program, status);
+        add_validate(program, status);
+        add_explain(program, status);
+        add_list(program, status);
+        add_pairs(program, status);
+        add_collide(program, status);
+        add_classify(program, status);
+        add_scene(program, status);
+        // Set last: commands added before do not inherit it.
+        program.footer(
+            "With the script aabblab at the root of the source tree also:\n"
+            "  test                        Build and run every test\n"
+            "  data                        Fetch the real meshes\n"
+            "aabblab COMMAND --help tells the options of a command.\n"
+            "Exit status: 0, 1 when a check failed, 2 on bad input.");
+        run(program, argc, argv);
+        return status;
+    } catch (const output_closed&) {
+        return status;
+    } catch (const aabb::input_error& error) {
+        return fail(bad_input, error.what());
+    } catch (const defect& error) {
+        return fail(check_failed, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(bad_input, "this does not fit into memory");
+    } catch (const std::length_error&) {
+        return fail(bad_input, "this does not fit into memory");
+    } catch (const std::exception& error) {
+        return fail(check_failed, std::string("internal error: ") + error.what());
+    }
+}
+
+}  // namespace
+
+}  // namespace aabblab
+
+int main(int argc, char** argv) {
+    return aabblab::main_of(argc, argv);
+}

@@ -1,0 +1,97 @@
+module;
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Results as tables, figures and a report. Reads result files only, whoever made them.
+export module aabblab.report;
+
+import aabb;
+import aabblab.results;
+
+export namespace aabblab {
+
+struct column {
+    std::string name;
+    bool is_number = true;  ///< stands at the right
+};
+
+/// A table to be shown or written; each row has a cell for each column.
+struct table {
+    std::vector<column> columns;
+    std::vector<std::vector<std::string>> rows;
+};
+/// Columns lined up with spaces, for terminals.
+[[nodiscard]] std::string to_text(const table& t);
+[[nodiscard]] std::string to_csv(const table& t);
+[[nodiscard]] std::string to_markdown(const table& t);
+[[nodiscard]] std::string to_tex(const table& t);
+[[nodiscard]] std::string to_html(const table& t);
+
+struct quartiles {
+    double low;
+    double median;
+    double high;
+};
+/// Interpolated between the nearest two values; `values` must not be empty.
+[[nodiscard]] quartiles quartiles_of(std::vector<double> values);
+
+/// All repeats of one composition or engine in one scene.
+struct summary_line {
+    contender_name name;
+    std::string label;  ///< the parts of the name that differ within the scene
+    std::uint64_t pairs = 0;
+    std::optional<std::uint64_t> contacts;
+    std::string answer;                   ///< "exact", or "-3 +5": 3 are missing and 5 invented
+    std::optional<quartiles> ms_a_frame;  ///< of the frames after frame 0; of frame 0 where there is no other
+    std::optional<double> ratio;          ///< of the medians, to the first line
+    std::optional<double> build_ms;       ///< median
+    std::optional<std::uint64_t> bytes;   ///< of all parts; empty for an engine, which does not say
+};
+
+/// One of the kinds of strategy, and where it stands in a name.
+struct name_part {
+    std::string_view kind;
+    std::string contender_name::* field;
+};
+
+struct scene_summary {
+    std::string experiment;
+    std::string scene;
+    std::string parameters;
+    std::uint64_t objects = 0;
+    std::uint64_t frames = 0;
+    std::string digest;                ///< of the exact answer; empty where no line has it
+    std::vector<name_part> differing;  ///< parts in which the compositions differ
+    std::string common;                ///< what all compositions share, "sweep one_axis, triangle exact"
+    std::vector<summary_line> lines;
+};
+
+/// Scene by scene, in the order of the rows.
+[[nodiscard]] std::vector<scene_summary> summarise(std::span<const row> rows);
+
+/// Grouped numbers are for reading ("12,345"), plain ones for programs.
+enum class number_style { grouped, plain };
+[[nodiscard]] table table_of(const scene_summary& scene, number_style style);
+
+/// What stands above the table, some lines.
+[[nodiscard]] std::string heading_of(const scene_summary& scene);
+
+/// Median and quartiles of every line on a logarithmic axis; empty where nothing was timed.
+[[nodiscard]] std::string figure_of(const scene_summary& scene);
+
+/// One experiment of a report.
+struct report_part {
+    std::filesystem::path results;      ///< its folder
+    std::vector<std::string> failures;  ///< what validation found
+};
+
+/// Writes report.md and report.html, and every table and figure as .csv, .md, .tex and .svg under tables/.
+/// @throws aabb::input_error where a file cannot be read or written.
+void write_report(const std::filesystem::path& folder, std::span<const report_part> parts);
+
+}  // namespace aabblab

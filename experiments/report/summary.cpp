@@ -1,0 +1,216 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.report;
+
+import aabb;
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::array<name_part, 5> composition_parts{{{"sort", &contender_name::sort},
+                                                      {"partition", &contender_name::partition},
+                                                      {"sweep", &contender_name::sweep},
+                                                      {"tree", &contender_name::tree},
+                                                      {"triangle", &contender_name::triangle}}};
+
+std::optional<double> ms_a_frame(const row& r) {
+    if (!r.first_ms || r.frames == 1) return r.first_ms;
+    return (*r.update_ms + *r.search_ms + *r.detect_ms) / static_cast<double>(r.frames - 1);
+}
+
+std::string answer_of(const row& r) {
+    if (r.status == "exact" || !r.missing) return r.status;
+    return fmt::format("-{} +{}", *r.missing, *r.invented);
+}
+
+std::optional<std::uint64_t> bytes_of(const row& r) {
+    std::uint64_t all = 0;
+    for (const std::optional<std::uint64_t>& part : r.bytes) all += part.value_or(0);
+    return all > 0 ? std::optional(all) : std::nullopt;
+}
+
+summary_line line_of(std::span<const row* const> repeats) {
+    const row& any = *repeats[0];
+    summary_line line;
+    line.name = any.name;
+    line.pairs = any.candidates;
+    line.contacts = any.contacts;
+    line.answer = answer_of(any);
+    line.bytes = bytes_of(any);
+    std::vector<double> times, builds;
+    for (const row* r : repeats)
+        if (const std::optional<double> ms = ms_a_frame(*r)) {
+            times.push_back(*ms);
+            builds.push_back(*r->build_ms);
+        }
+    if (times.empty()) return line;
+    line.ms_a_frame = quartiles_of(times);
+    line.build_ms = quartiles_of(builds).median;
+    return line;
+}
+
+/// Finds what differs between the compositions and what they share, and names the lines by what differs.
+void set_labels(scene_summary& scene) {
+    for (const name_part& part : composition_parts) {
+        std::set<std::string> values;
+        for (const summary_line& line : scene.lines)
+            if (line.name.engine.empty()) values.insert(line.name.*part.field);
+        if (values.size() > 1)
+            scene.differing.push_back(part);
+        else if (!values.empty() && !values.begin()->empty())
+            scene.common += (scene.common.empty() ? "" : ", ") + std::string(part.kind) + " " + *values.begin();
+    }
+    for (summary_line& line : scene.lines) {
+        line.label = line.name.engine;
+        if (!line.label.empty()) continue;
+        for (const name_part& part : scene.differing)
+            line.label += (line.label.empty() ? "" : " + ") + line.name.*part.field;
+        if (line.label.empty()) line.label = "this composition";
+    }
+}
+
+std::string number(std::uint64_t n, number_style style) {
+    std::string digits = std::to_string(n);
+    if (style == number_style::plain) return digits;
+    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+    return digits;
+}
+
+/// Decimals that leave the fastest line of a scene three digits or more.
+int decimals_of(const scene_summary& scene) {
+    double least = 100;
+    for (const summary_line& line : scene.lines)
+        if (line.ms_a_frame) least = std::min(least, line.ms_a_frame->median);
+    return least < 1 ? 4 : least < 10 ? 3 : 2;
+}
+
+/// Three digits that count.
+std::string three_digits(double value) {
+    return fmt::format("{:.{}f}", value, value < 0.1 ? 4 : value < 1 ? 3 : value < 10 ? 2 : value < 100 ? 1 : 0);
+}
+
+/// The cells of a line from its times, "-" for what was not timed.
+std::vector<std::string> time_cells(const summary_line& line, int decimals, number_style style) {
+    if (!line.ms_a_frame) return {"-", "-", "-", "-"};
+    const auto [low, median, high] = *line.ms_a_frame;
+    const std::string ratio = line.ratio ? fmt::format("{:.2f}", *line.ratio) : "-";
+    if (style == number_style::plain)
+        return {fmt::format("{:.6f}", median), fmt::format("{:.6f}-{:.6f}", low, high), ratio,
+                fmt::format("{:.6f}", *line.build_ms)};
+    return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high), ratio,
+            fmt::format("{:.2f}", *line.build_ms)};
+}
+
+std::string bytes_cell(const std::optional<std::uint64_t>& bytes, number_style style) {
+    if (!bytes) return "-";
+    if (style == number_style::plain) return std::to_string(*bytes);
+    const double kib = static_cast<double>(*bytes) / 1024;
+    return kib < 100 ? fmt::format("{:.1f}", kib) : number(static_cast<std::uint64_t>(std::llround(kib)), style);
+}
+
+}  // namespace
+
+quartiles quartiles_of(std::vector<double> values) {
+    std::ranges::sort(values);
+    const auto at = [&](double share) {
+        const double place = share * static_cast<double>(values.size() - 1);
+        const auto below = static_cast<std::size_t>(place);
+        const std::size_t above = std::min(below + 1, values.size() - 1);
+        return values[below] + (values[above] - values[below]) * (place - static_cast<double>(below));
+    };
+    return {at(0.25), at(0.5), at(0.75)};
+}
+
+std::vector<scene_summary> summarise(std::span<const row> rows) {
+    struct group {
+        scene_summary scene;
+        std::vector<std::vector<const row*>> lines;
+    };
+    std::vector<group> groups;
+    for (const row& r : rows) {
+        auto g = std::ranges::find_if(groups, [&](const group& other) {
+            return other.scene.scene == r.scene && other.scene.parameters == r.scene_parameters;
+        });
+        if (g == groups.end()) {
+            g = groups.emplace(g);
+            g->scene.experiment = r.experiment;
+            g->scene.scene = r.scene;
+            g->scene.parameters = r.scene_parameters;
+            g->scene.objects = r.objects;
+            g->scene.frames = r.frames;
+        }
+        auto line = std::ranges::find_if(g->lines, [&](const auto& other) { return other[0]->name == r.name; });
+        if (line == g->lines.end()) line = g->lines.insert(line, std::vector<const row*>{});
+        line->push_back(&r);
+        if (r.status == "exact") g->scene.digest = r.digest;
+    }
+    std::vector<scene_summary> scenes;
+    for (group& g : groups) {
+        for (const auto& line : g.lines) g.scene.lines.push_back(line_of(line));
+        const std::optional<quartiles> first = g.scene.lines[0].ms_a_frame;
+        for (summary_line& line : g.scene.lines)
+            if (first && line.ms_a_frame && first->median > 0) line.ratio = line.ms_a_frame->median / first->median;
+        set_labels(g.scene);
+        scenes.push_back(std::move(g.scene));
+    }
+    return scenes;
+}
+
+table table_of(const scene_summary& scene, number_style style) {
+    const bool meshes = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.contacts.has_value(); });
+    const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_a_frame.has_value(); });
+    const bool sized = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.bytes.has_value(); });
+    const int decimals = decimals_of(scene);
+    table t;
+    for (const name_part& part : scene.differing) t.columns.push_back({std::string(part.kind), false});
+    if (scene.differing.empty()) t.columns.push_back({"composition", false});
+    const std::size_t name_columns = t.columns.size();
+    t.columns.insert(t.columns.end(), {{"answer", false}, {"pairs"}});
+    if (meshes) t.columns.push_back({"contacts"});
+    if (timed) t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles"}, {"ratio"}, {"build"}});
+    if (sized) t.columns.push_back({style == number_style::plain ? "bytes" : "KiB"});
+    for (const summary_line& line : scene.lines) {
+        std::vector<std::string>& cells = t.rows.emplace_back();
+        if (line.name.engine.empty())
+            for (const name_part& part : scene.differing) cells.push_back(line.name.*part.field);
+        else
+            cells.push_back(line.name.engine);
+        if (cells.empty()) cells.push_back(line.label);
+        cells.resize(name_columns);
+        cells.insert(cells.end(), {line.answer, number(line.pairs, style)});
+        if (meshes) cells.push_back(line.contacts ? number(*line.contacts, style) : "-");
+        if (timed)
+            for (std::string& cell : time_cells(line, decimals, style)) cells.push_back(std::move(cell));
+        if (sized) cells.push_back(bytes_cell(line.bytes, style));
+    }
+    return t;
+}
+
+std::string heading_of(const scene_summary& scene) {
+    std::string text = fmt::format("{}: {} objects, {} frames\n{}\n", scene.scene,
+                                   number(scene.objects, number_style::grouped), scene.frames, scene.parameters);
+    if (!scene.common.empty()) text += "all compositions: " + scene.common + "\n";
+    if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
+    const auto is_inexact = [](const summary_line& line) { return line.answer != "exact"; };
+    if (std::ranges::any_of(scene.lines, is_inexact))
+        text += "an answer -3 +5 misses 3 of the exact answer and invents 5\n";
+    return text;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,133 @@
+module;
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+module aabblab.results;
+
+import aabb;
+import aabblab.config;
+import aabblab.files;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+/// A line that was cut off while it was written goes.
+void drop_torn_line(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::uintmax_t complete = 0;
+    for (std::string line; std::getline(in, line) && !in.eof();) complete += line.size() + 1;
+    in.close();
+    if (complete != std::filesystem::file_size(file)) std::filesystem::resize_file(file, complete);
+}
+
+void replace_file(const std::filesystem::path& file, const std::string& text) {
+    output_file out(file);
+    out.write(text);
+    out.commit();
+}
+
+std::string scene_key(const scene_choice& scene) {
+    return scene.kind + " " + parameters_text(scene);
+}
+
+}  // namespace
+
+results_folder::results_folder(std::filesystem::path folder, const experiment& e, existing_results existing)
+    : folder_(std::move(folder)), experiment_(e), date_(date_now()) {
+    const std::filesystem::path table = folder_ / "results.csv";
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw aabb::input_error("the folder " + folder_.string() + " cannot be made: " + error.message());
+    const std::filesystem::path manifest = folder_ / "manifest.json";
+    if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
+        replaced_ = refusal_to_resume(manifest, e);
+        // The table last: until it is gone, the next run finds them all to replace.
+        if (!replaced_.empty())
+            for (const char* name : {"differences.csv", "results.csv"}) std::filesystem::remove(folder_ / name);
+    }
+    if (std::filesystem::exists(table)) {
+        rows_ = read_rows(table);
+        if (!rows_.empty() && existing == existing_results::refuse)
+            throw aabb::input_error("results are already in " + folder_.string() +
+                                    "; --resume continues them, --out DIR puts new ones elsewhere");
+        drop_torn_line(table);
+    }
+    if (!rows_.empty()) {
+        resumed_manifest before = resume_manifest(manifest, e);
+        date_ = std::move(before.date);
+        digests_ = std::move(before.digests);
+        if (std::filesystem::exists(folder_ / "differences.csv"))
+            differences_ = read_differences(folder_ / "differences.csv");
+    }
+    write_manifest();
+    if (!std::filesystem::exists(table) || std::filesystem::file_size(table) == 0)
+        replace_file(table, csv_header_of_rows());
+    open_table();
+}
+
+results_folder::~results_folder() {
+    if (file_) std::fclose(file_);
+}
+
+bool results_folder::has(const row& wanted) const {
+    return std::ranges::any_of(rows_, [key = wanted.key()](const row& r) { return r.key() == key; });
+}
+
+void results_folder::add(const row& finished) {
+    if (std::fputs(csv_of(finished).c_str(), file_) < 0 || std::fflush(file_) != 0) fail_table();
+    rows_.push_back(finished);
+}
+
+void results_folder::drop(const scene_choice& scene, const contender_name& name) {
+    const auto dropped = std::erase_if(rows_, [&](const row& r) {
+        return r.scene == scene.kind && r.scene_parameters == parameters_text(scene) && r.name == name;
+    });
+    if (dropped == 0) return;
+    std::string text = csv_header_of_rows();
+    for (const row& r : rows_) text += csv_of(r);
+    replace_file(folder_ / "results.csv", text);
+    open_table();
+}
+
+void results_folder::set_digest(const scene_choice& scene, const std::string& digest) {
+    digests_[scene_key(scene)] = digest;
+    write_manifest();
+}
+
+void results_folder::set_differences(const scene_choice& scene, std::span<const contender_name> of,
+                                     std::span<const difference> found) {
+    std::erase_if(differences_, [&](const difference& d) {
+        return d.scene == scene.kind && d.scene_parameters == parameters_text(scene) &&
+               std::ranges::find(of, d.name) != of.end();
+    });
+    differences_.insert(differences_.end(), found.begin(), found.end());
+    replace_file(folder_ / "differences.csv", csv_of(differences_));
+}
+
+void results_folder::open_table() {
+    if (file_) std::fclose(file_);
+    file_ = std::fopen((folder_ / "results.csv").c_str(), "ab");
+    if (!file_) fail_table();
+}
+
+void results_folder::fail_table() const {
+    throw aabb::input_error((folder_ / "results.csv").string() + " cannot be written: " + std::strerror(errno));
+}
+
+void results_folder::write_manifest() const {
+    replace_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_));
+}
+
+}  // namespace aabblab

@@ -1,0 +1,106 @@
+module;
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "commit.hpp"
+
+module aabblab.results;
+
+import aabb;
+import aabblab.config;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+using json = nlohmann::ordered_json;
+
+std::string cpu_model() {
+    std::ifstream in("/proc/cpuinfo");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "unknown";
+}
+
+/// What made the results. Times of different builds or machines must not meet in one table.
+json build() {
+    return {{"version", AABBLAB_VERSION},   {"commit", AABBLAB_COMMIT},  {"dirty", AABBLAB_DIRTY},
+            {"compiler", AABBLAB_COMPILER}, {"flags", AABBLAB_FLAGS},    {"build_type", AABBLAB_BUILD_TYPE},
+            {"cpu", cpu_model()},           {"engines", AABBLAB_ENGINES}};
+}
+
+json read_json(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in) throw aabb::input_error(file.string() + " is not there; results without it cannot be used");
+    json content = json::parse(in, nullptr, false);
+    if (!content.is_object() || !content.contains("build") || !content.contains("config"))
+        throw aabb::input_error(file.string() + " is not a manifest of results");
+    return content;
+}
+
+}  // namespace
+
+std::string date_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text.data();
+}
+
+std::string manifest_text(const experiment& e, const std::string& date, const scene_digests& digests) {
+    json scenes = json::array();
+    for (const scene_choice& scene : e.scenes) {
+        const std::string parameters = parameters_text(scene);
+        const auto digest = digests.find(scene.kind + " " + parameters);
+        scenes.push_back({{"kind", scene.kind}, {"parameters", parameters}, {"seed", scene.seed}});
+        if (digest != digests.end()) scenes.back()["digest"] = digest->second;
+    }
+    const json manifest{{"experiment", e.name},
+                        {"date", date},
+                        {"build", build()},
+                        {"config", {{"file", e.file}, {"hash", hash_of(e)}, {"quick", e.quick}, {"text", e.text}}},
+                        {"scenes", scenes},
+                        {"notes", e.notes}};
+    return manifest.dump(2) + "\n";
+}
+
+std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment& e) {
+    const json before = read_json(manifest);
+    const std::string where = "the results in " + manifest.parent_path().string();
+    if (before["config"].value("hash", "") != hash_of(e))
+        return where + " are of another config, size or set of meshes";
+    if (before["build"] != build())
+        return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
+               "), whose times cannot be compared";
+    return {};
+}
+
+resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment& e) {
+    if (const std::string refusal = refusal_to_resume(file, e); !refusal.empty())
+        throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
+    const json before = read_json(file);
+    resumed_manifest manifest{before.value("date", ""), {}};
+    for (const json& scene : before.value("scenes", json::array()))
+        if (scene.contains("digest"))
+            manifest.digests[scene.value("kind", "") + " " + scene.value("parameters", "")] = scene["digest"];
+    return manifest;
+}
+
+manifest_summary read_manifest(const std::filesystem::path& folder) {
+    const json manifest = read_json(folder / "manifest.json");
+    const json& made = manifest["build"];
+    manifest_summary summary{manifest.value("date", ""), made.value("commit", "unknown"), made.value("compiler", ""),
+                             made.value("cpu", ""), manifest.value("notes", std::vector<std::string>{})};
+    if (made.value("dirty", false)) summary.commit += " (changed)";
+    return summary;
+}
+
+}  // namespace aabblab

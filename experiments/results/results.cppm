@@ -1,0 +1,156 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Results of an experiment in a folder: results.csv, manifest.json, differences.csv.
+export module aabblab.results;
+
+import aabb;
+import aabblab.config;
+import aabblab.scenes;
+export import :csv;
+
+export namespace aabblab {
+
+/// What played a scene, as it stands in the columns of every table. Empty where there is no such part.
+struct contender_name {
+    std::string sort, partition, sweep, tree, triangle, engine;
+
+    friend auto operator<=>(const contender_name&, const contender_name&) = default;
+};
+
+/// Parts of a stage that have a column; what an engine calls otherwise is under `engine`.
+inline constexpr std::array<std::string_view, 7> byte_columns = {"projections", "sort",  "partition", "sweep",
+                                                                 "tree",        "stack", "engine"};
+
+/// One row: one scene played once from a fresh start. Metrics that were not asked for are empty.
+struct row {
+    std::string experiment;
+    std::string scene;
+    std::string scene_parameters;
+    std::uint64_t objects = 0;
+    std::uint64_t frames = 0;
+    contender_name name;
+    std::uint64_t repeat = 0;
+    std::optional<double> build_ms;   ///< making the stages, taking the objects, building the trees
+    std::optional<double> first_ms;   ///< frame 0, whole
+    std::optional<double> update_ms;  ///< sums over the frames after frame 0
+    std::optional<double> search_ms;
+    std::optional<double> detect_ms;
+    std::uint64_t candidates = 0;           ///< pairs of boxes, over all frames
+    std::optional<std::uint64_t> contacts;  ///< pairs of triangles, over all frames; empty in scenes of boxes
+    std::string digest;                     ///< of the contacts, or of the pairs in scenes of boxes
+    std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
+    std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes;
+    std::optional<std::uint64_t> missing;   ///< pairs or contacts of the exact answer that are not there
+    std::optional<std::uint64_t> invented;  ///< those that are there but not in the exact answer
+    std::string status;                     ///< "exact" or "inexact"
+
+    /// Equal keys name the same measurement.
+    [[nodiscard]] std::string key() const;
+};
+
+/// Rows of a results.csv. A last line that was cut off in the middle of being written is left out.
+/// @throws aabb::input_error with file and line where it is not a results.csv.
+[[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file);
+
+/// A line of differences.csv: how many pairs of one class a contender missed or invented in a scene.
+struct difference {
+    std::string scene;
+    std::string scene_parameters;
+    contender_name name;
+    std::string what;  ///< "missing" or "invented"
+    std::string kind;  ///< a class of aabb::difference_class_names, or "boxes" for pairs of boxes
+    std::uint64_t count = 0;
+};
+[[nodiscard]] std::vector<difference> read_differences(const std::filesystem::path& file);
+
+/// What is done with results that are there already: `replace` resumes those of the same config, build and machine and
+/// deletes others.
+enum class existing_results { refuse, resume, replace };
+
+/// The folder of a running experiment. What is written stays, whatever happens to the program afterwards.
+class results_folder {
+public:
+    /// Creates the folder and its manifest, or takes up what is there. The experiment must outlive the folder.
+    /// @throws aabb::input_error when results are there and are not to be resumed, or are of another config or build
+    /// and not to be replaced, or when the folder cannot be written.
+    results_folder(std::filesystem::path folder, const experiment& e, existing_results existing);
+    results_folder(const results_folder&) = delete;
+    results_folder& operator=(const results_folder&) = delete;
+    ~results_folder();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+    /// Says which results were replaced and why; empty where none were.
+    [[nodiscard]] const std::string& replaced() const { return replaced_; }
+    [[nodiscard]] std::span<const row> rows() const { return rows_; }
+    [[nodiscard]] bool has(const row& wanted) const;
+
+    /// Appends a row and flushes it.
+    void add(const row& finished);
+    /// Deletes the rows of a contender in a scene.
+    void drop(const scene_choice& scene, const contender_name& name);
+    /// Notes the exact digest of a scene in the manifest.
+    void set_digest(const scene_choice& scene, const std::string& digest);
+    /// Replaces the differences of these contenders in this scene.
+    void set_differences(const scene_choice& scene, std::span<const contender_name> of,
+                         std::span<const difference> found);
+
+private:
+    void open_table();
+    void write_manifest() const;
+    [[noreturn]] void fail_table() const;
+
+    std::filesystem::path folder_;
+    const experiment& experiment_;
+    std::string date_;
+    std::string replaced_;
+    std::vector<row> rows_;
+    std::vector<difference> differences_;
+    std::map<std::string, std::string> digests_;  // by scene and parameters
+    std::FILE* file_ = nullptr;
+};
+
+/// The manifest of a results folder, as far as reports show it.
+struct manifest_summary {
+    std::string date;
+    std::string commit;  ///< with "(changed)" where files differed from it
+    std::string compiler;
+    std::string cpu;
+    std::vector<std::string> notes;
+};
+[[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
+
+}  // namespace aabblab
+
+// What the parts of the module share.
+namespace aabblab {
+
+using scene_digests = std::map<std::string, std::string>;  // by scene and parameters
+
+[[nodiscard]] std::string csv_header_of_rows();
+[[nodiscard]] std::string csv_of(const row& r);
+[[nodiscard]] std::string csv_of(std::span<const difference> differences);
+
+[[nodiscard]] std::string date_now();
+[[nodiscard]] std::string manifest_text(const experiment& e, const std::string& date, const scene_digests& digests);
+
+struct resumed_manifest {
+    std::string date;
+    scene_digests digests;
+};
+/// Why results cannot be continued: they are of another config, build or machine. Empty where they can.
+[[nodiscard]] std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment& e);
+/// @throws aabb::input_error where that is so.
+[[nodiscard]] resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment& e);
+
+}  // namespace aabblab

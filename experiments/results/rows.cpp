@@ -1,0 +1,189 @@
+module;
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.results;
+
+import :csv;
+import aabb;
+
+namespace aabblab {
+
+namespace {
+
+/// The columns of a table in one place: calls `field(name, member)` for each.
+template <class Name, class Field>
+void for_each_name(Name& name, Field field) {
+    field("sort", name.sort);
+    field("partition", name.partition);
+    field("sweep", name.sweep);
+    field("tree", name.tree);
+    field("triangle", name.triangle);
+    field("engine", name.engine);
+}
+
+template <class Row, class Field>
+void for_each_key(Row& r, Field field) {
+    field("experiment", r.experiment);
+    field("scene", r.scene);
+    field("scene_parameters", r.scene_parameters);
+    field("objects", r.objects);
+    field("frames", r.frames);
+    for_each_name(r.name, field);
+    field("repeat", r.repeat);
+}
+
+template <class Row, class Field>
+void for_each_column(Row& r, Field field) {
+    for_each_key(r, field);
+    field("build_ms", r.build_ms);
+    field("first_ms", r.first_ms);
+    field("update_ms", r.update_ms);
+    field("search_ms", r.search_ms);
+    field("detect_ms", r.detect_ms);
+    field("candidates", r.candidates);
+    field("contacts", r.contacts);
+    field("digest", r.digest);
+    for (std::size_t i = 0; i < r.counts.size(); ++i) field(std::string(aabb::work_names[i]), r.counts[i]);
+    for (std::size_t i = 0; i < r.bytes.size(); ++i) field("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
+    field("missing", r.missing);
+    field("invented", r.invented);
+    field("status", r.status);
+}
+
+template <class Difference, class Field>
+void for_each_column_of_difference(Difference& d, Field field) {
+    field("scene", d.scene);
+    field("scene_parameters", d.scene_parameters);
+    for_each_name(d.name, field);
+    field("what", d.what);
+    field("class", d.kind);
+    field("count", d.count);
+}
+
+std::string written(const std::string& text) {
+    return text;
+}
+std::string written(std::uint64_t number) {
+    return std::to_string(number);
+}
+std::string written(double number) {
+    std::array<char, 64> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, 6).ptr;
+    return {text.data(), end};
+}
+template <class T>
+std::string written(const std::optional<T>& value) {
+    return value ? written(*value) : "";
+}
+
+bool taken(std::string& to, const std::string& text) {
+    to = text;
+    return true;
+}
+template <class Number>
+bool taken(Number& to, const std::string& text) {
+    const char* end = text.data() + text.size();
+    return std::from_chars(text.data(), end, to) == std::from_chars_result{end, std::errc{}};
+}
+template <class T>
+bool taken(std::optional<T>& to, const std::string& text) {
+    return text.empty() || taken(to.emplace(), text);
+}
+
+constexpr auto columns_of_row = [](auto& r, auto field) { for_each_column(r, field); };
+constexpr auto columns_of_difference = [](auto& d, auto field) { for_each_column_of_difference(d, field); };
+
+template <class Row, class Columns>
+std::string header_of(Columns columns) {
+    std::vector<std::string> names;
+    Row any;
+    columns(any, [&](const std::string& name, const auto&) { names.push_back(name); });
+    return csv_line(names);
+}
+
+template <class Row, class Columns>
+std::string line_of(const Row& r, Columns columns) {
+    std::vector<std::string> fields;
+    columns(r, [&](const std::string&, const auto& value) { fields.push_back(written(value)); });
+    return csv_line(fields);
+}
+
+/// Complete lines only.
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!in.good()) throw aabb::input_error(file.string() + " cannot be read");
+    std::vector<std::string> lines;
+    for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+        lines.push_back(text.substr(at, end - at));
+    return lines;
+}
+
+template <class Row, class Columns>
+std::vector<Row> read_table(const std::filesystem::path& file, Columns columns) {
+    const std::vector<std::string> lines = lines_of(file);
+    std::vector<Row> rows;
+    if (lines.empty()) return rows;
+    const std::string header = header_of<Row>(columns);
+    if (lines[0] + "\n" != header)
+        throw aabb::input_error(file.string() + ":1: these are not the columns of this version; expected " +
+                                header.substr(0, header.size() - 1));
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        const std::vector<std::string> fields = csv_fields(lines[i]);
+        const std::string place = file.string() + ":" + std::to_string(i + 1) + ": ";
+        std::size_t at = 0;
+        columns(rows.emplace_back(), [&](const std::string& name, auto& value) {
+            if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
+            if (!taken(value, fields[at]))
+                throw aabb::input_error(place + name + " must be a number, not '" + fields[at] + "'");
+            ++at;
+        });
+        if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
+    }
+    return rows;
+}
+
+}  // namespace
+
+std::string row::key() const {
+    std::vector<std::string> fields;
+    for_each_key(*this, [&](const std::string&, const auto& value) { fields.push_back(written(value)); });
+    return csv_line(fields);
+}
+
+std::string csv_header_of_rows() {
+    return header_of<row>(columns_of_row);
+}
+std::string csv_of(const row& r) {
+    return line_of(r, columns_of_row);
+}
+std::string csv_of(std::span<const difference> differences) {
+    std::string text = header_of<difference>(columns_of_difference);
+    for (const difference& d : differences) text += line_of(d, columns_of_difference);
+    return text;
+}
+
+std::vector<row> read_rows(const std::filesystem::path& file) {
+    std::vector<row> rows = read_table<row>(file, columns_of_row);
+    for (const row& r : rows)
+        if (r.status != "exact" && r.status != "inexact")
+            throw aabb::input_error(file.string() + ": a row has the status '" + r.status +
+                                    "'; expected exact or inexact");
+    return rows;
+}
+std::vector<difference> read_differences(const std::filesystem::path& file) {
+    return read_table<difference>(file, columns_of_difference);
+}
+
+}  // namespace aabblab
