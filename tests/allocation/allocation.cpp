@@ -1,0 +1,111 @@
+// Counts every allocation of the process: once the buffers have grown to the scene, neither stage may make one.
+
+#include <atomic>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "../compositions.hpp"
+
+namespace {
+std::atomic<std::size_t> allocations = 0;
+}
+
+// NOLINTBEGIN(cppcoreguidelines-no-malloc)
+void* operator new(std::size_t bytes) {
+    ++allocations;
+    if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+// NOLINTEND(cppcoreguidelines-no-malloc)
+
+using namespace aabb;
+
+namespace {
+
+/// Boxes on circles around their places, so that lists change order and come back to where they were.
+std::vector<box> orbiting(int frame) {
+    std::vector<box> boxes;
+    for (int i = 0; i < 300; ++i) {
+        const float angle = 0.7F * static_cast<float>(frame) + static_cast<float>(i);
+        const vec3f at{static_cast<float>(i * 37 % 101) + std::cos(angle),
+                       static_cast<float>(i * 53 % 97) + std::sin(angle), static_cast<float>(i * 29 % 89)};
+        boxes.push_back({at, at + vec3f{4, 4, 4}});
+    }
+    return boxes;
+}
+
+mesh ripples(std::uint32_t n) {
+    mesh m;
+    for (std::uint32_t i = 0; i <= n; ++i)
+        for (std::uint32_t j = 0; j <= n; ++j)
+            m.vertices.push_back(
+                {static_cast<float>(i), static_cast<float>(j), std::sin(static_cast<float>(i + 2 * j))});
+    for (std::uint32_t i = 0; i < n; ++i)
+        for (std::uint32_t j = 0; j < n; ++j) {
+            const std::uint32_t v = i * (n + 1) + j;
+            m.triangles.push_back({v, v + 1, v + n + 1});
+            m.triangles.push_back({v + 1, v + n + 2, v + n + 1});
+        }
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("global search allocates nothing in steady state") {
+    std::vector<std::vector<box>> frames;
+    for (int frame = 0; frame < 9; ++frame) frames.push_back(orbiting(frame));
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::none);
+        for (std::uint32_t id = 0; id < frames[0].size(); ++id) stage->insert(id);
+        std::vector<index_pair> pairs;
+        std::size_t before = 0;
+        for (int round = 0; round < 3; ++round) {
+            if (round == 2) before = allocations;
+            for (const auto& boxes : frames) {
+                pairs.clear();
+                stage->update(boxes);
+                stage->search(pairs);
+            }
+        }
+        const std::size_t made = allocations - before;
+        CHECK(made == 0);
+        CHECK_FALSE(pairs.empty());
+    }
+}
+
+TEST_CASE("local detection allocates nothing in steady state") {
+    const mesh m = ripples(20);
+    for (const local_composition& composition : all_local_compositions()) {
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::none);
+        const auto model = stage->add_model(m);
+        std::vector<index_pair> pairs;
+        std::size_t before = 0;
+        for (int round = 0; round < 2; ++round) {
+            if (round == 1) before = allocations;
+            for (int step = 0; step < 5; ++step) {
+                pose moved;
+                moved.translation = {0.3 * step, 0.2, 0.1};
+                pairs.clear();
+                stage->all_pairs(model, {}, model, moved, pairs);
+                if (!stage->first_pair(model, {}, model, moved)) std::abort();
+            }
+        }
+        const std::size_t made = allocations - before;
+        CHECK(made == 0);
+        CHECK_FALSE(pairs.empty());
+    }
+}

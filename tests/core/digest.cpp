@@ -1,0 +1,27 @@
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+import aabb;
+
+using namespace aabb;
+
+TEST_CASE("a digest is XXH3-64 of the little-endian u32 triples") {
+    digest none;
+    CHECK(none.text() == "2d06800538d394c2");  // of no bytes, as XXH3 defines it
+    digest d;
+    const std::vector<index_pair> first = {{0, 1}, {2, 3}};
+    const std::vector<index_pair> second = {{0, 7}};
+    d.add(0, first);
+    d.add(1, second);
+    digest flat;
+    flat.add(std::array<std::uint32_t, 9>{0, 0, 1, 0, 2, 3, 1, 0, 7});
+    CHECK(d.value() == flat.value());
+    CHECK(d.text().size() == 16);
+    digest other_frame;
+    other_frame.add(0, first);
+    other_frame.add(2, second);
+    CHECK(d.value() != other_frame.value());
+}

@@ -1,0 +1,93 @@
+#pragma once
+
+// The least that each kind of strategy must be. What compiles here is all that the concepts and the stages ask for.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+import aabb;
+
+struct fake_sort {
+    static constexpr std::string_view name = "fake";
+    static constexpr std::string_view summary = "a bubble sort";
+    static void sort(std::span<aabb::projection> list, auto&) {
+        for (std::size_t end = list.size(); end > 1; --end)
+            for (std::size_t i = 1; i < end; ++i)
+                if (list[i].key < list[i - 1].key) std::swap(list[i], list[i - 1]);
+    }
+};
+
+struct fake_whole_partition {
+    static constexpr std::string_view name = "fake_whole";
+    static constexpr std::string_view summary = "one subset";
+};
+
+/// Two half-spaces x < 0 and x >= 0.
+struct fake_cutting_partition {
+    static constexpr std::string_view name = "fake_cutting";
+    static constexpr std::string_view summary = "two halves";
+    static void fit(std::span<const aabb::box>, std::span<const aabb::projection>) {}
+    [[nodiscard]] static std::uint32_t subset_count() { return 2; }
+    static void for_each_subset(const aabb::box& b, auto visit) {
+        if (b.min[0] < 0) visit(std::uint32_t{0}, aabb::every_axis);
+        if (b.max[0] >= 0) visit(std::uint32_t{1}, aabb::axis_set{b.min[0] < 0 ? 0b110U : 0b111U});
+    }
+};
+
+/// Every pair of the subset, without looking at the order.
+struct fake_sweep {
+    static constexpr std::string_view name = "fake";
+    static constexpr std::string_view summary = "all pairs of a subset";
+    static aabb::axis_set axes(std::span<const aabb::box>, std::span<const aabb::projection>, aabb::axis_set) {
+        return 0b010;
+    }
+    template <class Subset>
+    static void sweep(const Subset& subset, std::vector<aabb::index_pair>& pairs, auto&) {
+        const auto list = subset.lists[1];
+        for (std::size_t i = 0; i < list.size(); ++i)
+            for (std::size_t j = i + 1; j < list.size(); ++j)
+                if (overlaps(subset.boxes[list[i].id], subset.boxes[list[j].id]) &&
+                    Subset::owns(Subset::owned(list[i]), Subset::owned(list[j])))
+                    pairs.push_back(aabb::ordered_pair(list[i].id, list[j].id));
+    }
+};
+
+/// A tree of depth one: the root, and a leaf for each triangle, chained.
+struct fake_tree {
+    static constexpr std::string_view name = "fake";
+    static constexpr std::string_view summary = "a list of triangles dressed as a tree";
+    struct cursor {
+        std::uint32_t triangle;
+        bool leaf;
+    };
+    void build(const aabb::mesh& m) {
+        all = bounds_of(m);
+        triangles = m.triangle_count();
+    }
+    [[nodiscard]] cursor root(const aabb::mesh&) const { return {0, triangles == 1}; }
+    [[nodiscard]] static bool is_leaf(cursor at) { return at.leaf; }
+    [[nodiscard]] cursor child(cursor at, int side, const aabb::mesh&) const {
+        if (side == 0) return {at.triangle, true};
+        return {at.triangle + 1, at.triangle + 2 == triangles};
+    }
+    [[nodiscard]] aabb::box bounds(cursor) const { return all; }
+    [[nodiscard]] static bool has_own_bounds(cursor) { return false; }
+    [[nodiscard]] static std::uint32_t triangle(cursor at) { return at.triangle; }
+    [[nodiscard]] static std::size_t bytes() { return 0; }
+
+    aabb::box all{};
+    std::uint32_t triangles = 0;
+};
+
+/// Takes the overlap of the triangles' boxes for the answer.
+struct fake_triangle {
+    static constexpr std::string_view name = "fake";
+    static constexpr std::string_view summary = "boxes of triangles";
+    [[nodiscard]] static bool intersects(const aabb::triangle3f& s, const aabb::triangle3f& t) {
+        return overlaps(bounds_of(s), bounds_of(t));
+    }
+};

@@ -1,0 +1,101 @@
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+import aabb;
+
+using namespace aabb;
+using Catch::Matchers::Message;
+
+namespace {
+
+struct tunable {
+    static constexpr std::string_view name = "tunable";
+    static constexpr std::string_view summary = "has one parameter of each kind";
+    enum class colour { red, green };
+    struct config {
+        double weight = 0.5;
+        std::optional<double> size;
+        colour paint = colour::green;
+    };
+    static constexpr std::tuple parameters{
+        number_parameter{"weight", &config::weight, 0.0, 1.0, "a share"},
+        number_parameter{"size", &config::size, 0.0, std::numeric_limits<double>::max(), "a length"},
+        choice_parameter{"paint", &config::paint, std::array<std::string_view, 2>{"red", "green"}, "a colour"}};
+    explicit tunable(const config&) {}
+};
+static_assert(Strategy<tunable>);
+
+struct plain {
+    static constexpr std::string_view name = "plain";
+    static constexpr std::string_view summary = "has none";
+};
+
+tunable::config read(std::string_view text) {
+    return configured<tunable>(parse_strategy(text).settings);
+}
+
+}  // namespace
+
+TEST_CASE("a strategy with settings goes from text to a choice and back") {
+    const strategy_choice choice = parse_strategy("shell:gaps=ciura,limit=2");
+    CHECK(choice == strategy_choice{"shell", {{"gaps", "ciura"}, {"limit", "2"}}});
+    CHECK(to_text(choice) == "shell:gaps=ciura,limit=2");
+    CHECK(parse_strategy("std") == strategy_choice{"std", {}});
+    CHECK_THROWS_MATCHES(parse_strategy("shell:gaps"), input_error,
+                         Message("'gaps' after 'shell:' is not of the form name=value"));
+    CHECK_THROWS_MATCHES(parse_strategy("shell:"), input_error,
+                         Message("'' after 'shell:' is not of the form name=value"));
+}
+
+TEST_CASE("settings become the fields of a config") {
+    CHECK(read("tunable").weight == 0.5);
+    CHECK(read("tunable:weight=0.25").weight == 0.25);
+    CHECK(read("tunable:size=3e2").size == 300);
+    CHECK_FALSE(read("tunable:size=auto").size.has_value());
+    CHECK(read("tunable:paint=red").paint == tunable::colour::red);
+}
+
+TEST_CASE("a value that is not one is refused with what was expected") {
+    CHECK_THROWS_MATCHES(read("tunable:weight=2"), input_error,
+                         Message("tunable: weight must be a number above 0 and at most 1, not '2'"));
+    CHECK_THROWS_MATCHES(read("tunable:weight=0"), input_error,
+                         Message("tunable: weight must be a number above 0 and at most 1, not '0'"));
+    CHECK_THROWS_MATCHES(read("tunable:weight=nan"), input_error,
+                         Message("tunable: weight must be a number above 0 and at most 1, not 'nan'"));
+    CHECK_THROWS_MATCHES(read("tunable:size=1x"), input_error,
+                         Message("tunable: size must be a number above 0 or auto, not '1x'"));
+    CHECK_THROWS_MATCHES(read("tunable:paint=blue"), input_error,
+                         Message("tunable: paint must be one of red, green, not 'blue'"));
+    CHECK_THROWS_MATCHES(read("tunable:wieght=1"), input_error,
+                         Message("unknown parameter of tunable 'wieght'; did you mean 'weight'?"));
+    CHECK_THROWS_MATCHES(configured<plain>(parse_strategy("plain:x=1").settings), input_error,
+                         Message("plain takes no parameters, so not 'x' either"));
+}
+
+TEST_CASE("parameters describe themselves") {
+    const auto infos = parameters_of<tunable>();
+    REQUIRE(infos.size() == 3);
+    CHECK(infos[0].fallback == "0.5");
+    CHECK(infos[1].fallback == "auto");
+    CHECK(infos[2].fallback == "green");
+    CHECK(infos[2].expected == "one of red, green");
+    CHECK(parameters_of<plain>().empty());
+}
+
+TEST_CASE("the nearest name is the one a typing slip away") {
+    const std::vector<std::string> names = {"insertion", "std", "shell"};
+    CHECK(nearest_name("shel", names) == "shell");
+    CHECK(nearest_name("hsell", names) == "shell");
+    CHECK(nearest_name("insetrion", names) == "insertion");
+    CHECK(nearest_name("ertion", names) == "insertion");
+    CHECK(edit_distance("", "abc") == 3);
+    CHECK(edit_distance("ab", "ba") == 1);
+    CHECK(edit_distance("same", "same") == 0);
+}

@@ -1,0 +1,165 @@
+#include <rapidcheck.h>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cmath>
+#include <limits>
+
+import aabb;
+
+using namespace aabb;
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::MessageMatches;
+
+namespace {
+
+double uniform(double low, double high) {
+    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
+}
+
+pose any_pose(double reach) {
+    double q[4];
+    double length = 0;
+    do {
+        length = 0;
+        for (double& x : q) {
+            x = uniform(-1, 1);
+            length += x * x;
+        }
+    } while (length < 0.01);
+    for (double& x : q) x /= std::sqrt(length);
+    const auto [w, x, y, z] = q;
+    pose p;
+    p.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                  2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                  2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    p.translation = {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)};
+    return p;
+}
+
+vec3f any_point(const box& b) {
+    vec3f p;
+    for (int k = 0; k < 3; ++k)
+        p[k] = *rc::gen::element(b.min[k], b.max[k], static_cast<float>(uniform(b.min[k], b.max[k])));
+    return p;
+}
+
+box any_box() {
+    const auto size = static_cast<float>(std::pow(10.0, uniform(-3, 3)));
+    box b = empty_box();
+    for (int i = 0; i < 2; ++i)
+        b = merged(b,
+                   bounds_of(vec3f{static_cast<float>(uniform(-1, 1)) * size, static_cast<float>(uniform(-1, 1)) * size,
+                                   static_cast<float>(uniform(-1, 1)) * size}));
+    return b;
+}
+
+}  // namespace
+
+TEST_CASE("the image of a box holds the image of every point of it") {
+    REQUIRE(rc::check([] {
+        const double reach = std::pow(10.0, uniform(-2, 8));
+        const box reach_b = any_box();
+        const relative_pose to_a(any_pose(reach), any_pose(reach), reach_b);
+        for (int i = 0; i < 20; ++i) {
+            const box b = merged(bounds_of(any_point(reach_b)), bounds_of(any_point(reach_b)));
+            const box image = to_a(b);
+            for (int j = 0; j < 20; ++j) RC_ASSERT(contains(image, bounds_of(to_a(any_point(b)))));
+        }
+    }));
+}
+
+TEST_CASE("the margin of a box's image is needed: without it rounding loses points") {
+    // The same formula without growing, over boxes of one point, whose image a tight box would have to hit exactly.
+    int lost = 0;
+    REQUIRE(rc::check([&] {
+        const box reach_b = any_box();
+        const pose a = any_pose(1e9);
+        pose b = any_pose(1);
+        for (int k = 0; k < 3; ++k) b.translation[k] += a.translation[k];
+        const relative_pose to_a(a, b, reach_b);
+        const vec3f x = any_point(reach_b);
+        for (int i = 0; i < 3; ++i) {
+            double bound = 0;
+            for (int k = 0; k < 3; ++k) bound += a.rotation[3 * k + i] * (b.translation[k] - a.translation[k]);
+            for (int j = 0; j < 3; ++j) {
+                double turn = 0;
+                for (int k = 0; k < 3; ++k) turn += a.rotation[3 * k + i] * b.rotation[3 * k + j];
+                bound += turn * x[j];
+            }
+            lost += static_cast<float>(bound) != to_a(x)[i];
+        }
+        RC_ASSERT(contains(to_a(bounds_of(x)), bounds_of(to_a(x))));
+    }));
+    CHECK(lost > 0);
+}
+
+TEST_CASE("two meshes moved together keep their vertices") {
+    const box reach{{-1, -1, -1}, {1, 1, 1}};
+    const vec3f x{0.1F, -0.7F, 1.0F};
+    CHECK(relative_pose({}, {}, reach)(x) == x);
+    REQUIRE(rc::check([&] {
+        const pose p = any_pose(100);
+        const vec3f image = relative_pose(p, p, reach)(x);
+        for (int k = 0; k < 3; ++k) RC_ASSERT(std::abs(image[k] - x[k]) < 1e-6F);
+    }));
+}
+
+TEST_CASE("meshes that meet in A's frame have overlapping world boxes") {
+    REQUIRE(rc::check([] {
+        const box local_a = any_box();
+        const box local_b = any_box();
+        const pose a = any_pose(std::pow(10.0, uniform(-2, 18)));
+        pose b = any_pose(1);
+        // Put a point of B onto a point of A, then see whether the rounded image meets A's box.
+        const vec3f on_a = any_point(local_a);
+        const vec3f on_b = any_point(local_b);
+        for (int i = 0; i < 3; ++i) {
+            b.translation[i] = a.translation[i];
+            for (int j = 0; j < 3; ++j)
+                b.translation[i] += a.rotation[3 * i + j] * on_a[j] - b.rotation[3 * i + j] * on_b[j];
+        }
+        const relative_pose to_a(a, b, local_b);
+        if (overlaps(bounds_of(to_a(on_b)), local_a))
+            RC_ASSERT(overlaps(world_bounds(local_a, a), world_bounds(local_b, b)));
+    }));
+}
+
+TEST_CASE("world boxes of meshes at a tie of two floats, and of denormal size, do not come apart") {
+    const double r2 = std::sqrt(2.0);
+    const double r3 = std::sqrt(3.0);
+    const double r6 = std::sqrt(6.0);
+    const std::array<double, 9> turned = {1 / r3, 1 / r3, 1 / r3, 1 / r2, -1 / r2, 0, 1 / r6, 1 / r6, -2 / r6};
+    const double tie = 0x1p40 + 0x1p17 + 0x1p16;
+    const auto s = static_cast<float>(0.49 * 0x1p-12 * r3);
+    CHECK(overlaps(world_bounds({{0, 0, 0}, {s, s, s}}, {turned, {tie - 2 * 0x1p-12, 0, 0}}),
+                   world_bounds({{-s, -s, -s}, {0, 0, 0}}, {turned, {tie, 0, 0}})));
+    // Half a denormal apart in the world, together after rounding in A's frame.
+    constexpr float least = std::numeric_limits<float>::denorm_min();
+    CHECK(
+        overlaps(world_bounds({{0, 0, 0}, {least, least, least}}, {}),
+                 world_bounds({{0, 0, 0}, {least, least, least}}, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1.5 * least, 0, 0}})));
+}
+
+TEST_CASE("a mesh beyond the range of float in the other's frame is refused") {
+    const float huge = 3e38F;
+    const pose turned{{std::sqrt(0.5), -std::sqrt(0.5), 0, std::sqrt(0.5), std::sqrt(0.5), 0, 0, 0, 1}, {0, 0, 0}};
+    CHECK_THROWS_AS(relative_pose({}, turned, {{0, 0, 0}, {huge, huge, 0}}), input_error);
+    CHECK_THROWS_AS(relative_pose({}, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1e300, 0, 0}}, {{0, 0, 0}, {1, 1, 1}}),
+                    input_error);
+    CHECK_NOTHROW(relative_pose({}, {}, {{-huge, -huge, -huge}, {huge, huge, huge}}));
+}
+
+TEST_CASE("what is not a rigid motion is refused") {
+    const auto refused = [](pose p, const char* why) {
+        CHECK_THROWS_MATCHES(require_rigid(p), input_error, MessageMatches(ContainsSubstring(why)));
+    };
+    CHECK_NOTHROW(require_rigid({}));
+    CHECK_NOTHROW(require_rigid({{1, 4e-7, 0, -4e-7, 1, 0, 0, 0, 1}, {1e9, 0, 0}}));
+    refused({{1.001, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not orthonormal");
+    refused({{1, 0, 0, 0, 1, 0, 0, 0, -1}, {0, 0, 0}}, "reflection");
+    refused({{0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0}}, "not orthonormal");
+    refused({{std::nan(""), 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not finite");
+    refused({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, std::numeric_limits<double>::infinity(), 0}}, "not finite");
+}

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace {
+
+constexpr const char* tetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+constexpr const char* pyramid =
+    "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n4 0 1 2 3\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n";
+
+std::vector<std::string> joined(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+}  // namespace
+
+TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::string b = folder.write("b.off", pyramid);
+    const std::vector<std::string> base = {"collide", a, b, "--json", "--pose-b", "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
+    const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
+    REQUIRE(reference["pairs"] > 0);
+    const auto tree = GENERATE("canonical", "leafless");
+    const program_result result = run_program(joined(base, {"--tree", tree, "--out", folder / "pairs.csv"}));
+    REQUIRE(result.status == 0);
+    REQUIRE(result.err.find("b.off: ") != std::string::npos);  // a polygon was fanned
+    const auto summary = nlohmann::json::parse(result.out);
+    REQUIRE(summary["triangles"] == std::vector{4, 6});
+    REQUIRE(summary["pairs"] == reference["pairs"]);
+    REQUIRE(summary["digest"] == reference["digest"]);
+    REQUIRE(summary["build_ms"] >= 0);
+    REQUIRE(summary["query_ms"] >= 0);
+    REQUIRE(summary["bytes_per_triangle"] > 10);
+    const std::string rows = bytes_of_file(folder / "pairs.csv");
+    REQUIRE(rows.starts_with("a,b\n"));
+    REQUIRE(static_cast<std::size_t>(std::ranges::count(rows, '\n')) == 1 + summary["pairs"].get<std::size_t>());
+
+    const program_result first = run_program(joined(base, {"--tree", tree, "--first", "--out", folder / "first.csv"}));
+    REQUIRE(nlohmann::json::parse(first.out)["pairs"] == 1);
+    const std::string row = bytes_of_file(folder / "first.csv").substr(4);
+    REQUIRE(rows.find("\n" + row) != std::string::npos);
+}
+
+TEST_CASE("collide takes both poses") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const auto pairs = [&](const std::vector<std::string>& poses) {
+        return nlohmann::json::parse(run_program(joined({"collide", a, a, "--json"}, poses)).out)["digest"];
+    };
+    const std::string away = "1,0,0,-9,0,1,0,0,0,0,1,0";
+    const auto together = pairs({});
+    REQUIRE(pairs({"--pose-a", away}) != together);
+    REQUIRE(pairs({"--pose-b", away}) != together);
+    REQUIRE(pairs({"--pose-a", away, "--pose-b", away}) == together);
+    REQUIRE(run_program({"collide", a, a, "--first", "--pose-a", away}).out.find("0 intersecting") !=
+            std::string::npos);
+}
+
+TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
+        {{"--pose-a", "1,0,0"}, "--pose-a: a pose is 12 numbers"},
+        {{"--pose-b", "1,0,0,x,0,1,0,0,0,0,1,0"}, "--pose-b: number 4 of 12: 'x' is not a number"},
+        {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,nan"}, "number 12 of 12: 'nan' is not finite"},
+        {{"--pose-b", "2,0,0,0,0,1,0,0,0,0,1,0"}, "--pose-b: the pose is not rigid"},
+        {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
+        {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
+        {{"--engine", "cgl"}, "did you mean 'cgal'?"},
+        {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --tree and --triangle"},
+    }));
+    const program_result result = run_program(joined({"collide", a, a, "--out", folder / "pairs.csv"}, options));
+    INFO(result.err);
+    REQUIRE(result.status == 2);
+    REQUIRE(is_one_sentence(result.err));
+    REQUIRE(result.err.find(said) != std::string::npos);
+    REQUIRE(folder.files() == 1);
+}

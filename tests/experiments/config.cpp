@@ -1,0 +1,172 @@
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabb.registry;
+import aabblab.config;
+import aabblab.scenes;
+
+using aabblab::experiment;
+using aabblab::experiment_size;
+
+namespace {
+
+/// The least there is to say.
+const std::string minimal = "name = \"test\"\n[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
+
+experiment parsed(const std::string& text, experiment_size size = experiment_size::full) {
+    return aabblab::parse_experiment(text, "test.toml", size);
+}
+
+std::string refusal_of(const std::string& text) {
+    try {
+        (void)parsed(text);
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("A config that says little has the default composition, nine repeats and all metrics") {
+    const experiment e = parsed(minimal);
+    REQUIRE(e.name == "test");
+    REQUIRE(e.repeats == 9);
+    REQUIRE(e.compositions == std::vector<aabblab::composition>(1));
+    REQUIRE(e.engines.empty());
+    REQUIRE(e.scenes.size() == 1);
+    REQUIRE(e.scenes[0].seed == 1);
+    REQUIRE((e.measured.time && e.measured.counts && e.measured.bytes && e.measured.error));
+}
+
+TEST_CASE("Every list multiplies") {
+    const experiment e = parsed(R"(
+name = "test"
+seed = [1, 2]
+[[scene]]
+kind = "brownian"
+objects = [10, 20]
+frames = 3
+[compose]
+sort = ["insertion", "std"]
+partition = ["none", { name = "uniform_grid", cell_size = [1, 2.5] }]
+tree = [{ name = "leafless", leaf_test = ["none", "triangle_aabb"] }]
+[measure]
+metrics = ["time", "bytes"]
+)");
+    REQUIRE(e.scenes.size() == 4);
+    REQUIRE(aabblab::parameters_text(e.scenes[0]) == "objects=10 frames=3 seed=1");
+    REQUIRE(aabblab::parameters_text(e.scenes[1]) == "objects=10 frames=3 seed=2");
+    REQUIRE(aabblab::parameters_text(e.scenes[3]) == "objects=20 frames=3 seed=2");
+    REQUIRE(e.compositions.size() == 2 * 3 * 2);
+    REQUIRE(to_text(e.compositions[5].global) == "insertion + uniform_grid:cell_size=2.5 + one_axis");
+    REQUIRE(to_text(e.compositions[5].local) == "leafless:leaf_test=triangle_aabb + exact");
+    REQUIRE((e.measured.time && !e.measured.counts && e.measured.bytes && !e.measured.error));
+}
+
+TEST_CASE("The option --quick takes what the config says under quick") {
+    const std::string text = minimal + "frames = 7\nquick = { objects = 5 }\n[measure]\nrepeats = 20\n";
+    REQUIRE(parsed(text).repeats == 20);
+    REQUIRE(aabblab::parameters_text(parsed(text).scenes[0]) == "objects=10 frames=7 seed=1");
+    const experiment quick = parsed(text, experiment_size::quick);
+    REQUIRE(quick.repeats == 3);
+    REQUIRE(aabblab::parameters_text(quick.scenes[0]) == "objects=5 frames=7 seed=1");
+    REQUIRE(aabblab::hash_of(quick) != aabblab::hash_of(parsed(text)));
+    REQUIRE(parsed(text + "quick = { repeats = 2 }\n", experiment_size::quick).repeats == 2);
+}
+
+TEST_CASE("A mesh file that changes makes another hash") {
+    const temporary_folder folder;
+    const auto hash_with = [&](const std::string& vertex) {
+        const std::string file =
+            folder.write("one.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n" + vertex + "\n3 0 1 3\n").string();
+        return aabblab::hash_of(parsed("name = \"test\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"" + file +
+                                       "\", \"icosphere:triangles=20\"]\n"));
+    };
+    const std::string before = hash_with("0 2 0");
+    REQUIRE(hash_with("0 3 0") != before);
+    REQUIRE(hash_with("0 2 0") == before);
+}
+
+TEST_CASE("Meshes that are not there are replaced by what the config names, and it says so") {
+    const std::string scene =
+        "name = \"test\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"no_such.off\", \"icosphere:triangles=20\"]\n";
+    const experiment e = parsed(scene + "without_data = [\"icosphere:triangles=20\", \"torus_knot:triangles=96\"]\n");
+    REQUIRE(e.scenes[0].meshes == std::vector<std::string>{"icosphere:triangles=20", "torus_knot:triangles=96"});
+    REQUIRE(e.notes.size() == 1);
+    REQUIRE(e.notes[0].starts_with("no_such.off is not there"));
+    REQUIRE(refusal_of(scene).find("test.toml:2: ") == 0);
+    REQUIRE(refusal_of(scene).find("no_such.off") != std::string::npos);
+}
+
+TEST_CASE("What is wrong in a config is said in one sentence with its line") {
+    const auto [text, place, said] = GENERATE_COPY(table<std::string, std::string, std::string>({
+        {"name = \"x\nseed = 1\n", ":1:10: ", "this is not TOML"},
+        {"name = \"x\"\nseed = = 1\n", ":2:8: ", "this is not TOML"},
+        {minimal + "[compose]\nsort = \"std\"\nsort = \"std\"\n", ":7:", "this is not TOML"},
+        {"seed = 1\n", ":1: ", "has no name"},
+        {"name = \"a/b\"\n", ":1: ", "'a/b' must consist of letters, digits, - and _"},
+        {"name = 3\n", ":1: ", "name is a number; expected a name"},
+        {"name = \"x\"\n", ":1: ", "has no scene"},
+        {"name = \"x\"\n[scene]\nkind = \"brownian\"\n", ":2: ", "[[scene]]"},
+        {"name = \"x\"\nscenes = 1\n", ":2: ", "unknown key 'scenes'; did you mean 'scene'?"},
+        {"name = \"x\"\n[[scene]]\nobjects = 3\n", ":2: ", "this scene has no kind"},
+        {"name = \"x\"\n[[scene]]\nkind = \"brownain\"\n",
+         ":3: ", "unknown scene 'brownain'; did you mean 'brownian'?"},
+        {minimal + "object = 3\n", ":5: ", "unknown key of scene brownian 'object'; did you mean 'objects'?"},
+        {minimal + "quick = { object = 3 }\n", ":5: ", "did you mean 'objects'?"},
+        {"name = \"x\"\n[[scene]]\nkind = \"mesh_swarm\"\nmeshes = []\n",
+         ":4: ", "meshes is an empty list; expected at least one mesh"},
+        {minimal + "[measure]\nmetrics = []\n", ":6: ", "metrics is an empty list; expected at least one metric"},
+        {minimal + "[measure]\nrepeats = 99999999999\n", ":6: ", "repeats must be at most 1000000"},
+        {minimal + "meshes = [\"icosphere\"]\n", ":5: ", "unknown key of scene brownian 'meshes'"},
+        {minimal + "frames = \"many\"\n", ":2: ", "frames must be"},
+        {minimal + "frames = []\n", ":5: ", "frames is an empty list"},
+        {minimal + "frames = [1, 1]\n", ":5: ", "frames lists '1' twice"},
+        {minimal + "frames = { a = 1 }\n", ":5: ", "frames is a table; expected a value or a list of values"},
+        {minimal + "frames = 1979-05-27\n", ":5: ", "frames is a date or time"},
+        {minimal + "seed = -1\n", ":5: ", "seed must be a whole number, at least 0, not -1"},
+        {minimal + minimal.substr(14), ":5: ", "this scene is listed twice: brownian objects=10 seed=1"},
+        {"engines = [\"cgall\"]\n" + minimal, ":1: ", "unknown engine 'cgall'; did you mean 'cgal'?"},
+        {"engines = 3\n" + minimal, ":1: ", "engines is a number; expected a list or a name"},
+        {"engines = [\"cgal\", \"cgal\"]\n" + minimal, ":1: ", "engines lists 'cgal' twice"},
+        {minimal + "[compose]\nsortt = \"std\"\n", ":6: ", "unknown key of [compose] 'sortt'; did you mean 'sort'?"},
+        {minimal + "[compose]\nsort = [\"std\",\n\"insert\"]\n",
+         ":7: ", "unknown sort 'insert'; did you mean 'insertion'?"},
+        {minimal + "[compose]\nsort = []\n", ":6: ", "sort is an empty list"},
+        {minimal + "[compose]\nsort = 3\n", ":6: ", "sort is a number; expected a name"},
+        {minimal + "[compose]\nsort = { gaps = \"ciura\" }\n", ":6: ", "sort has no name"},
+        {minimal + "[compose]\nsort = [\"std\", \"std\"]\n", ":6: ", "sort lists 'std' twice"},
+        {minimal + "[compose]\npartition = { name = \"uniform_grid\", cellsize = 2 }\n",
+         ":6: ", "did you mean 'cell_size'?"},
+        {minimal + "[compose]\npartition = { name = \"uniform_grid\", cell_size = -2 }\n",
+         ":6: ", "cell_size must be a number above 0 or auto, not '-2'"},
+        {minimal + "[measure]\nrepeats = 0\n", ":6: ", "repeats must be a whole number, at least 1, not 0"},
+        {minimal + "[measure]\nrepeats = 2.5\n", ":6: ", "repeats must be a whole number, at least 1, not 2.5"},
+        {minimal + "[measure]\nmetrics = [\"times\"]\n", ":6: ", "unknown metric 'times'; did you mean 'time'?"},
+        {minimal + "[measure]\nmetric = []\n", ":6: ", "did you mean 'metrics'?"},
+    }));
+    const std::string sentence = refusal_of(text);
+    INFO(text << "\n" << sentence);
+    REQUIRE(sentence.starts_with("test.toml" + place));
+    REQUIRE(sentence.find(said) != std::string::npos);
+    REQUIRE(sentence.find('\n') == std::string::npos);
+}
+
+TEST_CASE("A config that cannot be read is refused by name") {
+    const temporary_folder folder;
+    REQUIRE_THROWS_AS(aabblab::read_experiment(folder / "no.toml", experiment_size::full), aabb::input_error);
+    REQUIRE_THROWS_AS(aabblab::read_experiment(folder.path(), experiment_size::full), aabb::input_error);
+    REQUIRE(aabblab::read_experiment(folder.write("yes.toml", minimal), experiment_size::full).text == minimal);
+}
+
+TEST_CASE("The configs of the repository are good, in both sizes") {
+    const std::string config = GENERATE("first.toml", "global_search.toml", "local_detection.toml");
+    for (const experiment_size size : {experiment_size::full, experiment_size::quick})
+        REQUIRE_NOTHROW(aabblab::read_experiment(std::string(AABBLAB_CONFIGS) + "/" + config, size));
+}

@@ -1,0 +1,114 @@
+#include <rapidcheck.h>
+
+#include <array>
+#include <bit>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+
+namespace {
+
+/// The first coordinate of an OFF file that holds this text.
+float read_coordinate(const temporary_folder& folder, const std::string& text) {
+    const auto file = folder.write("a.off", "OFF\n3 1 0\n" + text + " 0 0\n0 1 0\n0 0 1\n3 0 1 2\n");
+    return aabblab::read_mesh(file).mesh.vertices[0][0];
+}
+
+bool same_bits(float a, float b) {
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
+}  // namespace
+
+TEST_CASE("text coordinates are correctly rounded") {
+    const temporary_folder folder;
+    for (const std::string text :
+         {"0.1",
+          "-0",
+          "0.3",
+          "1e23",
+          "8388608.5",
+          "8388609.5",
+          "16777217",
+          "16777217.0000000000000000000000001",
+          "16777216.999999999999999999999999999",
+          "1.00000005960464477539062499999",
+          "1.000000059604644775390625",
+          "1.00000005960464477539062500001",
+          "1.00000017881393432617187499999",
+          "1.000000178813934326171875",
+          "1.000000178813934326171875000000000000000000001",
+          "3.4028234663852886e38",
+          "3.4028235677973365e38",
+          "1.17549435e-38",
+          "1.1754942106924411e-38",
+          "1.4e-45",
+          "7.0064923216240853546186479164495806564013e-46",
+          "7.0064923216240853546186479164495806564014e-46",
+          "7.1e-46",
+          "7e-46",
+          "1e-60",
+          "-1e-999",
+          "0e999",
+          "0.00000000000000000000000000000000000000000000140129846432481707092372958328991613128026194187651577",
+          "9007199254740993",
+          "123456789012345678901234567890",
+          ".5",
+          "5.",
+          "0.000000000000000000000000000000000001",
+          "2.3509887016445750159374730744444913556373311135441750430175034126e-38"}) {
+        CAPTURE(text);
+        REQUIRE(same_bits(read_coordinate(folder, text), std::strtof(text.c_str(), nullptr)));
+    }
+}
+
+TEST_CASE("decimals beside the middle of two floats are correctly rounded") {
+    const temporary_folder folder;
+    REQUIRE(rc::check("as by strtof", [&](std::uint32_t bits, std::uint64_t digits, bool below) {
+        const float low = std::fabs(std::bit_cast<float>(bits));
+        const float high = std::nextafterf(low, std::numeric_limits<float>::infinity());
+        RC_PRE(std::isfinite(high));
+        const double middle = (double{low} + double{high}) / 2;
+        // All digits of the middle, or of the last double before it; then some more.
+        std::array<char, 512> text{};
+        std::snprintf(text.data(), text.size(), "%.200e", below ? std::nextafter(middle, 0) : middle);
+        std::string decimal = text.data();
+        decimal.insert(decimal.find('e'), std::to_string(digits));
+        RC_ASSERT(same_bits(read_coordinate(folder, decimal), std::strtof(decimal.c_str(), nullptr)));
+    }));
+}
+
+TEST_CASE("a mesh written as OFF reads back to the same bits") {
+    const temporary_folder folder;
+    REQUIRE(rc::check("round trip", [&](const std::vector<std::array<std::uint32_t, 3>>& points) {
+        aabb::mesh m;
+        for (const auto& bits : points) {
+            aabb::vec3f p{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const float value = std::bit_cast<float>(bits[k]);
+                p[static_cast<int>(k)] = std::isfinite(value) ? value : 0;
+            }
+            m.vertices.push_back(p);
+        }
+        m.vertices.insert(m.vertices.end(), {{-0.0F, 1e-45F, 3.4028235e38F}, {0, 1, 2}, {0.1F, 0.2F, 0.3F}});
+        const auto last = static_cast<std::uint32_t>(m.vertices.size() - 1);
+        m.triangles = {{0, last, last - 1}, {last, last - 2, 0}};
+        aabblab::write_off(m, folder / "a.off");
+        const aabb::mesh read = aabblab::read_mesh(folder / "a.off").mesh;
+        RC_ASSERT(read.triangles == m.triangles);
+        RC_ASSERT(read.vertices.size() == m.vertices.size());
+        for (std::size_t v = 0; v < m.vertices.size(); ++v)
+            for (int k = 0; k < 3; ++k) RC_ASSERT(same_bits(read.vertices[v][k], m.vertices[v][k]));
+    }));
+    REQUIRE(folder.files() == 1);
+}

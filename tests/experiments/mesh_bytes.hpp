@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+/// The bytes of a number, as a binary file holds it.
+template <class Value>
+[[nodiscard]] std::string raw(Value value, bool big_endian = false) {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (big_endian) std::ranges::reverse(bytes);
+    return bytes;
+}
+
+/// A binary STL triangle.
+[[nodiscard]] inline std::string stl_triangle(const float (&corners)[9]) {
+    std::string bytes(12, '\0');
+    for (const float c : corners) bytes += raw(c);
+    return bytes + std::string(2, '\0');
+}
+
+[[nodiscard]] inline std::string stl_header(std::uint32_t triangles, const std::string& text = "binary") {
+    return text + std::string(80 - text.size(), ' ') + raw(triangles);
+}

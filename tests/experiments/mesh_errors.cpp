@@ -1,0 +1,186 @@
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "mesh_bytes.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+
+using Catch::Matchers::EndsWith;
+
+namespace {
+
+std::string error_of(const std::filesystem::path& file) {
+    try {
+        static_cast<void>(aabblab::read_mesh(file));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+struct malformed {
+    std::string file;
+    std::string bytes;
+    std::string error;  // what follows the folder
+};
+
+const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
+const std::string ply =
+    "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+    "vertex_indices\nend_header\n";
+const std::string ply_text = "ply\nformat ascii 1.0\n" + ply;
+const std::string ply_binary = "ply\nformat binary_little_endian 1.0\n" + ply;
+
+std::string ply_points(float last = 0) {
+    std::string bytes;
+    for (int i = 0; i < 8; ++i) bytes += raw(static_cast<float>(i));
+    return bytes + raw(last);
+}
+
+}  // namespace
+
+TEST_CASE("malformed text meshes are refused with the line") {
+    const temporary_folder folder;
+    for (const auto& [file, bytes, error] : {
+             malformed{"a.off", "", "a.off: is empty"},
+             {"a.off", "\n# nothing\n", "a.off: ends before the keyword OFF"},
+             {"a.off", "\nPLY\n", "a.off:2: expected the keyword OFF, found 'PLY'"},
+             {"a.off", "XOFF\n", "a.off:1: expected the keyword OFF, found 'XOFF'"},
+             {"a.off", "4OFF\n3 1 0\n", "a.off:1: only OFF in three dimensions is read"},
+             {"a.off", "OFF BINARY\n", "a.off:1: expected the number of vertices, found 'BINARY'"},
+             {"a.off", "OFF\n", "a.off: ends before the numbers of vertices and faces"},
+             {"a.off", "OFF\n3\n", "a.off:2: expected the number of faces, found the end of the line"},
+             {"a.off", "OFF\n-3 1 0\n", "a.off:2: expected the number of vertices, found '-3'"},
+             {"a.off", "OFF\n99999999999999999999 1 0\n",
+              "a.off:2: expected the number of vertices, found '99999999999999999999'"},
+             {"a.off", "OFF\n4000000000 1 0\n" + vertices, "a.off: ends after 3 of 4000000000 vertices"},
+             {"a.off", "OFF\n3 4000000000 0\n" + vertices + "3 0 1 2\n", "a.off: ends after 1 of 4000000000 faces"},
+             {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 abc\n", "a.off:4: expected three coordinates, found 'abc'"},
+             {"a.off", "OFF\n3 1 0\n0 0 0\n1 0\n", "a.off:4: expected three coordinates, found the end of the line"},
+             {"a.off", "OFF\n3 1 0\n0 0 0x10\n", "a.off:3: expected three coordinates, found '0x10'"},
+             {"a.off", "OFF\n3 1 0\n0 0 1,5\n", "a.off:3: expected three coordinates, found '1,5'"},
+             {"a.off", "OFF\n3 1 0\n0 0 +-1\n", "a.off:3: expected three coordinates, found '+-1'"},
+             {"a.off", "OFF\n3 1 0\n0 0 nan\n", "a.off:3: the coordinate 'nan' is not finite"},
+             {"a.off", "OFF\n3 1 0\n0 -INF 0\n", "a.off:3: the coordinate '-INF' is not finite"},
+             {"a.off", "OFF\n3 1 0\n0 1e39 0\n", "a.off:3: the coordinate '1e39' is too large for a float"},
+             {"a.off", "OFF\n3 1 0\n0 -1e999 0\n", "a.off:3: the coordinate '-1e999' is too large for a float"},
+             {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 3\n",
+              "a.off:6: a face uses vertex 3, but there are 3 vertices, counted from 0"},
+             {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 -1\n", "a.off:6: expected a face of 3 corners, found '-1'"},
+             {"a.off", "OFF\n3 1 0\n" + vertices + "4000000000 0 1 2\n",
+              "a.off:6: expected a face of 4000000000 corners, found the end of the line"},
+             {"a.off", "OFF\n3 1 0\n" + vertices + "2 0 1\n", "a.off: the mesh has no triangles"},
+             {"a.off", "OFF\n0 0 0\n", "a.off: the mesh has no triangles"},
+             {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n3 2 1 0\n",
+              "a.off:7: expected the end of the file after 3 vertices and 1 faces, found '3'"},
+             {"a.obj", "v 0 0\n", "a.obj:1: expected three coordinates, found the end of the line"},
+             {"a.obj", "v 0 0 inf\n", "a.obj:1: the coordinate 'inf' is not finite"},
+             {"a.obj", "v 0 0 0\nf 1 1 0\n", "a.obj:2: a face uses vertex 0, but vertices are counted from 1"},
+             {"a.obj", "v 0 0 0\nf 1 1 2\nv 1 1 1\nf 1 2 3\nf 1 2 2\n",
+              "a.obj:4: a face uses vertex 3, but there are 2 vertices, counted from 1"},
+             {"a.obj", "v 0 0 0\nf 1 1 -2\n", "a.obj:2: a face uses vertex -2, but there are 1 vertices so far"},
+             {"a.obj", "v 0 0 0\nf 1 1 9999999999\n",
+              "a.obj:2: a face uses vertex 9999999999, but there are 1 vertices so far"},
+             {"a.obj", "v 0 0 0\nf 1 x/1 1\n", "a.obj:2: expected the number of a vertex, found 'x/1'"},
+             {"a.obj", "v 0 0 0\nf 1 1 \\\n", "a.obj: ends after a backslash"},
+             {"a.obj", "v 0 0 0\np 1\nl 1 1\n", "a.obj: the mesh has no triangles"},
+             {"a.ply", "plx\n", "a.ply:1: expected the word ply, found 'plx'"},
+             {"a.ply", "ply\nformat ascii 1.0\n", "a.ply: ends inside the header"},
+             {"a.ply", "ply\nend_header\n", "a.ply:2: the header has no format"},
+             {"a.ply", "ply\nformat binary 1.0\n",
+              "a.ply:2: expected ascii, binary_little_endian or binary_big_endian, found 'binary'"},
+             {"a.ply", "ply\nproperty float x\n", "a.ply:2: a property stands before the first element"},
+             {"a.ply", "ply\nelement vertex 1\nproperty real x\n",
+              "a.ply:3: expected the type of a property, found 'real'"},
+             {"a.ply", "ply\nelement vertex many\n", "a.ply:2: expected the number of elements, found 'many'"},
+             {"a.ply", "ply\nelement vertex 1\nproperty float x\nproperty float y\nelement face 1\n",
+              "a.ply:5: the element vertex must have one property z"},
+             {"a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int corners\nend_header\n",
+              "a.ply:5: the element face must have one list property vertex_indices"},
+             {"a.ply", "ply\nelement face 1\nproperty list float int vertex_indices\n",
+              "a.ply:3: the length of a list must have a whole type"},
+             {"a.ply", "ply\nelement face 1\nproperty list uchar float vertex_indices\n",
+              "a.ply:3: the corners of a face must have a whole type"},
+             {"a.ply", "ply\nformat binary_little_endian 1.0\nelement dust 99999999999\nend_header\n",
+              "a.ply:4: the element 'dust' has no properties"},
+             {"a.ply", ply_text + "0 0 0\n1 0 0\n", "a.ply: ends after 2 of 3 elements 'vertex'"},
+             {"a.ply", ply_text + "0 0 0\n1 0 0\n0 1\n",
+              "a.ply:12: expected three coordinates, found the end of the line"},
+             {"a.ply", ply_text + vertices + "3 0 1 3\n",
+              "a.ply:13: a face uses vertex 3, but there are 3 vertices, counted from 0"},
+             {"a.ply", ply_text + vertices + "3 0 1\n", "a.ply:13: expected a whole number, found the end of the line"},
+             {"a.ply", ply_text + vertices + "3 0 1 2\n3 0 1 2\n",
+              "a.ply:14: expected the end of the file after the last element, found '3'"},
+             {"a.ply",
+              "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+              "z\nend_header\n0 0 0\n",
+              "a.ply: the mesh has no triangles"},
+             {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "a.stl: ends inside a facet"},
+             {"a.stl", "solid\n", "a.stl: ends without endsolid"},
+             {"a.stl", "solid\nendsolid\n", "a.stl: the mesh has no triangles"},
+             {"a.stl", "solid\nvertex 0 0 0\n", "a.stl:2: expected facet or endsolid, found 'vertex'"},
+             {"a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nendfacet\n",
+              "a.stl:5: a facet has 2 vertices, not three"},
+             {"a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n",
+              "a.stl:6: a facet has more than three vertices"},
+             {"a.stl", "solid\nfacet\nvertex 0 0 nan\n", "a.stl:3: the coordinate 'nan' is not finite"},
+         }) {
+        CAPTURE(bytes);
+        CHECK_THAT(error_of(folder.write(file, bytes)), EndsWith("/" + error));
+    }
+}
+
+TEST_CASE("malformed binary meshes are refused") {
+    const temporary_folder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::string face = raw(std::uint8_t{3}) + raw(0) + raw(1);
+    const std::string lying =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty float y\n"
+        "property float z\nend_header\n";
+    for (const auto& [file, bytes, error] : {
+             malformed{"a.ply", lying, "a.ply: ends in element 0 of 4000000000 elements 'vertex'"},
+             {"a.ply", lying + raw(1e300) + raw(1.0), "a.ply: vertex 0 has a coordinate that is too large for a float"},
+             {"a.ply", ply_binary + ply_points().substr(1), "a.ply: ends in element 2 of 3 elements 'vertex'"},
+             {"a.ply", ply_binary + ply_points(nan) + face + raw(2),
+              "a.ply: vertex 2 has a coordinate that is not finite"},
+             {"a.ply", ply_binary + ply_points() + face + raw(3),
+              "a.ply: face 0: a face uses vertex 3, but there are 3 vertices, counted from 0"},
+             {"a.ply", ply_binary + ply_points() + face + raw(-1), "a.ply: face 0 has a negative length or corner"},
+             {"a.ply", ply_binary + ply_points() + face, "a.ply: ends in element 0 of 1 elements 'face'"},
+             {"a.ply", ply_binary + ply_points() + face + raw(2) + raw(1),
+              "a.ply: goes on for 4 bytes after the last element that its header announces"},
+             {"a.stl", "cube",
+              "a.stl: is no STL file: it neither begins with solid nor holds the 84 bytes of a binary "
+              "header"},
+             {"a.stl", stl_header(4000000000),
+              "a.stl: its header announces 4000000000 triangles, which take 200000000084 bytes, but the file has 84"},
+             {"a.stl", stl_header(0), "a.stl: the mesh has no triangles"},
+             {"a.stl", stl_header(1) + stl_triangle({0, 0, 0, 1, 0, 0, 0, infinity, 0}),
+              "a.stl: triangle 0 has a coordinate that is not finite"},
+         }) {
+        CAPTURE(error);
+        CHECK_THAT(error_of(folder.write(file, bytes)), EndsWith("/" + error));
+    }
+    CHECK_THAT(error_of(folder.write("a.gltf", "{")), Catch::Matchers::ContainsSubstring("is no glTF file"));
+    CHECK_THAT(error_of(folder.write("a.glb", "glTF")), Catch::Matchers::ContainsSubstring("is no glTF file"));
+}
+
+TEST_CASE("what is no mesh file is refused") {
+    const temporary_folder folder;
+    CHECK_THAT(error_of(folder / "absent.off"), EndsWith("/absent.off: no such file"));
+    CHECK_THAT(error_of(folder.path()), EndsWith(": is a folder, not a file"));
+    CHECK_THAT(error_of("/dev/null"), EndsWith("/dev/null: is not a regular file"));
+    CHECK_THAT(error_of(folder.write("a.stp", "x")),
+               EndsWith("/a.stp: unknown mesh format '.stp'; did you mean '.stl'?"));
+    CHECK_THAT(error_of(folder.write("mesh", "x")), EndsWith("/mesh: unknown mesh format ''; did you mean '.off'?"));
+    // A file with a hole: it has the size, but no disk or memory is touched.
+    std::filesystem::resize_file(folder.write("huge.off", "OFF"), std::uintmax_t{1} << 43);
+    CHECK_THAT(error_of(folder / "huge.off"), Catch::Matchers::ContainsSubstring("16384.0 GiB of memory"));
+}

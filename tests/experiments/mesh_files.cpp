@@ -1,0 +1,186 @@
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh_bytes.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+
+namespace {
+
+aabblab::loaded_mesh read(const std::string& name, const std::string& bytes) {
+    const temporary_folder folder;
+    return aabblab::read_mesh(folder.write(name, bytes));
+}
+
+const std::vector<aabb::vec3f> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+using triangles = std::vector<std::array<std::uint32_t, 3>>;
+const triangles two = {{0, 1, 2}, {0, 2, 3}};
+
+void require_two_triangles(const aabblab::loaded_mesh& loaded) {
+    REQUIRE(loaded.mesh.vertices == corners);
+    REQUIRE(loaded.mesh.triangles == two);
+    REQUIRE(loaded.report.text().empty());
+}
+
+std::string ply_header(const std::string& format, const std::string& coordinate, const std::string& list) {
+    return "ply\nformat " + format +
+           " 1.0\ncomment a tetrahedron's half\nelement vertex 4\nproperty uchar red\nproperty " + coordinate +
+           " x\nproperty " + coordinate + " y\nproperty " + coordinate +
+           " z\nproperty list uchar short tags\nelement face 2\nproperty list " + list +
+           "\nproperty int material\nelement camera 1\nproperty double view\nend_header\n";
+}
+
+template <class Coordinate, class Count, class Index>
+std::string ply_body(bool big) {
+    std::string bytes;
+    for (const aabb::vec3f& v : corners) {
+        bytes += raw(std::uint8_t{9}, big);
+        for (int k = 0; k < 3; ++k) bytes += raw(static_cast<Coordinate>(v[k]), big);
+        bytes += raw(std::uint8_t{1}, big) + raw(std::int16_t{-4}, big);
+    }
+    for (const auto& t : two) {
+        bytes += raw(static_cast<Count>(3), big);
+        for (const std::uint32_t v : t) bytes += raw(static_cast<Index>(v), big);
+        bytes += raw(std::int32_t{-7}, big);
+    }
+    return bytes + raw(0.5, big);
+}
+
+}  // namespace
+
+TEST_CASE("OFF in its variants") {
+    const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    const std::string faces = "3 0 1 2\n3 0 2 3\n";
+    for (const std::string& file : {
+             "OFF\n4 2 0\n" + vertices + faces,
+             "OFF 4 2 0\n" + vertices + faces,
+             "OFF4 2 0\n" + vertices + faces,
+             "OFF\n4 2\n" + vertices + faces,
+             "# first\n\nOFF # second\n\n4 2 0 # third\n\n" + vertices + "\n# fourth\n" + faces + "\n\n# last",
+             std::string("OFF\r\n4 2 0\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n0 0 1\r\n3 0 1 2\r\n3 0 2 3\r\n"),
+             "OFF\n4 2 0\n" + vertices + "3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5 1",
+             std::string("COFF\n4 2 0\n0 0 0 9 9 9 9\n1 0 0 9 9 9 9\n0 1 0 9 9 9 9\n0 0 1 9 9 9 9\n") + faces,
+             std::string("NOFF\n4 2 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n0 0 1 0 0 1\n") + faces,
+             std::string("STCNOFF\n4 2 0\n0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n0 0 1 1 1\n") + faces,
+             std::string("OFF\n4 2 0\n\t+0 0.0 0e5\n1. 0 -0e0\n0 1e0 0\n0 0 100e-2\n") + faces,
+         }) {
+        CAPTURE(file);
+        const aabblab::loaded_mesh loaded = read("a.OFF", file);
+        require_two_triangles(loaded);
+    }
+}
+
+TEST_CASE("OBJ: corners in all their forms, negative ones, other statements") {
+    const std::string vertices = "v 0 0 0\nv 1 0 0 1.0\nv 0 1 0\nv 0 0 1 0.2 0.3 0.4\n";
+    for (const std::string& file : {
+             vertices + "f 1 2 3\nf 1 3 4\n",
+             "mtllib x.mtl\no thing\n" + vertices +
+                 "vt 0 0\nvn 0 0 1\ns off\nusemtl m\nf 1/1/1 2/1/1 3/1/1\nf 1//1 3//1 4//1",
+             vertices + "f -4 -3 -2 # half\nf 1/1 -2/1 -1/-1\n",
+             vertices + "f 1 2 \\\n 3\nf 1 \\\n\\\n3 4\n",
+             "f 1 2 3\n" + vertices + "f 1 3 4\n",
+         }) {
+        CAPTURE(file);
+        require_two_triangles(read("a.obj", file));
+    }
+}
+
+TEST_CASE("PLY: text and binary, any scalar types, other properties and elements") {
+    require_two_triangles(
+        read("a.ply", ply_header("ascii", "float", "uchar int vertex_indices") +
+                          "9 0 0 0 1 5\n9 1 0 0 0\n9 0 1 0 2 1 2\n9 0 0 1 0\n3 0 1 2 -7\n3 0 2 3 -7\n0.5\n"));
+    require_two_triangles(read("a.ply", ply_header("binary_little_endian", "float32", "uint8 int32 vertex_index") +
+                                            ply_body<float, std::uint8_t, std::int32_t>(false)));
+    require_two_triangles(read("a.ply", ply_header("binary_big_endian", "double", "int uint8 vertex_indices") +
+                                            ply_body<double, std::int32_t, std::uint8_t>(true)));
+    require_two_triangles(read("a.ply", ply_header("binary_little_endian", "short", "ushort uint vertex_indices") +
+                                            ply_body<std::int16_t, std::uint16_t, std::uint32_t>(false) + "\r\n"));
+}
+
+TEST_CASE("PLY: faces may come before vertices") {
+    const aabblab::loaded_mesh loaded =
+        read("a.ply",
+             "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
+             "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
+    REQUIRE(loaded.mesh.triangles == triangles{{0, 1, 2}});
+}
+
+TEST_CASE("STL: text and binary; equal vertices merge in the order of the file") {
+    const std::string text =
+        "solid half\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+        " FACET NORMAL nan 0 0\n OUTER LOOP\n VERTEX 0 0 0\n VERTEX 0 1 0\n VERTEX 0 0 1\n ENDLOOP\n ENDFACET\n"
+        "endsolid half\n";
+    require_two_triangles(read("a.stl", text));
+    const std::string body = stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0}) + stl_triangle({0, 0, 0, 0, 1, 0, 0, 0, 1});
+    require_two_triangles(read("a.stl", stl_header(2) + body));
+    require_two_triangles(read("a.stl", stl_header(2, "solid but binary") + body));
+    // -0 equals 0 but has other bits.
+    REQUIRE(read("a.stl", stl_header(1) + stl_triangle({0, 0, 0, -0.0F, 0, 0, 1, 1, 1})).mesh.vertices.size() == 3);
+}
+
+TEST_CASE("glTF: nodes place their meshes, points are dropped") {
+    const temporary_folder folder;
+    std::string bytes;
+    for (const aabb::vec3f& v : corners)
+        for (int k = 0; k < 3; ++k) bytes += raw(v[k]);
+    for (const auto& t : two)
+        for (const std::uint32_t v : t) bytes += raw(static_cast<std::uint16_t>(v));
+    folder.write("a.bin", bytes);
+    const auto file = folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"mesh":0,"translation":[10,0,0]}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":0},"mode":0}]}],
+        "buffers":[{"uri":"a.bin","byteLength":60}],
+        "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+                     {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}]})");
+    const aabblab::loaded_mesh loaded = aabblab::read_mesh(file);
+    REQUIRE(loaded.mesh.triangles == two);
+    REQUIRE(loaded.mesh.vertices[1] == aabb::vec3f{11, 0, 0});
+    REQUIRE(loaded.report.dropped == 4);
+}
+
+TEST_CASE("polygons are fanned in file order, and everything done to a mesh is counted") {
+    const aabblab::loaded_mesh loaded = read("a.off",
+                                             "OFF\n6 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.1 0 0\n16777217 0 0\n"
+                                             "4 0 1 2 3\n5 0 1 2 3 4\n3 0 1 5\n2 0 1\n3 2 2 1\n");
+    REQUIRE(loaded.mesh.triangles ==
+            triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 1, 5}, {2, 2, 1}});
+    REQUIRE(loaded.report.polygons == 2);
+    REQUIRE(loaded.report.zero_area == 2);
+    REQUIRE(loaded.report.rounded == 2);
+    REQUIRE(loaded.report.dropped == 1);
+    REQUIRE(
+        loaded.report.text() ==
+        "2 polygons fanned, 2 triangles of zero area kept, 2 coordinates rounded to float, 1 face of fewer than three "
+        "corners dropped");
+}
+
+TEST_CASE("zero area is decided exactly") {
+    const auto zero_area = [](const std::string& vertices) {
+        return read("a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n").report.zero_area;
+    };
+    REQUIRE(zero_area("0 0 0\n1 1 1\n3 3 3\n") == 1);
+    REQUIRE(zero_area("1e38 0 0\n1e38 1e-38 0\n1e38 3e38 0\n") == 1);
+    REQUIRE(zero_area("16777216 16777216 0\n0 0 0\n1e-45 1e-45 0\n") == 1);
+    REQUIRE(zero_area("16777216 16777216 0\n0 0 0\n1e-45 0 0\n") == 0);
+    // The sums cancel to the last bit but one.
+    REQUIRE(zero_area("0 0 0\n16777215 16777214 0\n16777214 16777213 0\n") == 0);
+    REQUIRE(zero_area("3e38 3e38 0\n-3e38 -3e38 0\n1e-45 0 0\n") == 0);
+    REQUIRE(zero_area("3e38 -3e38 3e38\n-3e38 3e38 -3e38\n0 -0 0\n") == 1);
+}
+
+TEST_CASE("doubles of a binary file that are not floats are counted") {
+    const std::string header =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty double x\nproperty int y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const std::string body = raw(0.1) + raw(16777217) + raw(0.1F) + raw(0.5) + raw(2) + raw(0.0F) + raw(0.0) + raw(0) +
+                             raw(0.0F) + raw(std::uint8_t{3}) + raw(0) + raw(1) + raw(2);
+    const aabblab::loaded_mesh loaded = read("a.ply", header + body);
+    REQUIRE(loaded.report.rounded == 2);
+    REQUIRE(loaded.mesh.vertices[0] == aabb::vec3f{0.1F, 16777216, 0.1F});
+}

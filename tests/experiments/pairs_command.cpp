@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace {
+
+std::string recording_in(const temporary_folder& folder, const std::string& objects = "60") {
+    const std::string file = folder / "scene.aabbs";
+    const program_result written =
+        run_program({"scene", "brownian", "--n", objects, "--frames", "3", "--seed", "7", "--out", file});
+    REQUIRE(written.status == 0);
+    REQUIRE(written.err.empty());
+    REQUIRE(written.out.find(objects + " objects, 4 frames") != std::string::npos);
+    return file;
+}
+
+}  // namespace
+
+TEST_CASE("pairs gives one set of pairs whatever finds it") {
+    const temporary_folder folder;
+    const std::string scene = recording_in(folder);
+    const std::string out = folder / "pairs.csv";
+    const auto reference =
+        nlohmann::json::parse(run_program({"pairs", scene, "--json", "--engine", "brute_force"}).out);
+    const auto options = GENERATE(values<std::vector<std::string>>(
+        {{}, {"--sort", "insertion", "--partition", "uniform_grid:cell_size=2", "--sweep", "all_axes"}}));
+    std::vector<std::string> arguments = {"pairs", scene, "--json", "--out", out};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const program_result result = run_program(arguments);
+    REQUIRE(result.status == 0);
+    const auto summary = nlohmann::json::parse(result.out);
+    REQUIRE(summary["objects"] == 60);
+    REQUIRE(summary["frames"] == 4);
+    REQUIRE(summary["ms"].size() == 4);
+    REQUIRE(summary["pairs"] == reference["pairs"]);
+    REQUIRE(summary["digest"] == reference["digest"]);
+
+    std::istringstream rows(bytes_of_file(out));
+    std::string row;
+    std::getline(rows, row);
+    REQUIRE(row == "frame,a,b");
+    std::vector<std::vector<unsigned>> records;
+    while (std::getline(rows, row)) {
+        unsigned frame = 0, a = 0, b = 0;
+        REQUIRE(std::sscanf(row.c_str(), "%u,%u,%u", &frame, &a, &b) == 3);
+        REQUIRE(a < b);
+        records.push_back({frame, a, b});
+    }
+    REQUIRE(records.size() == summary["pairs"]);
+    REQUIRE(std::ranges::is_sorted(records));
+}
+
+TEST_CASE("pairs tells people what it found") {
+    const temporary_folder folder;
+    const program_result result = run_program({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
+    REQUIRE(result.status == 0);
+    REQUIRE(result.out.find("2 objects, 4 frames") != std::string::npos);
+    REQUIRE(result.out.find("insertion + none + one_axis") != std::string::npos);
+    REQUIRE(run_program({"pairs", recording_in(folder, "0")}).status == 0);
+}
+
+TEST_CASE("pairs refuses what it cannot do and leaves no file behind") {
+    const temporary_folder folder;
+    const std::string scene = recording_in(folder);
+    const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
+        {{"--sort", "insertoin"}, "did you mean 'insertion'?"},
+        {{"--sort", "std:gaps=1"}, "takes no parameters"},
+        {{"--partition", "uniform_grid:cell_size"}, "name=value"},
+        {{"--engine", "brute_farce"}, "did you mean 'brute_force'?"},
+        {{"--engine", "brute_force", "--sweep", "one_axis"}, "--engine stands in for --sort, --partition and --sweep"},
+    }));
+    std::vector<std::string> arguments = {"pairs", scene, "--out", folder / "pairs.csv"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const program_result result = run_program(arguments);
+    INFO(result.err);
+    REQUIRE(result.status == 2);
+    REQUIRE(is_one_sentence(result.err));
+    REQUIRE(result.err.find(said) != std::string::npos);
+    REQUIRE(folder.files() == 1);
+}
+
+TEST_CASE("pairs are never written over the recording they are of") {
+    const temporary_folder folder;
+    const std::string scene = recording_in(folder);
+    const std::string bytes = bytes_of_file(scene);
+    std::filesystem::create_symlink(scene, folder / "link.csv");
+    for (const std::string& out : {scene, (folder / "." / "scene.aabbs").string(), (folder / "link.csv").string()}) {
+        const program_result result = run_program({"pairs", scene, "--out", out});
+        REQUIRE(result.status == 2);
+        REQUIRE(is_one_sentence(result.err));
+        REQUIRE(bytes_of_file(scene) == bytes);
+    }
+}
+
+TEST_CASE("pairs of a recording with a bad box in a later frame leaves no file behind") {
+    const temporary_folder folder;
+    const std::string scene = recording_in(folder);
+    std::string bytes = bytes_of_file(scene);
+    bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN
+    const std::string bad = folder.write("bad.aabbs", bytes);
+    const program_result result = run_program({"pairs", bad, "--out", folder / "pairs.csv"});
+    REQUIRE(result.status == 2);
+    REQUIRE(is_one_sentence(result.err));
+    REQUIRE(folder.files() == 2);
+}
+
+TEST_CASE("scene refuses what it cannot do and leaves no file behind") {
+    const temporary_folder folder;
+    const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
+        {{"browniann"}, "did you mean 'brownian'?"},
+        {{"brownian", "--seed", "-1"}, "--seed must be a whole number"},
+        {{"brownian", "--n", "many"}, "objects must be"},
+        {{"brownian", "--n", ""}, "objects must be"},
+        {{"brownian", "--mesh", "icosphere"}, "no meshes"},
+        {{"mesh_swarm", "--mesh", "icospher"}, "did you mean 'icosphere'"},
+    }));
+    std::vector<std::string> arguments = {"scene", "--out", folder / "scene.aabbs"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const program_result result = run_program(arguments);
+    INFO(result.err);
+    REQUIRE(result.status == 2);
+    REQUIRE(is_one_sentence(result.err));
+    REQUIRE(result.err.find(said) != std::string::npos);
+    REQUIRE(folder.files() == 0);
+}
+
+TEST_CASE("scene records the world boxes of meshes, the same for the same seed") {
+    const temporary_folder folder;
+    const auto written = [&](const std::string& name, const std::string& seed) {
+        const std::string file = folder / name;
+        const program_result result =
+            run_program({"scene", "mesh_swarm", "--mesh", "icosphere:triangles=80", "--mesh",
+                         "torus_knot:triangles=100", "--objects", "9", "--frames", "2", "--seed", seed, "--out", file});
+        INFO(result.err);
+        REQUIRE(result.status == 0);
+        return bytes_of_file(file);
+    };
+    const std::string once = written("once.aabbs", "5");
+    REQUIRE(written("again.aabbs", "5") == once);
+    REQUIRE(written("other.aabbs", "6") != once);
+    const auto summary = nlohmann::json::parse(run_program({"pairs", folder / "once.aabbs", "--json"}).out);
+    REQUIRE(summary["objects"] == 9);
+    REQUIRE(summary["frames"] == 3);
+}

@@ -1,0 +1,89 @@
+#include "program.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+TEST_CASE("The program prints its version and its help") {
+    REQUIRE(run_program({"--version"}).out.starts_with("aabblab "));
+    const program_result help = run_program({"--help"});
+    REQUIRE(help.status == 0);
+    for (const char* command : {"pairs", "collide", "classify", "scene", "list", "run", "test", "data"})
+        REQUIRE(help.out.find(std::string("\n  ") + command + " ") != std::string::npos);
+    REQUIRE(run_program({"pairs", "--help"}).out.find("--sweep") != std::string::npos);
+}
+
+TEST_CASE("A command line that is wrong gets one sentence and status 2") {
+    const auto [arguments, said] = GENERATE(table<std::vector<std::string>, std::string>({
+        {{}, "expected a command"},
+        {{"pairz", "x"}, "unknown command 'pairz'; did you mean 'pairs'?"},
+        {{"dta"}, "did you mean 'data'?"},
+        {{"data"}, "command of the script"},
+        {{"--verson"}, "did you mean '--version'?"},
+        {{"pairs"}, "pairs: SCENE is required"},
+        {{"pairs", "--sotr", "std"}, "pairs: unknown option '--sotr'; did you mean '--sort'?"},
+        {{"pairs", "x", "--sotr=std"}, "pairs: unknown option '--sotr'; did you mean '--sort'?"},
+        {{"pairs", "x", "y"}, "pairs: unexpected argument 'y'"},
+        {{"pairs", "x", "--out"}, "pairs: --out takes one value"},
+        {{"pairs", "x", "--sort", "std", "--sort", "std"}, "pairs: --sort takes one value"},
+        {{"collide", "icosphere"}, "collide: B is required"},
+        {{"scene", "brownian"}, "scene: --out is required"},
+        {{"list", "--jsn"}, "did you mean '--json'?"},
+    }));
+    const program_result result = run_program(arguments);
+    INFO(result.err);
+    REQUIRE(result.status == 2);
+    REQUIRE(result.out.empty());
+    REQUIRE(is_one_sentence(result.err));
+    REQUIRE(result.err.find(said) != std::string::npos);
+}
+
+TEST_CASE("Output that cannot be written is an error, output that nobody reads is none") {
+    const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
+    REQUIRE(full >= 0);
+    const program_result failed = run_program({"list"}, {}, full);
+    close(full);
+    REQUIRE(failed.status == 2);
+    REQUIRE(is_one_sentence(failed.err));
+
+    int ends[2];
+    REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
+    close(ends[0]);
+    const program_result quiet = run_program({"list", "--json"}, {}, ends[1]);
+    close(ends[1]);
+    REQUIRE(quiet.status == 0);
+    REQUIRE(quiet.err.empty());
+}
+
+TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
+    const program_result text = run_program({"list"});
+    REQUIRE(text.status == 0);
+    const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
+    std::vector<std::string> names = all["shapes"];
+    for (const char* kind : {"sort", "partition", "sweep", "tree", "triangle"}) {
+        REQUIRE(all["strategies"][kind].size() >= 1);
+        for (const auto& strategy : all["strategies"][kind]) {
+            names.push_back(strategy["name"]);
+            for (const auto& parameter : strategy["parameters"]) {
+                names.push_back(parameter["name"].get<std::string>() + "=" + parameter["default"].get<std::string>());
+                REQUIRE_FALSE(parameter["expected"].get<std::string>().empty());
+                REQUIRE_FALSE(parameter["help"].get<std::string>().empty());
+            }
+        }
+    }
+    for (const char* group : {"engines", "scenes", "metrics"})
+        for (const auto& entry : all[group]) names.push_back(entry["name"]);
+    for (const char* expected :
+         {"insertion", "brute_force", "brownian", "icosphere", "time", "counts", "bytes", "error"})
+        REQUIRE(std::ranges::find(names, expected) != names.end());
+    for (const std::string& name : names) {
+        INFO(name);
+        REQUIRE(text.out.find(" " + name) != std::string::npos);
+    }
+}

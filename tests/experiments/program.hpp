@@ -1,0 +1,75 @@
+#pragma once
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+/// What a run of the program left behind.
+struct program_result {
+    int status;  ///< its exit status; 128 and more where a signal ended it
+    std::string out;
+    std::string err;
+};
+
+namespace program_detail {
+
+struct file_closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using temporary_file = std::unique_ptr<std::FILE, file_closer>;
+
+[[nodiscard]] inline temporary_file make_file(const std::string& content) {
+    temporary_file file(std::tmpfile());
+    if (file == nullptr) throw std::system_error(errno, std::generic_category(), "no temporary file");
+    std::fwrite(content.data(), 1, content.size(), file.get());
+    std::rewind(file.get());
+    return file;
+}
+
+[[nodiscard]] inline std::string content_of(std::FILE* file) {
+    std::string content;
+    std::rewind(file);
+    for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) content += static_cast<char>(c);
+    return content;
+}
+
+}  // namespace program_detail
+
+/// Runs the program under test to its end.
+/// @param input what it reads from standard input
+/// @param output an open file that it writes standard output to, in place of one whose content is returned
+[[nodiscard]] inline program_result run_program(std::vector<std::string> arguments, const std::string& input = {},
+                                                int output = -1) {
+    const auto in = program_detail::make_file(input);
+    const auto out = program_detail::make_file({});
+    const auto err = program_detail::make_file({});
+    arguments.insert(arguments.begin(), AABBLAB_UNDER_TEST);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, fileno(in.get()), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&files, output < 0 ? fileno(out.get()) : output, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files, fileno(err.get()), STDERR_FILENO);
+    pid_t child = 0;
+    const int failed = posix_spawn(&child, argv[0], &files, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    if (failed != 0) throw std::system_error(failed, std::generic_category(), arguments[0]);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), program_detail::content_of(out.get()),
+            program_detail::content_of(err.get())};
+}
+
+/// Is it one sentence that begins with the program's name?
+[[nodiscard]] inline bool is_one_sentence(const std::string& text) {
+    return text.starts_with("aabblab: ") && text.find('\n') == text.size() - 1;
+}

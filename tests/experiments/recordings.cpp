@@ -1,0 +1,198 @@
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh_bytes.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::EndsWith;
+
+namespace {
+
+using frame = std::vector<aabb::box>;
+
+/// Plays frames that are given.
+class given_scene final : public aabb::box_scene {
+public:
+    explicit given_scene(std::vector<frame> frames) : frames_(std::move(frames)) {}
+    [[nodiscard]] std::size_t objects() const override { return frames_.empty() ? 0 : frames_[0].size(); }
+    [[nodiscard]] std::size_t frames() const override { return frames_.size(); }
+    bool next(frame& boxes) override {
+        if (played_ == frames_.size()) return false;
+        if (frames_[played_].size() != objects()) throw aabb::input_error("the scene breaks off");
+        boxes = frames_[played_++];
+        return true;
+    }
+
+private:
+    std::vector<frame> frames_;
+    std::size_t played_ = 0;
+};
+
+/// Announces more than any disk holds, and must not be played.
+class endless_scene final : public aabb::box_scene {
+public:
+    [[nodiscard]] std::size_t objects() const override { return 2147483647; }
+    [[nodiscard]] std::size_t frames() const override { return 2147483647; }
+    bool next(frame&) override { throw aabb::input_error("the scene was played"); }
+};
+
+std::vector<frame> play(aabb::box_scene& scene) {
+    std::vector<frame> frames;
+    for (frame boxes; scene.next(boxes);) frames.push_back(boxes);
+    return frames;
+}
+
+std::string box_bytes(const std::array<float, 3>& min, const std::array<float, 3>& max) {
+    std::string bytes;
+    for (const float c : min) bytes += raw(c);
+    bytes += raw(0.0F);
+    for (const float c : max) bytes += raw(c);
+    return bytes + raw(0.0F);
+}
+
+const std::string unit = box_bytes({0, 0, 0}, {1, 1, 1});
+
+std::string header(std::int32_t objects, std::int32_t frames, const std::string& world = unit, std::int32_t zero = 0) {
+    const std::string name = "name" + std::string(124, '\0');
+    return name + name + raw(objects) + raw(frames) + raw(zero) + raw(0) + world;
+}
+
+/// Opens and plays it.
+std::string error_of(const std::filesystem::path& file) {
+    try {
+        play(*aabblab::open_recording(file));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+const aabb::box small = {{-0.0F, 1e-45F, -3}, {0, 0.1F, 3}};
+const aabb::box large = {{-3.4e38F, -1, 5}, {3.4e38F, -1, 5}};
+
+}  // namespace
+
+TEST_CASE("a recording plays as it was recorded") {
+    const temporary_folder folder;
+    for (const std::vector<frame>& frames :
+         {std::vector<frame>{{}}, {{small}}, {{small, large}, {large, small}, {small, small}}, {{}, {}}}) {
+        given_scene scene(frames);
+        std::vector<std::size_t> heard;
+        aabblab::write_recording(scene, "name", "type", folder / "a.aabbs",
+                                 [&](std::size_t done) { heard.push_back(done); });
+        REQUIRE(heard.size() == frames.size());
+        REQUIRE(heard.back() == frames.size());
+        const auto recording = aabblab::open_recording(folder / "a.aabbs");
+        REQUIRE(recording->objects() == frames[0].size());
+        REQUIRE(recording->frames() == frames.size());
+        REQUIRE(play(*recording) == frames);
+        REQUIRE(folder.files() == 1);
+    }
+}
+
+TEST_CASE("the bytes of a recording are Broadmark's") {
+    const temporary_folder folder;
+    given_scene scene({{{{0, 0, 0}, {1, 1, 1}}}, {{{2, 0, 0}, {3, 1, 1}}}});
+    aabblab::write_recording(scene, "name", "name", folder / "a.aabbs", {});
+    REQUIRE(bytes_of_file(folder / "a.aabbs") ==
+            header(1, 1, box_bytes({0, 0, 0}, {3, 1, 1})) + unit + box_bytes({2, 0, 0}, {3, 1, 1}));
+    given_scene nameless({{small}});
+    aabblab::write_recording(nameless, std::string(500, 'n'), "", folder / "b.aabbs", {});
+    const std::string bytes = bytes_of_file(folder / "b.aabbs");
+    REQUIRE(bytes.substr(0, 128) == std::string(127, 'n') + '\0');
+    REQUIRE(bytes.substr(128, 6) == std::string("boxes\0", 6));
+}
+
+TEST_CASE("a scene that breaks off leaves no recording behind, and an older one untouched") {
+    const temporary_folder folder;
+    folder.write("a.aabbs", "older");
+    given_scene scene({{small}, {small, small}});
+    REQUIRE_THROWS_AS(aabblab::write_recording(scene, "n", "t", folder / "a.aabbs", {}), aabb::input_error);
+    REQUIRE(bytes_of_file(folder / "a.aabbs") == "older");
+    REQUIRE(folder.files() == 1);
+    given_scene none({});
+    REQUIRE_THROWS_AS(aabblab::write_recording(none, "n", "t", folder / "b.aabbs", {}), aabb::input_error);
+}
+
+TEST_CASE("a recording that the disk has no room for is refused before it is begun") {
+    const temporary_folder folder;
+    endless_scene scene;
+    REQUIRE_THROWS_WITH(
+        aabblab::write_recording(scene, "n", "t", folder / "a.aabbs", {}),
+        ContainsSubstring("a.aabbs: would take 137438953344.0 GiB, but only ") && EndsWith(" GiB are free"));
+    REQUIRE(folder.files() == 0);
+    // What is no regular file takes no room.
+    REQUIRE_THROWS_WITH(aabblab::write_recording(scene, "n", "t", "/dev/null", {}), "the scene was played");
+}
+
+TEST_CASE("frames without objects are played up to a million of them") {
+    const temporary_folder folder;
+    const auto frames = aabblab::open_recording(folder.write("a.aabbs", header(0, 999'999)))->frames();
+    REQUIRE(frames == 1'000'000);
+    given_scene scene(std::vector<frame>(1'000'001));
+    REQUIRE_THROWS_WITH(aabblab::write_recording(scene, "n", "t", folder / "b.aabbs", {}),
+                        EndsWith("b.aabbs: a recording of 0 objects holds at most 1000000 frames, not 1000001"));
+}
+
+TEST_CASE("recordings that cannot be used are refused") {
+    const temporary_folder folder;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    struct malformed {
+        std::string bytes;
+        std::string error;
+    };
+    for (const auto& [bytes, error] : {
+             malformed{"", "is empty"},
+             {"short", "is no recording: its header takes 304 bytes, but the file has 5"},
+             {header(1, 0, unit, 7) + unit, "is no recording: its header does not hold two names and two zeros"},
+             {std::string(400, 'x'), "is no recording: its header does not hold two names and two zeros"},
+             {header(-1, 0), "its header announces -1 objects and 0 frames; neither can be negative"},
+             {header(1, -1), "its header announces 1 objects and -1 frames; neither can be negative"},
+             {header(1, 0, box_bytes({0, 0, 0}, {nan, 1, 1})) + unit,
+              "the world box in its header is not finite or inverted"},
+             {header(1, 1) + unit,
+              "its header announces 2 boxes (1 objects, 1 + 1 frames), but the file has 32 bytes of them, 32 each"},
+             {header(1, 0) + unit + "x",
+              "its header announces 1 boxes (1 objects, 0 + 1 frames), but the file has 33 bytes of them, 32 each"},
+             {header(0, 5) + unit,
+              "its header announces 0 boxes (0 objects, 5 + 1 frames), but the file has 32 bytes of them, 32 each"},
+             {header(0, 1'000'000), "a recording of 0 objects holds at most 1000000 frames, not 1000001"},
+             {header(0, 2147483647), "a recording of 0 objects holds at most 1000000 frames, not 2147483648"},
+             {header(2147483647, 2147483647) + unit,
+              "its header announces 4611686016279904256 boxes (2147483647 objects, 2147483647 + 1 frames), but the "
+              "file "
+              "has 32 bytes of them, 32 each"},
+             {header(2, 1) + unit + unit + unit + box_bytes({0, nan, 0}, {1, 1, 1}),
+              "frame 1: box 1 has a coordinate that is not finite"},
+             {header(1, 0) + box_bytes({0, 2, 0}, {1, 1, 1}),
+              "frame 0: box 0 is inverted: its minimum is above its maximum"},
+         }) {
+        CHECK_THAT(error_of(folder.write("a.aabbs", bytes)), EndsWith("/a.aabbs: " + error));
+    }
+    CHECK_THAT(error_of(folder / "absent.aabbs"), EndsWith("absent.aabbs: no such file"));
+    CHECK_THAT(error_of(folder.path()), EndsWith(": is a folder, not a file"));
+}
+
+TEST_CASE("a recording that shrinks while it plays is refused") {
+    const temporary_folder folder;
+    std::string bytes = header(40000, 1);
+    for (int i = 0; i < 80000; ++i) bytes += unit;
+    const auto file = folder.write("a.aabbs", bytes);
+    const auto recording = aabblab::open_recording(file);
+    frame boxes;
+    REQUIRE(recording->next(boxes));
+    std::filesystem::resize_file(file, 304);
+    REQUIRE_THROWS_AS(recording->next(boxes), aabb::input_error);
+}

@@ -1,0 +1,115 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.config;
+import aabblab.report;
+import aabblab.results;
+import aabblab.runner;
+import aabblab.scenes;
+
+using aabblab::row;
+
+namespace {
+
+row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
+    row r;
+    r.experiment = "test";
+    r.scene = "brownian";
+    r.scene_parameters = "objects=10, \"quoted\"";
+    r.objects = 10;
+    r.frames = 3;
+    r.name.sort = sort;
+    r.name.sweep = "one_axis";
+    r.repeat = repeat;
+    r.build_ms = 1;
+    r.first_ms = 5;
+    r.update_ms = 0;
+    r.search_ms = search_ms;
+    r.detect_ms = 0;
+    r.candidates = 1234567;
+    r.digest = "0123456789abcdef";
+    r.status = "exact";
+    return r;
+}
+
+}  // namespace
+
+TEST_CASE("Quartiles are interpolated") {
+    const aabblab::quartiles q = aabblab::quartiles_of({4, 1, 2, 3});
+    REQUIRE(q.low == 1.75);
+    REQUIRE(q.median == 2.5);
+    REQUIRE(q.high == 3.25);
+    REQUIRE(aabblab::quartiles_of({7}).low == 7);
+}
+
+TEST_CASE("CSV fields survive commas and quotes") {
+    const std::vector<std::string> fields{"a", "", "b,c", "say \"x\"", "\""};
+    const std::string line = aabblab::csv_line(fields);
+    REQUIRE(line.back() == '\n');
+    REQUIRE(aabblab::csv_fields(line.substr(0, line.size() - 1)) == fields);
+}
+
+TEST_CASE("A summary has medians per frame after frame 0, ratios to the first line, and names what differs") {
+    const std::vector<row> rows{repeat_of("std", 0, 2), repeat_of("insertion", 0, 8), repeat_of("std", 1, 4),
+                                repeat_of("insertion", 1, 16)};
+    const auto scenes = aabblab::summarise(rows);
+    REQUIRE(scenes.size() == 1);
+    REQUIRE(scenes[0].common == "sweep one_axis");
+    REQUIRE(scenes[0].lines.size() == 2);
+    REQUIRE(scenes[0].lines[0].label == "std");
+    REQUIRE(scenes[0].lines[0].ms_a_frame->median == 1.5);
+    REQUIRE(scenes[0].lines[1].ratio.value_or(0) == 4.0);
+    const auto shown = aabblab::table_of(scenes[0], aabblab::number_style::grouped);
+    REQUIRE(aabblab::to_text(shown).find("1,234,567") != std::string::npos);
+    REQUIRE(aabblab::to_csv(aabblab::table_of(scenes[0], aabblab::number_style::plain)).find("1234567") !=
+            std::string::npos);
+    REQUIRE(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}).find("a\\_b \\\\\n\\hline\n50\\% \\\\") !=
+            std::string::npos);
+    REQUIRE(aabblab::to_html({{{"a", false}}, {{"<x>"}}}).find("<td>&lt;x&gt;</td>") != std::string::npos);
+    REQUIRE(aabblab::figure_of(scenes[0]).find("insertion") != std::string::npos);
+}
+
+TEST_CASE("Tables fit a terminal of 120 columns and line up") {
+    std::vector<row> rows;
+    for (const char* sort : {"insertion", "std"}) {
+        row r = repeat_of(sort, 0, 12345);
+        r.name.partition = sort == std::string("std") ? "none" : "uniform_grid";
+        r.name.tree = sort == std::string("std") ? "canonical" : "leafless";
+        r.contacts = 123456;
+        r.bytes[0] = 12345678;
+        rows.push_back(r);
+    }
+    const std::string text =
+        aabblab::to_text(aabblab::table_of(aabblab::summarise(rows)[0], aabblab::number_style::grouped));
+    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) REQUIRE(text.find('\n', at) - at <= 120);
+}
+
+TEST_CASE("A report has every table in four formats, figures, and one page that needs no other file") {
+    const temporary_folder folder;
+    const aabblab::experiment e = aabblab::parse_experiment(
+        "name = \"small\"\n[[scene]]\nkind = \"brownian\"\nobjects = 50\nframes = 2\n[compose]\n"
+        "sort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 2\n",
+        "small.toml", aabblab::experiment_size::full);
+    {
+        aabblab::results_folder results(folder / "small", e, aabblab::existing_results::refuse);
+        const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
+        REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    }
+    const std::vector<aabblab::report_part> parts{{folder / "small", {}}};
+    aabblab::write_report(folder.path(), parts);
+    for (const char* ending : {".csv", ".md", ".tex", ".svg"})
+        REQUIRE(std::filesystem::exists(folder / ("tables/small-1-brownian" + std::string(ending))));
+    const std::string markdown = bytes_of_file(folder / "report.md");
+    REQUIRE(markdown.find("no composition that must be exact was wrong") != std::string::npos);
+    REQUIRE(markdown.find("| insertion | exact |") != std::string::npos);
+    const std::string html = bytes_of_file(folder / "report.html");
+    REQUIRE(html.find("<svg") != std::string::npos);
+    REQUIRE(html.find("src=") == std::string::npos);
+}

@@ -1,0 +1,299 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabb.registry;
+import aabblab.config;
+import aabblab.results;
+import aabblab.runner;
+import aabblab.scenes;
+
+using aabblab::contender;
+using aabblab::existing_results;
+using aabblab::experiment;
+using aabblab::results_folder;
+using aabblab::row;
+
+namespace {
+
+experiment boxes(std::size_t repeats = 2) {
+    return aabblab::parse_experiment(
+        "name = \"boxes\"\nengines = [\"brute_force\", \"libccd\"]\n[[scene]]\n"
+        "kind = \"brownian\"\nobjects = 200\nframes = 3\n[compose]\n"
+        "sort = [\"insertion\", \"std\"]\ntree = [\"canonical\", \"leafless\"]\n"
+        "[measure]\nrepeats = " +
+            std::to_string(repeats) + "\n",
+        "boxes.toml", aabblab::experiment_size::full);
+}
+
+experiment meshes() {
+    return aabblab::parse_experiment(
+        "name = \"meshes\"\nengines = [\"cgal\", \"fcl\", \"libccd\"]\n[[scene]]\n"
+        "kind = \"mesh_swarm\"\nmeshes = [\"icosphere:triangles=80\"]\nobjects = 20\n"
+        "frames = 3\ndensity = 0.5\n[compose]\ntree = [\"canonical\", \"leafless\"]\n"
+        "triangle = [\"exact\", \"moller\"]\n[measure]\nrepeats = 1\n",
+        "meshes.toml", aabblab::experiment_size::full);
+}
+
+/// A global search that loses one pair of a frame, or finds one twice.
+class wrong_search final : public aabb::global_stage {
+public:
+    enum class fault { loses, repeats };
+    explicit wrong_search(fault what) : what_(what) {}
+
+    void insert(std::uint32_t id) override { right_->insert(id); }
+    void remove(std::uint32_t id) override { right_->remove(id); }
+    void update(std::span<const aabb::box> boxes) override { right_->update(boxes); }
+    void search(std::vector<aabb::index_pair>& pairs) override {
+        right_->search(pairs);
+        if (frame_++ != 2) return;
+        if (what_ == fault::loses)
+            pairs.pop_back();
+        else
+            pairs.push_back(pairs.back());
+    }
+    [[nodiscard]] aabb::work_counters counters() const override { return {}; }
+    [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
+    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+
+private:
+    fault what_;
+    int frame_ = 0;
+    std::unique_ptr<aabb::global_stage> right_ = aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+};
+
+contender wrong_contender(wrong_search::fault what) {
+    contender who;
+    who.name.sort = "wrong";
+    who.make_global = [what](aabb::instrumentation) { return std::make_unique<wrong_search>(what); };
+    return who;
+}
+
+/// Keys and digests: what must not depend on when a row was made.
+std::set<std::string> answers(std::span<const row> rows) {
+    std::set<std::string> all;
+    for (const row& r : rows) all.insert(r.key() + r.digest + r.status);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("A scene of boxes is played by every global search and every engine that searches boxes") {
+    const temporary_folder folder;
+    const experiment e = boxes();
+    results_folder results(folder / "r", e, existing_results::refuse);
+    const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
+    REQUIRE(contenders.size() == 3);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
+    REQUIRE(rows.size() == 6);
+    for (const row& r : rows) {
+        REQUIRE(r.status == "exact");
+        REQUIRE(r.digest == rows[0].digest);
+        REQUIRE(r.candidates > 0);
+        REQUIRE(r.frames == 4);
+        REQUIRE_FALSE(r.contacts);
+        REQUIRE(r.update_ms.has_value());
+        REQUIRE(r.missing.value_or(1) == 0);
+        REQUIRE(r.counts[0].has_value() == r.name.engine.empty());
+    }
+}
+
+TEST_CASE("A scene of meshes is played by both stages together, engines included") {
+    const temporary_folder folder;
+    const experiment e = meshes();
+    results_folder results(folder / "r", e, existing_results::refuse);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+    REQUIRE(results.rows().size() == 4 + 3);
+    for (const row& r : results.rows()) {
+        INFO(r.key());
+        REQUIRE(r.contacts.value_or(0) > 0);
+        if (r.name.triangle == "exact" || r.name.engine == "cgal") REQUIRE(r.status == "exact");
+        if (r.name.engine == "libccd") REQUIRE(r.name.sort == "std");
+    }
+}
+
+TEST_CASE("A composition that loses a pair or reports one twice is named, and gets no row") {
+    for (const auto fault : {wrong_search::fault::loses, wrong_search::fault::repeats}) {
+        const temporary_folder folder;
+        const experiment e = boxes();
+        results_folder results(folder / "r", e, existing_results::refuse);
+        std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+        contenders.insert(contenders.begin() + 1, wrong_contender(fault));
+        const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
+        REQUIRE(failures.size() == 1);
+        INFO(failures[0]);
+        REQUIRE(
+            failures[0].starts_with("wrong is wrong on brownian (objects=200 frames=3 seed=1), frame 2: the pair "));
+        REQUIRE(results.rows().size() == 6);
+        for (const row& r : results.rows()) REQUIRE(r.name.sort != "wrong");
+        const auto differences = aabblab::read_differences(folder / "r/differences.csv");
+        REQUIRE(differences.size() == 1);
+        REQUIRE(differences[0].what == (fault == wrong_search::fault::loses ? "missing" : "invented"));
+        REQUIRE(differences[0].kind == "boxes");
+        REQUIRE(differences[0].count == 1);
+    }
+}
+
+TEST_CASE("Differences of an inexact triangle test are counted by class and fail nothing") {
+    const experiment e = meshes();
+    const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
+    const aabblab::scene_verdicts result = aabblab::validate_scene(e.scenes[0], contenders);
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        const aabblab::verdict& v = result.verdicts[i];
+        INFO(aabblab::text_of(v.name));
+        REQUIRE(contenders[i].exact == (v.name.triangle == "exact" ? v.name.engine.empty() : v.name.engine == "cgal"));
+        REQUIRE(v.failure.empty());
+        std::uint64_t by_class = 0;
+        for (const aabblab::difference& d : v.differences) by_class += d.count;
+        REQUIRE(by_class == v.missing + v.invented);
+        if (contenders[i].exact) REQUIRE((by_class == 0 && v.digest == result.digest));
+    }
+}
+
+TEST_CASE("An interrupted run that is resumed ends like one that was not") {
+    const temporary_folder folder;
+    const experiment e = boxes(3);
+    const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
+    std::set<std::string> uninterrupted;
+    {
+        results_folder results(folder / "whole", e, existing_results::refuse);
+        REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+        uninterrupted = answers(results.rows());
+    }
+    // Killed in the middle of writing the fifth row.
+    std::filesystem::create_directories(folder / "cut");
+    const std::string text = bytes_of_file(folder / "whole/results.csv");
+    std::size_t end = 0;
+    for (int line = 0; line < 5; ++line) end = text.find('\n', end) + 1;
+    folder.write("cut/results.csv", text.substr(0, end + 40));
+    std::filesystem::copy_file(folder / "whole/manifest.json", folder / "cut/manifest.json");
+    REQUIRE(aabblab::read_rows(folder / "cut/results.csv").size() == 4);
+    REQUIRE_THROWS_AS(results_folder(folder / "cut", e, existing_results::refuse), aabb::input_error);
+    {
+        results_folder results(folder / "cut", e, existing_results::resume);
+        REQUIRE(results.rows().size() == 4);
+        REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    }
+    const std::vector<row> rows = aabblab::read_rows(folder / "cut/results.csv");
+    REQUIRE(rows.size() == 9);
+    REQUIRE(answers(rows) == uninterrupted);
+    REQUIRE(bytes_of_file(folder / "cut/results.csv").substr(0, end) == text.substr(0, end));
+}
+
+TEST_CASE("Results of another config are not continued") {
+    const temporary_folder folder;
+    {
+        const experiment e = boxes();
+        results_folder results(folder / "r", e, existing_results::refuse);
+        REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+    }
+    const experiment other = boxes(5);
+    REQUIRE_THROWS_AS(results_folder(folder / "r", other, existing_results::resume), aabb::input_error);
+    std::filesystem::remove(folder / "r/manifest.json");
+    REQUIRE_THROWS_AS(results_folder(folder / "r", boxes(), existing_results::resume), aabb::input_error);
+}
+
+TEST_CASE("What was not to be measured is not measured") {
+    experiment e = boxes(5);
+    e.measured = {false, false, false, false};
+    const temporary_folder folder;
+    results_folder results(folder / "r", e, existing_results::refuse);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+    REQUIRE(results.rows().size() == 3);
+    for (const row& r : results.rows()) {
+        REQUIRE_FALSE((r.build_ms || r.first_ms || r.search_ms || r.counts[0] || r.bytes[0] || r.missing));
+        REQUIRE(r.status == "exact");
+    }
+}
+
+TEST_CASE("The judge's contacts do not depend on the boxes of global search") {
+    const experiment e = meshes();
+    aabblab::scene_play scene(e.scenes[0]);
+    aabblab::player right(aabblab::contenders_for(e, e.scenes[0])[0], scene, aabb::instrumentation::none);
+    aabblab::judge exact(scene);
+    std::vector<aabb::box> apart;
+    for (std::size_t i = 0; i < scene.objects(); ++i) {
+        const auto x = static_cast<float>(2 * i);
+        apart.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+    }
+    std::size_t contacts = 0;
+    while (scene.next()) {
+        right.update();
+        right.search();
+        right.detect();
+        exact.play(apart);
+        REQUIRE(exact.pairs().empty());
+        REQUIRE(exact.contacts() == right.sorted_contacts());
+        contacts += exact.contacts().size();
+    }
+    REQUIRE(contacts > 0);
+}
+
+TEST_CASE("A pair of boxes that is lost fails a contender whose triangle test is inexact, too") {
+    const experiment e = boxes();
+    contender who = wrong_contender(wrong_search::fault::loses);
+    who.exact = false;
+    const aabblab::scene_verdicts result = aabblab::validate_scene(e.scenes[0], std::vector{who});
+    REQUIRE(result.verdicts[0].failure.ends_with("is missing"));
+}
+
+TEST_CASE("A contender that goes wrong when it is timed keeps no row of its earlier repeats") {
+    const temporary_folder folder;
+    const experiment e = boxes(3);
+    std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+    contender late = wrong_contender(wrong_search::fault::loses);
+    // Right when validated and in its first repeat.
+    late.make_global = [made = 0](aabb::instrumentation) mutable -> std::unique_ptr<aabb::global_stage> {
+        if (made++ < 2) return aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+        return std::make_unique<wrong_search>(wrong_search::fault::loses);
+    };
+    contenders.push_back(late);
+    results_folder results(folder / "r", e, existing_results::refuse);
+    const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
+    REQUIRE(failures.size() == 1);
+    REQUIRE(failures[0].find("timed, its digest is") != std::string::npos);
+    const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
+    REQUIRE(rows.size() == 9);
+    REQUIRE(answers(rows) == answers(results.rows()));
+    for (const row& r : rows) REQUIRE(r.name.sort != "wrong");
+}
+
+TEST_CASE("Results of another config or build are replaced where that is asked for, others continued") {
+    const temporary_folder folder;
+    const auto play = [&](const experiment& e) {
+        results_folder results(folder / "r", e, existing_results::replace);
+        const std::size_t before = results.rows().size();
+        REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+        return std::pair{before, results.replaced()};
+    };
+    const std::pair<std::size_t, std::string> nothing{0, ""};
+    const std::pair<std::size_t, std::string> all{6, ""};
+    REQUIRE(play(boxes()) == nothing);
+    REQUIRE(play(boxes()) == all);
+    const auto [left, said] = play(boxes(5));
+    REQUIRE(left == 0);
+    REQUIRE(said.find("another config") != std::string::npos);
+    REQUIRE(aabblab::read_rows(folder / "r/results.csv").size() == 15);
+    // Another build, whose tables had other columns.
+    std::string manifest = bytes_of_file(folder / "r/manifest.json");
+    const std::string commit = "\"commit\": \"";
+    manifest.insert(manifest.find(commit) + commit.size(), "0");
+    folder.write("r/manifest.json", manifest);
+    folder.write("r/results.csv", "columns,of,then\n1,2,3\n");
+    const auto [left_of_build, said_of_build] = play(boxes(5));
+    REQUIRE(left_of_build == 0);
+    REQUIRE(said_of_build.find("another build") != std::string::npos);
+    REQUIRE(aabblab::read_rows(folder / "r/results.csv").size() == 15);
+}

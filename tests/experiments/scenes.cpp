@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+import aabblab.scenes;
+
+namespace {
+
+using aabblab::scene_choice;
+
+bool has_parameter(const aabblab::scene_info& info, const std::string& name) {
+    return std::ranges::any_of(info.parameters, [&](const aabb::parameter_info& p) { return p.name == name; });
+}
+
+std::vector<std::vector<aabb::box>> play_boxes(const scene_choice& choice) {
+    const auto scene = aabblab::make_box_scene(choice);
+    std::vector<std::vector<aabb::box>> frames;
+    for (std::vector<aabb::box> boxes; scene->next(boxes);) frames.push_back(boxes);
+    REQUIRE(frames.size() == scene->frames());
+    for (const auto& boxes : frames) {
+        REQUIRE(boxes.size() == scene->objects());
+        REQUIRE_NOTHROW(aabb::require_valid(boxes));
+    }
+    return frames;
+}
+
+std::vector<std::vector<aabb::pose>> play_poses(const scene_choice& choice) {
+    const auto scene = aabblab::make_mesh_scene(choice);
+    std::vector<std::vector<aabb::pose>> frames;
+    for (std::vector<aabb::pose> poses; scene->next(poses);) frames.push_back(poses);
+    REQUIRE(frames.size() == scene->frames());
+    for (const auto& poses : frames) {
+        REQUIRE(poses.size() == scene->mesh_of.size());
+        for (const aabb::pose& p : poses) REQUIRE(aabb::orthonormality_error(p) < 1e-14);
+    }
+    for (const std::uint32_t m : scene->mesh_of) REQUIRE(m < scene->meshes.size());
+    return frames;
+}
+
+std::string error_of(const scene_choice& choice, bool of_meshes) {
+    try {
+        if (of_meshes)
+            static_cast<void>(aabblab::make_mesh_scene(choice));
+        else
+            static_cast<void>(aabblab::make_box_scene(choice));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+std::string digest_of(const scene_choice& choice) {
+    aabb::digest all;
+    for (const auto& boxes : play_boxes(choice))
+        for (const aabb::box& b : boxes) all.add(std::bit_cast<std::array<std::uint32_t, 6>>(b));
+    return all.text();
+}
+
+/// How many pairs of boxes overlap.
+std::size_t overlaps_in(std::span<const aabb::box> boxes) {
+    std::size_t pairs = 0;
+    for (std::size_t a = 0; a < boxes.size(); ++a)
+        for (std::size_t b = a + 1; b < boxes.size(); ++b) pairs += aabb::overlaps(boxes[a], boxes[b]);
+    return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("every scene plays with 0, 1, 2 and 50 objects, the same for the same seed") {
+    for (const aabblab::scene_info& info : aabblab::scene_kinds())
+        for (const std::string objects : {"0", "1", "2", "50"})
+            for (const std::string frames : {"0", "3"}) {
+                CAPTURE(info.name, objects, frames);
+                scene_choice choice{info.name, {{"frames", frames}}, {}, 1};
+                if (has_parameter(info, "objects")) choice.settings.push_back({"objects", objects});
+                const auto play = [&](std::uint64_t seed) {
+                    choice.seed = seed;
+                    if (!info.has_meshes) {
+                        const auto played = play_boxes(choice);
+                        REQUIRE(played.size() == std::stoul(frames) + 1);
+                        REQUIRE(played[0].size() == std::stoul(objects));
+                        REQUIRE(played == play_boxes(choice));
+                        return digest_of(choice);
+                    }
+                    choice.meshes = {"icosphere:triangles=20", "torus_knot:triangles=100"};
+                    const auto played = play_poses(choice);
+                    REQUIRE(played.size() == std::stoul(frames) + 1);
+                    REQUIRE(played == play_poses(choice));
+                    if (has_parameter(info, "objects")) REQUIRE(played[0].size() == std::stoul(objects));
+                    return played[0].empty() ? std::string() : std::to_string(played[0].back().translation[0]);
+                };
+                const bool is_random = info.name != "lattice" && (objects != "0" || info.name == "mesh_pair");
+                REQUIRE((play(1) != play(2)) == is_random);
+            }
+}
+
+TEST_CASE("scenes of boxes are the same everywhere") {
+    CHECK(digest_of({"brownian", {{"objects", "300"}, {"frames", "7"}}, {}, 5}) == "0667e87404c1b636");
+    CHECK(digest_of({"lattice", {{"objects", "300"}, {"frames", "7"}}, {}, 5}) == "2a705db652c5999e");
+}
+
+TEST_CASE("brownian cubes stay in their world and move no further than told") {
+    const double side = 21.5443469;  // cbrt(1000 / 0.1)
+    const auto furthest = [&](const std::vector<aabb::setting>& settings) {
+        const auto frames = play_boxes({"brownian", settings, {}, 1});
+        double most = 0;
+        for (std::size_t f = 0; f < frames.size(); ++f)
+            for (std::size_t i = 0; i < frames[f].size(); ++i) {
+                double square = 0;
+                for (int k = 0; k < 3; ++k) {
+                    REQUIRE(frames[f][i].min[k] >= 0);
+                    REQUIRE(frames[f][i].max[k] <= side);
+                    REQUIRE(std::abs(frames[f][i].max[k] - frames[f][i].min[k] - 1) < 1e-5);
+                    if (f == 0) continue;
+                    const double moved = double{frames[f][i].min[k]} - double{frames[f - 1][i].min[k]};
+                    square += moved * moved;
+                }
+                most = std::max(most, std::sqrt(square));
+            }
+        return most;
+    };
+    const double by_speed = furthest({});
+    REQUIRE(by_speed <= 0.75 * side / 30 + 1e-5);
+    REQUIRE(by_speed > 0.7 * side / 30);
+    const double by_displacement = furthest({{"displacement", "0.01"}});
+    REQUIRE(by_displacement <= 0.01 + 1e-5);
+    REQUIRE(by_displacement > 0.009);
+    // Any step is folded back into the world.
+    furthest({{"displacement", "1e9"}});
+}
+
+TEST_CASE("a hundredth of brownian cubes changes direction every frame") {
+    const auto frames = play_boxes({"brownian", {{"frames", "2"}, {"displacement", "0.01"}}, {}, 3});
+    std::size_t straight = 0;
+    for (std::size_t i = 0; i < 1000; ++i) {
+        double bend = 0;
+        for (int k = 0; k < 3; ++k)
+            bend += std::abs((double{frames[2][i].min[k]} - double{frames[1][i].min[k]}) -
+                             (double{frames[1][i].min[k]} - double{frames[0][i].min[k]}));
+        straight += bend < 1e-5;
+    }
+    // Ten turned by the seed, some reflected; slow ones look straight.
+    REQUIRE(straight < 1000);
+    REQUIRE(straight > 970);
+}
+
+TEST_CASE("a lattice touches in every frame, whatever its step") {
+    for (const std::string step : {"0.25", "0.1", "1e-9"}) {
+        CAPTURE(step);
+        for (const auto& boxes : play_boxes({"lattice", {{"objects", "27"}, {"displacement", step}}, {}, 1}))
+            REQUIRE(overlaps_in(boxes) == 158);  // pairs of the 27 cells that are neighbours
+    }
+}
+
+TEST_CASE("a swarm's objects meet, cycle through the meshes and move as told") {
+    const auto scene = aabblab::make_mesh_scene(
+        {"mesh_swarm", {{"objects", "100"}}, {"icosphere:triangles=80", "torus_knot:triangles=200"}, 1});
+    REQUIRE(scene->meshes.size() == 2);
+    for (const aabb::mesh& m : scene->meshes) {
+        const aabb::box b = aabb::bounds_of(m);
+        const int k = aabb::longest_axis(b);
+        REQUIRE(std::abs(b.max[k] - b.min[k] - 1) < 1e-6);
+    }
+    REQUIRE(scene->mesh_of[0] == 0);
+    REQUIRE(scene->mesh_of[1] == 1);
+    REQUIRE(scene->mesh_of[2] == 0);
+    std::vector<aabb::pose> before;
+    std::vector<aabb::pose> poses;
+    while (scene->next(poses)) {
+        std::vector<aabb::box> boxes;
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            boxes.push_back(aabb::world_bounds(aabb::bounds_of(scene->meshes[scene->mesh_of[i]]), poses[i]));
+            if (before.empty()) continue;
+            const aabb::vec3d moved = poses[i].translation - before[i].translation;
+            REQUIRE(aabb::dot(moved, moved) <= 0.0501 * 0.0501);
+            REQUIRE(poses[i].rotation != before[i].rotation);
+        }
+        REQUIRE(overlaps_in(boxes) > 50);
+        before = poses;
+    }
+}
+
+TEST_CASE("meshes that are not normalised keep their coordinates and still meet") {
+    const temporary_folder folder;
+    const auto file =
+        folder.write("far.off", "OFF\n4 2 0\n1000 0 0\n1010 0 0\n1000 10 0\n1000 0 10\n3 0 1 2\n3 0 2 3\n");
+    for (const std::string kind : {"mesh_swarm", "mesh_pair"}) {
+        const auto scene = aabblab::make_mesh_scene({kind, {{"normalise", "no"}}, {file.string()}, 1});
+        REQUIRE(scene->meshes[0].vertices[1] == aabb::vec3f{1010, 0, 0});
+        std::vector<aabb::pose> poses;
+        while (scene->next(poses)) {
+            std::vector<aabb::box> boxes;
+            for (const aabb::pose& p : poses) boxes.push_back(aabb::world_bounds(aabb::bounds_of(scene->meshes[0]), p));
+            REQUIRE(overlaps_in(boxes) > 0);
+        }
+    }
+}
+
+TEST_CASE("a pair passes through itself") {
+    const auto frames = play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0.5"}}, {"icosphere"}, 1});
+    for (std::size_t f = 0; f < 5; ++f) {
+        const aabb::vec3d apart = frames[f][1].translation - frames[f][0].translation;
+        const double wanted[] = {0.5, 0.25, 0, 0.25, 0.5};
+        REQUIRE(std::abs(std::sqrt(aabb::dot(apart, apart)) - wanted[f]) < 1e-6);
+        REQUIRE(frames[f][0] == frames[0][0]);
+    }
+}
+
+TEST_CASE("scenes that cannot be made are refused") {
+    REQUIRE(error_of({"browninan", {}, {}, 1}, false) == "unknown scene 'browninan'; did you mean 'brownian'?");
+    REQUIRE(error_of({"mesh_swarm", {}, {}, 1}, false) == "mesh_swarm is a scene of meshes, not of boxes");
+    REQUIRE(error_of({"lattice", {}, {}, 1}, true) == "lattice is a scene of boxes, not of meshes");
+    REQUIRE(error_of({"lattice", {}, {"icosphere"}, 1}, false) == "lattice is a scene of boxes and takes no meshes");
+    REQUIRE(error_of({"lattice", {{"object", "5"}}, {}, 1}, false) ==
+            "unknown parameter of lattice 'object'; did you mean 'objects'?");
+    for (const std::string count : {"-1", "1.5", "2147483648", "", "ten", "99999999999999999999"})
+        REQUIRE(error_of({"brownian", {{"objects", count}}, {}, 1}, false) ==
+                "brownian: objects must be a whole number from 0 to 2147483647, not '" + count + "'");
+    for (const std::string number : {"0", "-1", "nan", "inf", "1e10"})
+        REQUIRE(error_of({"brownian", {{"displacement", number}}, {}, 1}, false) ==
+                "brownian: displacement must be a number above 0 and at most 1e+09 or auto, not '" + number + "'");
+    REQUIRE(error_of({"mesh_pair", {}, {"icosphere", "icosphere", "icosphere"}, 1}, true) ==
+            "mesh_pair takes at most 2 meshes, not 3");
+}
+
+TEST_CASE("a scene that does not fit into memory is refused") {
+    const auto refused = [] { aabblab::require_memory("a scene", 1e18); };
+    REQUIRE_THROWS_WITH(refused(), Catch::Matchers::StartsWith("a scene would take 931322574.6 GiB of memory"));
+    REQUIRE_NOTHROW(aabblab::require_memory("a scene", 1e6));
+}

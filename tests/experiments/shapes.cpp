@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+import aabblab.scenes;
+
+namespace {
+
+/// Every edge once in each direction: closed, and every triangle facing the same way.
+bool is_closed(const aabb::mesh& m) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& t : m.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!edges.insert({t[i], t[(i + 1) % 3]}).second) return false;
+    for (const auto& [a, b] : edges)
+        if (!edges.contains({b, a})) return false;
+    return true;
+}
+
+/// Six times the volume inside; positive where triangles face outwards.
+double volume(const aabb::mesh& m) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < m.triangle_count(); ++i) {
+        const aabb::triangle3f t = m.triangle(i);
+        aabb::triangle3d d{};
+        for (int c = 0; c < 3; ++c)
+            for (int k = 0; k < 3; ++k) d[c][k] = t[c][k];
+        sum += aabb::dot(d[0], aabb::cross(d[1], d[2]));
+    }
+    return sum;
+}
+
+std::string error_of(const std::string& name) {
+    try {
+        static_cast<void>(aabblab::make_mesh(name));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// Sets AABBLAB_DATA as long as it lives.
+class data_folder_at {
+public:
+    explicit data_folder_at(const std::filesystem::path& folder) { setenv("AABBLAB_DATA", folder.c_str(), 1); }
+    data_folder_at(const data_folder_at&) = delete;
+    data_folder_at& operator=(const data_folder_at&) = delete;
+    ~data_folder_at() { unsetenv("AABBLAB_DATA"); }
+};
+
+}  // namespace
+
+TEST_CASE("shapes are closed, face outwards, have no triangle of zero area, and as many as wanted") {
+    const temporary_folder folder;
+    for (const std::string& shape : aabblab::shape_names())
+        for (const std::uint32_t wanted : {100U, 1000U, 1234U, 5000U, 20000U, 100000U}) {
+            CAPTURE(shape, wanted);
+            const aabb::mesh m = aabblab::make_mesh(shape + ":triangles=" + std::to_string(wanted)).mesh;
+            REQUIRE(is_closed(m));
+            REQUIRE(volume(m) > 0);
+            REQUIRE_NOTHROW(aabb::require_valid(m));
+            aabblab::write_off(m, folder / "m.off");
+            REQUIRE(aabblab::read_mesh(folder / "m.off").report.zero_area == 0);
+            // An icosphere has 20 n² triangles: up to half a step of n beside it.
+            const double room = shape == "icosphere" ? std::max(20.0, 1.1 * std::sqrt(20.0 * wanted))
+                                : wanted < 200       ? 8
+                                                     : 2;
+            REQUIRE(std::abs(static_cast<double>(m.triangle_count()) - wanted) <= room);
+        }
+    REQUIRE(aabblab::make_mesh("icosphere").mesh.triangle_count() == 5120);
+    REQUIRE(aabblab::make_mesh("torus_knot:triangles=20000").mesh.triangle_count() == 20000);
+}
+
+TEST_CASE("shapes are the same everywhere") {
+    const auto digest_of = [](const std::string& name) {
+        const aabb::mesh m = aabblab::make_mesh(name).mesh;
+        aabb::digest all;
+        for (const aabb::vec3f& v : m.vertices) all.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
+        for (const auto& t : m.triangles) all.add(t);
+        return all.text();
+    };
+    CHECK(digest_of("icosphere:triangles=1000") == "d755fdaa678cfdc0");
+    CHECK(digest_of("noise_sphere:triangles=1000") == "dcf74046466fc0c4");
+    CHECK(digest_of("torus_knot:triangles=1000") == "ffebf8a1a850ed68");
+}
+
+TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
+    const temporary_folder folder;
+    const data_folder_at here(folder.path());
+    REQUIRE(aabblab::data_folder() == folder.path());
+    folder.write("elephant.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 0\n");
+    REQUIRE(aabblab::make_mesh("elephant.off").report.polygons == 1);
+    REQUIRE(aabblab::make_mesh((folder / "elephant.off").string()).mesh.triangle_count() == 2);
+    const std::string where = " (a mesh is a file, here or in " + folder.path().string() + ", or a shape)";
+    REQUIRE(error_of("elefant.off") == "unknown mesh 'elefant.off'; did you mean 'elephant.off'?" + where);
+    REQUIRE(error_of("ikosphere") == "unknown mesh 'ikosphere'; did you mean 'icosphere'?" + where);
+    REQUIRE(error_of("") == "unknown mesh ''; did you mean 'icosphere'?" + where);
+    REQUIRE(error_of(folder.path().string()) == folder.path().string() + ": is a folder, not a file");
+    REQUIRE(error_of("icosphere:triangle=7") == "unknown parameter of icosphere 'triangle'; did you mean 'triangles'?");
+    REQUIRE(error_of("icosphere:triangles=1e9") ==
+            "icosphere: triangles must be a whole number from 20 to 100000000, not '1e9'");
+    REQUIRE(error_of("torus_knot:5000") == "'5000' after 'torus_knot:' is not of the form name=value");
+}

@@ -1,0 +1,187 @@
+#include <rapidcheck.h>
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../compositions.hpp"
+
+using namespace aabb;
+using Catch::Matchers::Message;
+
+namespace {
+
+/// Corners on a coarse lattice, so that most of them tie.
+box any_box(int world) {
+    box b;
+    for (int k = 0; k < 3; ++k) {
+        b.min[k] = static_cast<float>(*rc::gen::inRange(0, world)) / 2;
+        b.max[k] = b.min[k] + static_cast<float>(*rc::gen::inRange(0, 4)) / 2;
+    }
+    return b;
+}
+
+std::vector<index_pair> overlapping(const std::vector<box>& boxes, const std::vector<bool>& present) {
+    std::vector<index_pair> pairs;
+    for (std::uint32_t a = 0; a < boxes.size(); ++a)
+        for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
+            if (present[a] && present[b] && overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
+    return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("every composition finds exactly the overlapping pairs while objects come, move and go") {
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        REQUIRE(rc::check([&] {
+            const auto stage = compose(composition, instrumentation::none);
+            const int world = *rc::gen::element(1, 6, 40);
+            const bool flat = *rc::gen::arbitrary<bool>();
+            const auto n = *rc::gen::inRange<std::size_t>(0, 60);
+            std::vector<box> boxes(n);
+            std::vector<bool> present(n);
+            std::vector<index_pair> found;
+            for (int frame = 0; frame < 6; ++frame) {
+                for (std::uint32_t id = 0; id < n; ++id) {
+                    if (frame == 0 || *rc::gen::inRange(0, 4) == 0) boxes[id] = any_box(world);
+                    if (flat) boxes[id].min[1] = boxes[id].max[1] = 0;
+                    for (int times = *rc::gen::element(0, 0, 0, 1, 2); times > 0; --times) {
+                        present[id] ? stage->remove(id) : stage->insert(id);
+                        present[id] = !present[id];
+                    }
+                }
+                found.clear();
+                stage->update(boxes);
+                stage->search(found);
+                std::ranges::sort(found);
+                RC_ASSERT(found == overlapping(boxes, present));
+            }
+        }));
+    }
+}
+
+TEST_CASE("a composition refuses boxes and ids that make no sense, and can go on") {
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::none);
+        std::vector<box> boxes(3, box{{0, 0, 0}, {1, 1, 1}});
+        for (std::uint32_t id = 0; id < 3; ++id) stage->insert(id);
+        CHECK_THROWS_MATCHES(stage->insert(1), input_error, Message("object 1 is inserted twice"));
+        CHECK_THROWS_MATCHES(stage->remove(7), input_error, Message("object 7 is removed but was never inserted"));
+        CHECK_THROWS_MATCHES(stage->update(std::vector<box>(2, boxes[0])), input_error,
+                             Message("object 2 is present, but the frame has only 2 boxes"));
+        boxes[2].max[0] = -1;
+        CHECK_THROWS_MATCHES(stage->update(boxes), input_error,
+                             Message("box 2 is inverted: its minimum is above its maximum"));
+        boxes[2].max[0] = 1;
+        std::vector<index_pair> found;
+        stage->update(boxes);
+        stage->search(found);
+        CHECK(found.size() == 3);
+    }
+}
+
+TEST_CASE("counted compositions do the same and say what they did") {
+    std::vector<box> boxes;
+    for (int i = 0; i < 200; ++i) {
+        const auto x = static_cast<float>(i * 37 % 100);
+        const auto y = static_cast<float>(i * 61 % 90);
+        boxes.push_back({{x, y, 0}, {x + 5, y + 5, 5}});
+    }
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        const auto plain = compose(composition, instrumentation::none);
+        const auto counted = compose(composition, instrumentation::counters);
+        std::vector<index_pair> pairs;
+        std::vector<index_pair> counted_pairs;
+        for (const auto& [stage, out] : {std::pair{plain.get(), &pairs}, std::pair{counted.get(), &counted_pairs}})
+            for (int frame = 0; frame < 2; ++frame) {
+                if (frame == 0)
+                    for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
+                stage->update(boxes);
+                stage->search(*out);
+            }
+        std::ranges::sort(pairs);
+        std::ranges::sort(counted_pairs);
+        CHECK(pairs == counted_pairs);
+        CHECK(counted->counters()[work::comparisons] >= boxes.size() - 1);
+        CHECK(counted->counters()[work::box_tests] > 0);
+        CHECK(plain->counters()[work::box_tests] == 0);
+    }
+}
+
+TEST_CASE("without a partition there are no cells and no copies") {
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::counters);
+        const std::vector<box> boxes(50, box{{0, 0, 0}, {1, 1, 1}});
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
+        std::vector<index_pair> pairs;
+        stage->update(boxes);
+        stage->search(pairs);
+        const bool whole = composition.partition.name == "none";
+        const auto parts = stage->bytes();
+        CHECK(std::ranges::none_of(parts, [](const part_bytes& p) { return p.part == "partition"; }) == whole);
+        CHECK((stage->counters()[work::subset_copies] == 0) == whole);
+        CHECK(std::ranges::any_of(stage->left_out(),
+                                  [](const std::string& s) { return s.starts_with("no partition"); }) == whole);
+    }
+}
+
+TEST_CASE("a flat scene drops its flat axis") {
+    const auto stage = compose({{"std", {}}, {"none", {}}, {"all_axes", {}}}, instrumentation::none);
+    std::vector<box> boxes;
+    for (std::uint32_t id = 0; id < 40; ++id) {
+        stage->insert(id);
+        const auto x = static_cast<float>(id * 7 % 40);
+        const auto y = static_cast<float>(id * 11 % 40);
+        boxes.push_back({{x, y, 0}, {x + 3, y + 3, 1}});
+    }
+    stage->update(boxes);
+    const std::size_t two_lists = stage->bytes()[0].bytes;
+    CHECK(std::ranges::count(stage->left_out(), "no projection list of the z axis") == 1);
+    boxes[0].min[2] = boxes[0].max[2] = 5;
+    stage->update(boxes);
+    CHECK(stage->bytes()[0].bytes >= two_lists + 40 * sizeof(projection));
+}
+
+TEST_CASE("a grid that no machine can hold is refused") {
+    const auto search = [](const char* cell_size, const std::vector<box>& boxes) {
+        const auto stage = compose({{"std", {}}, {"uniform_grid", {{"cell_size", cell_size}}}, {"one_axis", {}}},
+                                   instrumentation::none);
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
+        std::vector<index_pair> pairs;
+        stage->update(boxes);
+        stage->search(pairs);
+        return pairs.size();
+    };
+    const std::vector<box> far = {{{0, 0, 0}, {1, 1, 1}}, {{99, 99, 99}, {100, 100, 100}}};
+    CHECK_THROWS_MATCHES(search("1e-09", far), input_error,
+                         Message("uniform_grid: a cell_size of 1e-09 cuts this world into more than 2^26 cells"));
+    CHECK_THROWS_AS(search("1e-310", far), input_error);
+    CHECK(search("1000", far) == 0);
+    // On a flat axis there is one cell, whatever its size.
+    const std::vector<box> point = {{{1, 2, 3}, {1, 2, 3}}, {{1, 2, 3}, {1, 2, 3}}};
+    CHECK(search("1e-310", point) == 1);
+    const std::vector<box> large(200, box{{0, 0, 0}, {400, 400, 400}});
+    CHECK_THROWS_AS(search("1", large), input_error);
+}
+
+TEST_CASE("far from the origin the axis to sort along is still the one on which objects vary") {
+    const auto stage = compose({{"std", {}}, {"none", {}}, {"one_axis", {}}}, instrumentation::none);
+    std::vector<box> boxes;
+    for (std::uint32_t id = 0; id < 100; ++id) {
+        stage->insert(id);
+        const vec3f at{1e9F, 1e9F, static_cast<float>(id)};
+        boxes.push_back({at, at});
+    }
+    stage->update(boxes);
+    CHECK(std::ranges::count(stage->left_out(), "no projection list of the x axis") == 1);
+    CHECK(std::ranges::count(stage->left_out(), "no projection list of the z axis") == 0);
+}

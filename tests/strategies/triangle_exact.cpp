@@ -1,0 +1,231 @@
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../triangle_pairs.hpp"
+
+import aabb;
+import aabb.triangle.exact;
+
+// Known answers and invariances; tests/validation compares with CGAL.
+
+using aabb::triangle3d;
+using aabb::triangle3f;
+using aabb::vec3d;
+
+namespace {
+
+template <class Real>
+aabb::triangle3<Real> as_triangle(const triangle_pairs::triangle& t) {
+    aabb::triangle3<Real> made;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            made[i][k] = static_cast<Real>(t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+    return made;
+}
+
+template <class Real>
+bool meet(const triangle_pairs::pair& pair) {
+    return aabb::exact_triangle::intersects(as_triangle<Real>(pair[0]), as_triangle<Real>(pair[1]));
+}
+
+triangle_pairs::triangle rotated(const triangle_pairs::triangle& t) {
+    return {t[1], t[2], t[0]};
+}
+
+triangle_pairs::triangle reversed(const triangle_pairs::triangle& t) {
+    return {t[0], t[2], t[1]};
+}
+
+template <class Change>
+triangle_pairs::pair each_corner(triangle_pairs::pair pair, Change change) {
+    for (triangle_pairs::triangle& t : pair)
+        for (triangle_pairs::point& p : t) change(p);
+    return pair;
+}
+
+/// What may not change the answer: order of triangles and corners, mirrors, order of axes.
+template <class Real>
+bool invariant(const triangle_pairs::pair& pair) {
+    const bool answer = meet<Real>(pair);
+    const auto& [s, t] = pair;
+    bool same = meet<Real>({t, s}) == answer;
+    for (const auto& u : {s, rotated(s), rotated(rotated(s)), reversed(s)})
+        for (const auto& v : {t, rotated(t), rotated(rotated(t)), reversed(t)}) same &= meet<Real>({u, v}) == answer;
+    for (std::size_t k = 0; k < 3; ++k) {
+        same &= meet<Real>(each_corner(pair, [&](auto& p) { p[k] = -p[k]; })) == answer;
+        same &= meet<Real>(each_corner(pair, [&](auto& p) { std::swap(p[k], p[(k + 1) % 3]); })) == answer;
+    }
+    return same;
+}
+
+template <class Real>
+void check_invariance() {
+    triangle_pairs::generator g{2};
+    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement) {
+            CAPTURE(triangle_pairs::patterns[pattern], triangle_pairs::placements[placement]);
+            bool same = true;
+            for (int i = 0; i < 200; ++i)
+                same &=
+                    invariant<Real>(triangle_pairs::placed<Real>(g, triangle_pairs::patterned(g, pattern), placement));
+            CHECK(same);
+        }
+    bool same = true;
+    for (int i = 0; i < 1000; ++i) same &= invariant<Real>(triangle_pairs::spread<Real>(g));
+    CHECK(same);
+}
+
+triangle_pairs::point any_point(int reach) {
+    triangle_pairs::point p{};
+    for (double& x : p) x = *rc::gen::inRange(-reach, reach + 1);
+    return p;
+}
+
+triangle_pairs::triangle any_triangle(int reach) {
+    return {any_point(reach), any_point(reach), any_point(reach)};
+}
+
+/// Weights of a point of a triangle, in quarters.
+std::array<double, 3> any_weights() {
+    const int a = *rc::gen::inRange(0, 5);
+    const int b = *rc::gen::inRange(0, 5 - a);
+    return {double(a), double(b), double(4 - a - b)};
+}
+
+struct known {
+    std::string what;
+    triangle3d s;
+    triangle3d t;
+    bool meet;
+};
+
+const triangle3d face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+const std::vector<known> answers = {
+    {"one through the other", face, {{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}, true},
+    {"beside it", face, {{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}, false},
+    {"parallel", face, {{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}, false},
+    {"corner on the face", face, {{{1, 1, 0}, {1, 1, 1}, {2, 1, 1}}}, true},
+    {"corner on the plane only", face, {{{3, 3, 0}, {3, 3, 1}, {2, 2, 1}}}, false},
+    {"edge on edge in one point", face, {{{2, 2, -1}, {2, 2, 1}, {4, 4, 0}}}, true},
+    {"edges along one line", face, {{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}}, true},
+    {"edges along one line, apart", face, {{{5, 0, 0}, {6, 0, 0}, {-1, -1, 1}}}, false},
+    {"one corner shared", face, {{{4, 0, 0}, {5, 0, 1}, {5, 1, 1}}}, true},
+    {"the same", face, face, true},
+    {"coplanar, one inside", face, {{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, true},
+    {"coplanar, edges cross only", face, {{{-1, 1, 0}, {5, 1, 0}, {-1, 2, 0}}}, true},
+    {"coplanar, touching edges", face, {{{1, 3, 0}, {3, 1, 0}, {4, 4, 0}}}, true},
+    {"coplanar, apart with boxes that overlap", face, {{{2, 3, 0}, {3, 2, 0}, {4, 4, 0}}}, false},
+    {"point on the face", face, {{{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}}, true},
+    {"point off the face", face, {{{3, 3, 0}, {3, 3, 0}, {3, 3, 0}}}, false},
+    {"point above the face", face, {{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}, false},
+    {"segment through the face", face, {{{1, 1, -1}, {1, 1, 2}, {1, 1, 0}}}, true},
+    {"segment with one end on the face", face, {{{1, 1, 0}, {1, 1, 0}, {3, 3, 5}}}, true},
+    {"segment that stops short of the face", face, {{{1, 1, 1}, {1, 1, 2}, {1, 1, 3}}}, false},
+    {"segment past the face", face, {{{3, 3, -1}, {3, 3, 0}, {3, 3, 1}}}, false},
+    {"segment in the plane, crossing", face, {{{-1, 1, 0}, {5, 1, 0}, {2, 1, 0}}}, true},
+    {"segment in the plane, apart", face, {{{1, 4, 0}, {4, 1, 0}, {4, 1, 0}}}, false},
+    {"segments that cross", {{{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}}, {{{0, 2, 1}, {2, 0, 1}, {2, 0, 1}}}, true},
+    {"skew segments, crossing in every view",
+     {{{0, 0, 0}, {4, 4, 4}, {4, 4, 4}}},
+     {{{0, 3, 2}, {4, 1, 1}, {4, 1, 1}}},
+     false},
+    {"segments on one line, overlapping",
+     {{{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}},
+     {{{3, 3, 3}, {2, 2, 2}, {5, 5, 5}}},
+     true},
+    {"segments on one line, apart", {{{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}}, {{{3, 3, 3}, {4, 4, 4}, {5, 5, 5}}}, false},
+    {"parallel segments", {{{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}}, {{{1, 0, 0}, {3, 2, 2}, {3, 2, 2}}}, false},
+    {"a point twice", {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}, {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}, true},
+    {"a point inside a segment", {{{0, 0, 0}, {2, 2, 2}, {2, 2, 2}}}, {{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}, true},
+    {"a point beside a segment", {{{0, 0, 0}, {2, 2, 2}, {2, 2, 2}}}, {{{1, 1, 2}, {1, 1, 2}, {1, 1, 2}}}, false},
+    {"negative zero", {{{-0.0, -0.0, -0.0}, {4, 0, -0.0}, {0, 4, 0}}}, {{{1, 1, 0}, {1, 1, 1}, {2, 1, 1}}}, true},
+};
+
+triangle3d scaled(triangle3d t, double factor) {
+    for (vec3d& p : t.corner)
+        for (double& x : p.at) x *= factor;
+    return t;
+}
+
+}  // namespace
+
+TEST_CASE("known answers hold at every scale that floats and doubles reach") {
+    for (const known& k : answers) {
+        CAPTURE(k.what);
+        for (const int exponent : {-1074, -1030, -700, -340, -149, 0, 120, 335, 1000})
+            CHECK(aabb::exact_triangle::intersects(scaled(k.s, std::ldexp(1.0, exponent)),
+                                                   scaled(k.t, std::ldexp(1.0, exponent))) == k.meet);
+        for (const float factor : {0x1p-149F, 1.0F, 0x1p120F}) {
+            triangle3f s;
+            triangle3f t;
+            for (int i = 0; i < 3; ++i)
+                for (int axis = 0; axis < 3; ++axis) {
+                    s[i][axis] = static_cast<float>(k.s[i][axis]) * factor;
+                    t[i][axis] = static_cast<float>(k.t[i][axis]) * factor;
+                }
+            CHECK(aabb::exact_triangle::intersects(s, t) == k.meet);
+        }
+    }
+}
+
+TEST_CASE("one ulp decides") {
+    const double above = std::nextafter(1.0, 2.0);
+    const auto corner_at = [](double height) {
+        return triangle3d{{{0.25, 0.25, height}, {0.25, 0.5, 2}, {0.5, 0.25, 2}}};
+    };
+    const triangle3d level{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+    CHECK(aabb::exact_triangle::intersects(level, corner_at(1.0)));
+    CHECK_FALSE(aabb::exact_triangle::intersects(level, corner_at(above)));
+    // The whole range of doubles in one pair: the corner hangs over the face by the smallest of them.
+    const triangle3d huge{{{-1e300, -1e300, 0}, {1e300, -1e300, 0}, {0, 1e300, 0}}};
+    CHECK(aabb::exact_triangle::intersects(huge, corner_at(0)));
+    CHECK_FALSE(aabb::exact_triangle::intersects(huge, corner_at(0x1p-1074)));
+}
+
+TEST_CASE("triangles through one point meet") {
+    REQUIRE(rc::check("a common point with weights in quarters", [] {
+        const triangle_pairs::triangle s = any_triangle(100);
+        const std::array<double, 3> w = any_weights();
+        triangle_pairs::triangle t = any_triangle(100);
+        for (std::size_t k = 0; k < 3; ++k)  // p = (t0 + t1 + 2 t2) / 4
+            t[2][k] = (w[0] * s[0][k] + w[1] * s[1][k] + w[2] * s[2][k] - t[0][k] - t[1][k]) / 2;
+        RC_ASSERT(meet<float>({s, t}));
+        RC_ASSERT(meet<double>({s, t}));
+    }));
+}
+
+TEST_CASE("triangles on two sides of a plane are apart") {
+    REQUIRE(rc::check("with the least distance between them that integers allow", [] {
+        const triangle_pairs::point normal = any_point(5);
+        RC_PRE(normal[0] != 0 || normal[1] != 0 || normal[2] != 0);
+        const auto height = [&](const triangle_pairs::point& p) {
+            return normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
+        };
+        const triangle_pairs::triangle s = any_triangle(5);
+        triangle_pairs::triangle t = any_triangle(5);
+        const double top = std::max({height(s[0]), height(s[1]), height(s[2])});
+        const double bottom = std::min({height(t[0]), height(t[1]), height(t[2])});
+        const double steps = std::max(0.0, std::floor((top - bottom) / height(normal)) + 1);
+        for (triangle_pairs::point& p : t)
+            for (std::size_t k = 0; k < 3; ++k) p[k] += steps * normal[k];
+        RC_ASSERT(!meet<float>({s, t}));
+        RC_ASSERT(!meet<double>({s, t}));
+    }));
+}
+
+TEST_CASE("order, mirrors and axes do not change the answer on floats") {
+    check_invariance<float>();
+}
+
+TEST_CASE("order, mirrors and axes do not change the answer on doubles") {
+    check_invariance<double>();
+}

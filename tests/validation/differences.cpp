@@ -1,0 +1,127 @@
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <set>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "support.hpp"
+
+import aabb.validation;
+
+using namespace aabb;
+
+namespace {
+
+const std::vector<index_pair> none;
+const std::vector<index_pair> one = {{0, 0}};
+const triangle3f floor_triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+
+/// Of an engine that contradicts the exact answer on two triangles: the one class its difference is counted in.
+void require_class(difference_class expected, const triangle3f& s, const pose& pose_s, const triangle3f& t,
+                   const pose& pose_t) {
+    const mesh a = one_triangle(s);
+    const mesh b = one_triangle(t);
+    const bool truth = exactly_intersect(s, relative_pose(pose_s, pose_t, bounds_of(b))(t));
+    const differences all = truth ? compare_triangle_pairs(one, none, a, pose_s, b, pose_t)
+                                  : compare_triangle_pairs(none, one, a, pose_s, b, pose_t);
+    REQUIRE(all.total() == 1);
+    for (std::size_t c = 0; c < difference_class_names.size(); ++c) {
+        INFO("counted as " << difference_class_names[c]);
+        REQUIRE(all.missing[c] == (truth && c == static_cast<std::size_t>(expected)));
+        REQUIRE(all.invented[c] == (!truth && c == static_cast<std::size_t>(expected)));
+    }
+}
+
+void require_class(difference_class expected, const triangle3f& s, const triangle3f& t) {
+    require_class(expected, s, {}, t, {});
+    require_class(expected, t, {}, s, {});
+}
+
+triangle3f moved(triangle3f t, vec3f by) {
+    for (int i = 0; i < 3; ++i) t[i] = t[i] + by;
+    return t;
+}
+
+}  // namespace
+
+TEST_CASE("equal sets of pairs differ in nothing") {
+    const mesh m = tetrahedron();
+    const std::vector<index_pair> pairs = {{0, 1}, {0, 2}, {3, 3}};
+    REQUIRE(compare_triangle_pairs(pairs, pairs, m, {}, m, {}).total() == 0);
+    REQUIRE(compare_triangle_pairs(none, none, m, {}, m, {}).total() == 0);
+}
+
+TEST_CASE("every pair of one set alone is counted, wherever it stands") {
+    const mesh m = tetrahedron();
+    const std::vector<index_pair> exact = {{0, 0}, {0, 2}, {1, 1}, {2, 2}};
+    const std::vector<index_pair> found = {{0, 1}, {0, 2}, {2, 2}, {3, 1}, {3, 3}};
+    differences all = compare_triangle_pairs(exact, found, m, {}, m, {});
+    REQUIRE(std::accumulate(all.missing.begin(), all.missing.end(), std::size_t{0}) == 2);
+    REQUIRE(std::accumulate(all.invented.begin(), all.invented.end(), std::size_t{0}) == 3);
+    REQUIRE(all.total() == 5);
+    all += all;
+    REQUIRE(all.total() == 10);
+}
+
+TEST_CASE("class names are in the order of the classes, each once") {
+    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::degenerate)] == "degenerate");
+    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::pose_rounding)] == "pose_rounding");
+    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::coplanar)] == "coplanar");
+    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::touching)] == "touching");
+    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::near)] == "near");
+    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::other)] == "other");
+}
+
+TEST_CASE("degenerate: a triangle without area") {
+    require_class(difference_class::degenerate, floor_triangle, {{{1, 1, -1}, {1, 1, 1}, {1, 1, 0}}});
+    require_class(difference_class::degenerate, floor_triangle, {{{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}});
+}
+
+TEST_CASE("pose rounding: the answer changes when the moved vertices are rounded to float") {
+    // Lifted by less than float keeps beside 1: apart in the world, touching after rounding.
+    const triangle3f standing{{{1, 1, 1}, {1, 2, 3}, {2, 1, 3}}};
+    const triangle3f at_one = moved(floor_triangle, {0, 0, 1});
+    const pose lifted{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1e-12}};
+    require_class(difference_class::pose_rounding, at_one, {}, standing, lifted);
+}
+
+TEST_CASE("coplanar: in one plane, apart or not") {
+    require_class(difference_class::coplanar, floor_triangle, moved(floor_triangle, {1, 1, 0}));
+    require_class(difference_class::coplanar, floor_triangle, moved(floor_triangle, {4, 0, 0}));
+    require_class(difference_class::coplanar, floor_triangle, moved(floor_triangle, {9, 0, 0}));
+}
+
+TEST_CASE("touching: points in common, but nothing passes through") {
+    // A corner on the face, an edge in the face, two corners, a corner on an edge, two edges that cross.
+    require_class(difference_class::touching, floor_triangle, {{{1, 1, 0}, {1, 2, 3}, {2, 1, 3}}});
+    require_class(difference_class::touching, floor_triangle, {{{1, 1, 0}, {1, 2, 0}, {2, 1, 3}}});
+    require_class(difference_class::touching, floor_triangle, {{{4, 0, 0}, {5, 0, 1}, {5, 1, 1}}});
+    require_class(difference_class::touching, floor_triangle, {{{2, 0, 0}, {2, -1, 2}, {3, -1, 2}}});
+    require_class(difference_class::touching, floor_triangle, {{{2, 0, -1}, {2, 0, 1}, {2, -3, 0}}});
+}
+
+TEST_CASE("near: a hair apart, or a hair through") {
+    const triangle3f standing{{{1, 1, 0}, {1, 2, 3}, {2, 1, 3}}};
+    require_class(difference_class::near, floor_triangle, moved(standing, {0, 0, 1e-6F}));
+    require_class(difference_class::near, floor_triangle, moved(standing, {0, 0, -1e-6F}));
+    require_class(difference_class::other, floor_triangle, moved(standing, {0, 0, 1e-4F}));
+    require_class(difference_class::other, floor_triangle, moved(standing, {0, 0, -1e-4F}));
+    // A corner beside a corner, and a corner beside an edge; the planes are far from each other.
+    require_class(difference_class::near, floor_triangle, {{{4.000001F, 0, 0}, {5, 0, 1}, {5, 1, 1}}});
+    require_class(difference_class::other, floor_triangle, {{{4.0001F, 0, 0}, {5, 0, 1}, {5, 1, 1}}});
+    require_class(difference_class::near, floor_triangle, {{{2, -1e-6F, 0}, {2, -1, 2}, {3, -1, 2}}});
+}
+
+TEST_CASE("other: plainly through each other, or plainly apart") {
+    require_class(difference_class::other, floor_triangle, {{{1, 1, -2}, {1, 2, 3}, {2, 1, 3}}});
+    require_class(difference_class::other, floor_triangle, {{{1, 1, 2}, {1, 2, 3}, {2, 1, 3}}});
+    // Far from the origin and tiny.
+    require_class(difference_class::other, moved(floor_triangle, {4096, 4096, 4096}),
+                  moved({{{1, 1, -2}, {1, 2, 3}, {2, 1, 3}}}, {4096, 4096, 4096}));
+    require_class(difference_class::other, {{{0, 0, 0}, {4e-40F, 0, 0}, {0, 4e-40F, 0}}},
+                  {{{1e-40F, 1e-40F, -2e-40F}, {1e-40F, 2e-40F, 3e-40F}, {2e-40F, 1e-40F, 3e-40F}}});
+}

@@ -1,0 +1,89 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../compositions.hpp"
+#include "support.hpp"
+
+import aabb.registry;
+import aabb.validation;
+
+using namespace aabb;
+
+namespace {
+
+struct recording {
+    std::string name;
+    std::vector<std::vector<box>> frames;
+};
+
+std::vector<recording> recordings() {
+    std::mt19937 random(7);
+    recording general{"random boxes that move", {random_boxes(random, 250, 2)}};
+    recording lattice{"boxes that step on a lattice", {lattice_boxes(random, 250)}};
+    for (int frame = 1; frame < 6; ++frame) {
+        general.frames.push_back(general.frames.back());
+        lattice.frames.push_back(lattice.frames.back());
+        for (std::size_t i = 0; i < 250; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const float step = uniform(random, -0.2F, 0.2F);
+                const auto stride = static_cast<float>(static_cast<int>(random() % 3) - 1);
+                general.frames.back()[i].min[k] += step;
+                general.frames.back()[i].max[k] += step;
+                lattice.frames.back()[i].min[k] += stride;
+                lattice.frames.back()[i].max[k] += stride;
+            }
+    }
+    recording flat = general;
+    flat.name = "flat boxes in a plane";
+    for (std::vector<box>& frame : flat.frames)
+        for (box& b : frame) b.min[1] = b.max[1] = 3;
+    return {general, lattice, flat};
+}
+
+}  // namespace
+
+TEST_CASE("every composed global search equals brute force, frame by frame") {
+    REQUIRE(!all_global_compositions().empty());
+    for (const recording& r : recordings())
+        for (const global_composition& composition : all_global_compositions()) {
+            const auto stage = compose(composition, instrumentation::none);
+            const auto truth = make_box_engine("brute_force");
+            const auto size = static_cast<std::uint32_t>(r.frames[0].size());
+            for (std::uint32_t id = 0; id < size; ++id) {
+                stage->insert(id);
+                truth->insert(id);
+            }
+            for (std::size_t frame = 0; frame < r.frames.size(); ++frame) {
+                INFO(to_text(composition) << ", " << r.name << ", frame " << frame);
+                // Some leave and come back, others stay away.
+                for (std::uint32_t id = 0; id < size; id += 3)
+                    if (frame % 2 == 1) {
+                        stage->remove(id);
+                        truth->remove(id);
+                    } else if (frame > 0) {
+                        stage->insert(id);
+                        truth->insert(id);
+                    }
+                const std::vector<index_pair> pairs = pairs_of(*truth, r.frames[frame]);
+                REQUIRE(!pairs.empty());
+                REQUIRE(pairs_of(*stage, r.frames[frame]) == pairs);
+            }
+        }
+}
+
+TEST_CASE("every composed local detection with an exact triangle test equals CGAL") {
+    for (const local_composition& composition : all_local_compositions()) {
+        if (!is_exact(composition)) continue;
+        for (const mesh_case& c : mesh_cases()) {
+            INFO(to_text(composition) << ", " << c.name);
+            const auto stage = compose(composition, instrumentation::none);
+            REQUIRE(pairs_of(*stage, c.a, c.pose_a, c.b, c.pose_b) ==
+                    pairs_of(*make_mesh_engine("cgal"), c.a, c.pose_a, c.b, c.pose_b));
+        }
+    }
+}
