@@ -110,13 +110,18 @@ public:
         const std::uint32_t subsets = partition.subset_count();
         starts_.assign(std::size_t{subsets} + 1, 0);
         const auto& any = lists[static_cast<std::size_t>(std::countr_zero(axes))];
-        for (const projection& p : any)
-            partition.for_each_subset(boxes[p.id], [&](std::uint32_t s, axis_set) { ++starts_[s + 1]; });
+        std::size_t copies = 0;
+        for (const projection& p : any) {
+            partition.for_each_subset(boxes[p.id], [&](std::uint32_t s, axis_set) {
+                ++starts_[s + 1];
+                ++copies;
+            });
+            // While they are counted: to count them all could take hours.
+            if (copies > most_copies)
+                throw input_error(std::string(Partition::name) + " makes more than " + std::to_string(most_copies) +
+                                  " copies of " + std::to_string(any.size()) + " objects");
+        }
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
-        if (starts_[subsets] > most_copies)
-            throw input_error(std::string(Partition::name) + " makes " + std::to_string(starts_[subsets]) +
-                              " copies of " + std::to_string(any.size()) + " objects; at most " +
-                              std::to_string(most_copies) + " are possible");
         counters.add(work::subset_copies, starts_[subsets]);
         for (std::size_t k = 0; k < 3; ++k) {
             if (!(axes >> k & 1U)) {

@@ -59,9 +59,9 @@ void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t
     std::string line;
     for (std::size_t number = 1; std::getline(lines, line); ++number) {
         if (shown) shown->at(read += line.size() + 1);
-        const std::vector<std::string> words = split_numbers(std::string_view(line).substr(0, line.find('#')));
-        if (words.empty()) continue;
         try {
+            const std::vector<std::string> words = split_numbers(std::string_view(line).substr(0, line.find('#')));
+            if (words.empty()) continue;
             const bool answer = keep_doubles ? intersects<double>(test, words) : intersects<float>(test, words);
             print(answer ? "1\n" : "0\n");
         } catch (const aabb::input_error& error) {

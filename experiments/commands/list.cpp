@@ -58,7 +58,8 @@ nlohmann::ordered_json everything() {
                                  {"summary", s.summary},
                                  {"has_meshes", s.has_meshes},
                                  {"parameters", to_json(s.parameters)}});
-    all["shapes"] = shape_names();
+    for (const auto& s : shapes())
+        all["shapes"].push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
     for (const auto& m : metrics) all["metrics"].push_back({{"name", m.name}, {"summary", m.summary}});
     return all;
 }
@@ -111,7 +112,10 @@ void print_text() {
         all.parameters(s.parameters);
     }
     all.heading("shapes, in place of a mesh file");
-    for (const std::string& name : shape_names()) all.entry(name, "");
+    for (const auto& s : shapes()) {
+        all.entry(s.name, s.summary);
+        all.parameters(s.parameters);
+    }
     all.heading("metrics");
     for (const auto& m : metrics) all.entry(m.name, m.summary);
     all.print_all();

@@ -1,5 +1,6 @@
 #include "number.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -31,15 +32,24 @@ template float parse_number<float>(const std::string&);
 template double parse_number<double>(const std::string&);
 
 std::vector<std::string> split_numbers(std::string_view line) {
-    constexpr std::string_view separators = " ,\t\r";
+    constexpr std::string_view blanks = " \t\r";
     std::vector<std::string> words;
+    bool after_comma = true;  // as it is at the start: no comma may follow
     while (true) {
-        const std::size_t begin = line.find_first_not_of(separators);
-        if (begin == std::string_view::npos) return words;
-        line.remove_prefix(begin);
-        words.emplace_back(line.substr(0, line.find_first_of(separators)));
-        line.remove_prefix(words.back().size());
+        line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+        if (line.empty()) break;
+        if (line[0] != ',') {
+            words.emplace_back(line.substr(0, line.find_first_of(" \t\r,")));
+            line.remove_prefix(words.back().size());
+            after_comma = false;
+            continue;
+        }
+        if (after_comma) throw aabb::input_error("a number is missing before a comma");
+        after_comma = true;
+        line.remove_prefix(1);
     }
+    if (after_comma && !words.empty()) throw aabb::input_error("a number is missing after the last comma");
+    return words;
 }
 
 }  // namespace aabblab

@@ -11,7 +11,8 @@ namespace aabblab {
 template <class Real>
 [[nodiscard]] Real parse_number(const std::string& text);
 
-/// The words of a line of numbers: what stands between blanks and commas.
+/// The words of a line of numbers, with blanks or one comma between two of them.
+/// @throws aabb::input_error on a comma that has no word on either side.
 [[nodiscard]] std::vector<std::string> split_numbers(std::string_view line);
 
 }  // namespace aabblab

@@ -129,7 +129,11 @@ std::string parameters_text(const scene_choice& scene) {
 }
 
 std::string hash_of(const experiment& e) {
-    std::string all = e.text + (e.quick ? "\nquick" : "\nfull");
+    std::string all = e.name + " repeats=" + std::to_string(e.repeats);
+    for (const bool metric : {e.measured.time, e.measured.counts, e.measured.bytes, e.measured.error})
+        all += metric ? '+' : '-';
+    for (const std::string& engine : e.engines) all += "\n" + engine;
+    for (const composition& c : e.compositions) all += "\n" + to_text(c.global) + " + " + to_text(c.local);
     for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
     all += "\n" + e.mesh_digest;
     std::array<char, 17> digits{};

@@ -59,8 +59,8 @@ enum class experiment_size { full, quick };
 /// "objects=1000 frames=20 meshes=elephant.off+torus_knot seed=1": what a scene is apart from its kind.
 [[nodiscard]] std::string parameters_text(const scene_choice& scene);
 
-/// XXH3-64 of all that decides the results: the text, the size, the scenes and what is in their meshes. 16 hexadecimal
-/// digits.
+/// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
+/// meshes. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
 
 }  // namespace aabblab

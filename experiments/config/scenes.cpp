@@ -55,9 +55,8 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
 }
 
 bool is_there(const std::string& mesh) {
-    const std::vector<std::string> shapes = shape_names();
-    return std::ranges::find(shapes, mesh.substr(0, mesh.find(':'))) != shapes.end() || std::filesystem::exists(mesh) ||
-           std::filesystem::exists(data_folder() / mesh);
+    return std::ranges::find(shapes(), mesh.substr(0, mesh.find(':')), &shape_info::name) != shapes().end() ||
+           std::filesystem::exists(mesh) || std::filesystem::exists(data_folder() / mesh);
 }
 
 std::vector<std::string> names_of(const document& doc, const node& scene, const std::string& key) {

@@ -63,6 +63,7 @@ struct output_file::state {
 };
 
 output_file::output_file(std::filesystem::path file) : state_(std::make_unique<state>()) {
+    if (file.empty()) throw aabb::input_error("the file to write has no name");
     state_->target = file;
     std::error_code error;
     const auto status = std::filesystem::status(file, error);

@@ -24,11 +24,15 @@ namespace aabblab {
 
 namespace {
 
-using shapes = aabb::type_list<icosphere, torus_knot, noise_sphere>;
+using shape_types = aabb::type_list<icosphere, torus_knot, noise_sphere>;
 
 template <class... Shapes>
-std::vector<std::string> names_of(aabb::type_list<Shapes...>) {
-    return {std::string(Shapes::name)...};
+std::vector<shape_info> infos_of(aabb::type_list<Shapes...>) {
+    return {{std::string(Shapes::name), std::string(Shapes::summary), aabb::parameters_of<Shapes>()}...};
+}
+
+bool is_shape(std::string_view name) {
+    return std::ranges::find(shapes(), name, &shape_info::name) != shapes().end();
 }
 
 template <class... Shapes>
@@ -47,7 +51,8 @@ aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& c
 
 /// Names of what could have been meant: shapes and the meshes of the data folder.
 std::vector<std::string> known_names() {
-    std::vector<std::string> names = shape_names();
+    std::vector<std::string> names;
+    for (const shape_info& shape : shapes()) names.push_back(shape.name);
     const std::vector<std::string> endings = mesh_endings();
     std::vector<std::string> files;
     std::error_code error;
@@ -62,8 +67,9 @@ std::vector<std::string> known_names() {
 
 }  // namespace
 
-std::vector<std::string> shape_names() {
-    return names_of(shapes{});
+std::span<const shape_info> shapes() {
+    static const std::vector<shape_info> all = infos_of(shape_types{});
+    return all;
 }
 
 std::filesystem::path data_folder() {
@@ -75,9 +81,7 @@ loaded_mesh make_mesh(std::string_view name) {
     std::error_code ignored;
     for (const std::filesystem::path& file : {std::filesystem::path(name), data_folder() / name})
         if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
-    const std::vector<std::string> shapes_known = shape_names();
-    if (std::ranges::find(shapes_known, name.substr(0, name.find(':'))) != shapes_known.end())
-        return {make_shape(shapes{}, aabb::parse_strategy(name)), {}};
+    if (is_shape(name.substr(0, name.find(':')))) return {make_shape(shape_types{}, aabb::parse_strategy(name)), {}};
     if (std::filesystem::exists(name, ignored)) return read_mesh(name);  // says what it is instead of a file
     throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here or in " +
                             data_folder().string() + ", or a shape)");

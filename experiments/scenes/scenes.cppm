@@ -27,8 +27,13 @@ export namespace aabblab {
 /// @throws aabb::input_error on a name that is neither a file nor a shape, with the nearest one.
 [[nodiscard]] loaded_mesh make_mesh(std::string_view name);
 
-/// "icosphere", "torus_knot", "noise_sphere".
-[[nodiscard]] std::vector<std::string> shape_names();
+/// A generated mesh as `aabblab list` shows it.
+struct shape_info {
+    std::string name;  ///< "icosphere", "torus_knot", "noise_sphere"
+    std::string summary;
+    std::vector<aabb::parameter_info> parameters;
+};
+[[nodiscard]] std::span<const shape_info> shapes();
 
 /// Where `aabblab data` puts real meshes: AABBLAB_DATA in the environment, else experiments/data of the source tree.
 [[nodiscard]] std::filesystem::path data_folder();

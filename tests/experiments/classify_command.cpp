@@ -43,6 +43,8 @@ TEST_CASE("classify keeps doubles when asked to") {
 TEST_CASE("classify names the line and the number that is wrong, after the answers before it") {
     const auto [line, said] = GENERATE(table<std::string, std::string>({
         {"1 2 3", "standard input:3: expected 18 numbers, two triangles, not 3"},
+        {"1, 2,, 3", "standard input:3: a number is missing before a comma"},
+        {"1 2 3,", "standard input:3: a number is missing after the last comma"},
         {"1 2 x 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9", "standard input:3: number 3 of 18: 'x' is not a number"},
         {"1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 nan", "number 18 of 18: 'nan' is not finite"},
         {"-inf 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 9", "number 1 of 18: '-inf' is not finite"},

@@ -69,6 +69,7 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
     const std::string a = folder.write("a.off", tetrahedron);
     const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
         {{"--pose-a", "1,0,0"}, "--pose-a: a pose is 12 numbers"},
+        {{"--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0,"}, "--pose-a: a number is missing after the last comma"},
         {{"--pose-b", "1,0,0,x,0,1,0,0,0,0,1,0"}, "--pose-b: number 4 of 12: 'x' is not a number"},
         {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,nan"}, "number 12 of 12: 'nan' is not finite"},
         {{"--pose-b", "2,0,0,0,0,1,0,0,0,0,1,0"}, "--pose-b: the pose is not rigid"},

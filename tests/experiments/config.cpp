@@ -80,6 +80,24 @@ TEST_CASE("The option --quick takes what the config says under quick") {
     REQUIRE(parsed(text + "quick = { repeats = 2 }\n", experiment_size::quick).repeats == 2);
 }
 
+TEST_CASE("The hash is of what a config says, not of how it is written") {
+    const std::string text =
+        minimal + "frames = 7\n[compose]\nsort = [\"insertion\", \"std\"]\n[measure]\nrepeats = 9\n";
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string other = text;
+        other.replace(other.find(from), from.size(), to);
+        return aabblab::hash_of(parsed(other));
+    };
+    const std::string hash = aabblab::hash_of(parsed(text));
+    REQUIRE(aabblab::hash_of(parsed("# a comment\n" + text)) == hash);
+    REQUIRE(changed("frames = 7", "frames   =   7  # few") == hash);
+    REQUIRE(changed("frames = 7", "frames = 8") != hash);
+    REQUIRE(changed("\"insertion\", \"std\"", "\"std\", \"insertion\"") != hash);
+    REQUIRE(changed("repeats = 9", "repeats = 8") != hash);
+    REQUIRE(changed("repeats = 9", "repeats = 9\nmetrics = [\"time\"]") != hash);
+    REQUIRE(aabblab::hash_of(parsed("engines = [\"cgal\"]\n" + text)) != hash);
+}
+
 TEST_CASE("A mesh file that changes makes another hash") {
     const temporary_folder folder;
     const auto hash_with = [&](const std::string& vertex) {

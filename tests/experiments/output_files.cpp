@@ -51,6 +51,10 @@ TEST_CASE("an output file that is not committed has no name, so that an interrup
     }
 }
 
+TEST_CASE("an output file needs a name") {
+    REQUIRE_THROWS_WITH(aabblab::output_file(""), "the file to write has no name");
+}
+
 TEST_CASE("the permissions of an output file are those of any new file") {
     const temporary_folder folder;
     const mode_t before = umask(027);

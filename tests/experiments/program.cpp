@@ -65,7 +65,7 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
     const program_result text = run_program({"list"});
     REQUIRE(text.status == 0);
     const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
-    std::vector<std::string> names = all["shapes"];
+    std::vector<std::string> names;
     for (const char* kind : {"sort", "partition", "sweep", "tree", "triangle"}) {
         REQUIRE(all["strategies"][kind].size() >= 1);
         for (const auto& strategy : all["strategies"][kind]) {
@@ -77,11 +77,12 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
             }
         }
     }
-    for (const char* group : {"engines", "scenes", "metrics"})
+    for (const char* group : {"engines", "scenes", "shapes", "metrics"})
         for (const auto& entry : all[group]) names.push_back(entry["name"]);
     for (const char* expected :
          {"insertion", "brute_force", "brownian", "icosphere", "time", "counts", "bytes", "error"})
         REQUIRE(std::ranges::find(names, expected) != names.end());
+    names.emplace_back("triangles=5000");  // of a shape
     for (const std::string& name : names) {
         INFO(name);
         REQUIRE(text.out.find(" " + name) != std::string::npos);

@@ -66,7 +66,7 @@ public:
 
 TEST_CASE("shapes are closed, face outwards, have no triangle of zero area, and as many as wanted") {
     const temporary_folder folder;
-    for (const std::string& shape : aabblab::shape_names())
+    for (const auto& [shape, summary, parameters] : aabblab::shapes())
         for (const std::uint32_t wanted : {100U, 1000U, 1234U, 5000U, 20000U, 100000U}) {
             CAPTURE(shape, wanted);
             const aabb::mesh m = aabblab::make_mesh(shape + ":triangles=" + std::to_string(wanted)).mesh;
