@@ -1,6 +1,7 @@
 module;
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 export module aabb:scene;
@@ -26,6 +27,9 @@ public:
     /// The boxes of the next frame; false after the last.
     /// @throws input_error on a recording that is cut off or holds a box that is not valid.
     virtual bool next(std::vector<box>& boxes) = 0;
+    /// Which objects take part in the frame last played, by id, 0 or 1; empty where all do. The box of an absent object
+    /// is valid and overlaps no other, so that whoever ignores this finds the same pairs.
+    [[nodiscard]] virtual std::span<const std::uint8_t> present() const { return {}; }
 };
 
 /// Meshes, which mesh each object is, and the objects' poses frame by frame.

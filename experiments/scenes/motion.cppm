@@ -4,7 +4,7 @@ module;
 #include <cstdint>
 #include <vector>
 
-/// Points that drift in a cube.
+/// Points that drift, and roots that are the same everywhere.
 module aabblab.scenes:motion;
 
 import aabb;
@@ -23,19 +23,33 @@ namespace aabblab {
     }
 }
 
+/// The edge of the cube, square or segment (3, 2, 1 axes) of that volume, area or length.
+[[nodiscard]] inline double edge_of(double volume, int axes) {
+    return axes == 3 ? cube_root(volume) : axes == 2 ? std::sqrt(volume) : volume;
+}
+
+/// The way of a point in a frame; points have steps spread evenly over the range.
+struct step_range {
+    double least;
+    double most;
+};
+
 /// Points in the cube [0, width]^3, each on a straight line with a constant step a frame. The walls reflect; a
 /// hundredth of the points, drawn anew, change their direction every frame.
 class drifting_points {
 public:
-    /// Steps are spread evenly from 0 to `most_step`.
     drifting_points(std::uint32_t count, double width, double most_step, random_source& random)
-        : width_(width > 0 ? width : 0) {
+        : drifting_points(count, 3, width, {0, most_step}, random) {}
+
+    /// On the first `axes` axes only; the other coordinates stay 0.
+    drifting_points(std::uint32_t count, int axes, double width, step_range steps, random_source& random)
+        : axes_(axes), width_(width > 0 ? width : 0) {
         points_.reserve(count);
         for (std::uint32_t i = 0; i < count; ++i) {
-            point p{{random.unit() * width_, random.unit() * width_, random.unit() * width_},
-                    {},
-                    random.unit() * most_step};
-            p.direction = random.direction();
+            point p{};
+            for (int k = 0; k < axes; ++k) p.at[k] = random.unit() * width_;
+            p.step = steps.least + random.unit() * (steps.most - steps.least);
+            p.direction = random.direction(axes);
             points_.push_back(p);
         }
     }
@@ -47,9 +61,9 @@ public:
         const auto count = static_cast<std::uint32_t>(points_.size());
         // What is left of a hundredth is carried over, so that few objects turn as often as many do.
         for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100)
-            points_[random.below(count)].direction = random.direction();
+            points_[random.below(count)].direction = random.direction(axes_);
         for (point& p : points_)
-            for (int k = 0; k < 3; ++k) move(p, k);
+            for (int k = 0; k < axes_; ++k) move(p, k);
     }
 
     static constexpr double bytes_each = 56;
@@ -74,6 +88,7 @@ private:
         p.at[k] = along;
     }
 
+    int axes_;
     double width_;
     std::vector<point> points_;
     std::uint64_t to_turn_ = 0;

@@ -23,16 +23,20 @@ public:
         return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
     }
 
-    /// Evenly over the unit sphere.
-    [[nodiscard]] aabb::vec3d direction() {
+    /// Evenly over the unit sphere; over the unit circle of the first two axes; along the first.
+    [[nodiscard]] aabb::vec3d direction(int axes = 3) {
         while (true) {
-            const aabb::vec3d p = {within(), within(), within()};
+            aabb::vec3d p{};
+            for (int k = 0; k < axes; ++k) p[k] = within();
             const double square = aabb::dot(p, p);
             if (square > 1 || square < 1e-6) continue;
             const double length = std::sqrt(square);
             return {p[0] / length, p[1] / length, p[2] / length};
         }
     }
+
+    /// In the cube [0, width)^3.
+    [[nodiscard]] aabb::vec3d point(double width) { return {unit() * width, unit() * width, unit() * width}; }
 
     /// In [-1, 1).
     [[nodiscard]] double within() { return 2 * unit() - 1; }

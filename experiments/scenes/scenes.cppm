@@ -13,6 +13,7 @@ export module aabblab.scenes;
 import aabb;
 import aabblab.files;
 export import :scene_choice;
+export import :spacing;
 
 export namespace aabblab {
 

@@ -1,0 +1,92 @@
+module;
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+module aabblab.scenes:free_fall;
+
+import aabb;
+import :boxes;
+import :random;
+
+namespace aabblab {
+
+/// Unit cubes that are released at rest above a floor, fall along z and bounce, losing half their speed each time; they
+/// pass through one another. The world is ten edges high and wide enough for each to overlap four others once all lie
+/// on the floor.
+class free_fall final : public generated_boxes {
+public:
+    static constexpr std::string_view name = "free_fall";
+    static constexpr std::string_view summary =
+        "unit cubes released above a floor, which fall along z, bounce with losses and gather at the floor";
+
+    struct config {
+        std::uint32_t objects = 1000;
+        std::uint32_t frames = 60;
+        /// How far a box from the greatest height moves in the frame in which it meets the floor.
+        double displacement = 1;
+        length_unit unit = length_unit::extent;
+    };
+    static constexpr auto parameters = std::tuple_cat(
+        std::tuple{aabb::integer_parameter{"objects", &config::objects, 0U, 0x7fffffffU, "how many boxes"},
+                   aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"}},
+        displacement_parameters<config>("the longest way of a box in a frame"));
+
+    free_fall(const config& c, std::uint64_t seed)
+        : generated_boxes(name, {c.objects, c.frames}, seed, sizeof(falling_box)) {
+        const double width = std::sqrt(c.objects);
+        const double fastest = step_of(c, 1, {width + 1, width + 1, height + 1});
+        gravity_ = fastest * fastest / (2 * height);
+        boxes_.reserve(c.objects);
+        for (std::uint32_t i = 0; i < c.objects; ++i) {
+            falling_box b{};
+            for (int k = 0; k < 3; ++k) b.corner[k] = random_.unit() * (k == 2 ? height : width);
+            boxes_.push_back(b);
+        }
+    }
+
+private:
+    struct falling_box {
+        aabb::vec3d corner;
+        double speed;  // upwards, a frame
+    };
+    static constexpr double height = 10;
+    static constexpr double kept = 0.5;  // of the speed, by a bounce
+
+    void advance() override {
+        for (falling_box& b : boxes_) fall(b);
+    }
+
+    void fall(falling_box& b) const {
+        double& z = b.corner[2];
+        const double next = z + b.speed - gravity_ / 2;
+        if (next >= 0) {
+            z = next;
+            b.speed -= gravity_;
+            return;
+        }
+        const double impact = std::sqrt(b.speed * b.speed + 2 * gravity_ * z);
+        const double left = 1 - (b.speed + impact) / gravity_;  // of the frame
+        const double bounced = kept * impact;
+        if (2 * bounced < gravity_) {
+            // What would be back within a frame stays down.
+            z = b.speed = 0;
+        } else {
+            z = left * (bounced - gravity_ * left / 2);
+            b.speed = bounced - gravity_ * left;
+        }
+    }
+
+    void place(std::span<aabb::box> boxes) override {
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = cube_at(boxes_[i].corner, 1);
+    }
+
+    double gravity_;
+    std::vector<falling_box> boxes_;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,96 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+module aabblab.scenes:mixed_sizes;
+
+import aabb;
+import :boxes;
+import :motion;
+import :random;
+
+namespace aabblab {
+
+/// Cubes of very different sizes, evenly spread in the logarithm: as many between 1 and 10 as between 10 and 100.
+/// Object i is the i-th in size. The world lies around the origin, where floats are finest.
+class mixed_sizes final : public generated_boxes {
+public:
+    static constexpr std::string_view name = "mixed_sizes";
+    static constexpr std::string_view summary =
+        "cubes that drift in a cube, their edges evenly spread in the logarithm from 1 to a ratio";
+
+    struct config : motion_config {
+        /// Edge of the largest cube over that of the smallest.
+        double ratio = 100;
+    };
+    static constexpr auto parameters = std::tuple_cat(
+        motion_parameters, std::tuple{aabb::number_parameter{"ratio", &config::ratio, 1.0, 1e6,
+                                                             "edge of the largest cube over that of the smallest"}});
+
+    mixed_sizes(const config& c, std::uint64_t seed)
+        : generated_boxes(name, c, seed, drifting_points::bytes_each + sizeof(double)),
+          edges_(edges_of(c)),
+          width_(width_around(edges_)),
+          centres_(drifting(c)) {}
+
+private:
+    /// The edge of object i is ratio^(i / (objects - 1)), multiplied from roots of the ratio, one for each binary digit
+    /// of the exponent: std::pow differs between libraries.
+    static std::vector<double> edges_of(const config& c) {
+        constexpr int digits = 32;
+        std::array<double, digits + 1> roots{};
+        roots[digits] = c.ratio;
+        for (std::size_t k = digits; k > 0; --k) roots[k - 1] = std::sqrt(roots[k]);
+        std::vector<double> edges(c.objects, 1);
+        for (std::uint64_t i = 1; i < c.objects; ++i) {
+            const std::uint64_t exponent = (i << digits) / (c.objects - 1);
+            for (std::size_t k = 0; k <= digits; ++k)
+                if (exponent >> k & 1) edges[i] *= roots[k];
+        }
+        return edges;
+    }
+
+    /// The width in which each cube overlaps two others on average: cubes of edges a and b overlap where their centres
+    /// differ by (a + b) / 2 at most on every axis, and (a + b)^3 is 2 a^3 + 6 a^2 b on average.
+    static double width_around(const std::vector<double>& edges) {
+        if (edges.empty()) return 0;
+        const auto count = static_cast<double>(edges.size());
+        double first = 0, second = 0, third = 0;
+        for (const double e : edges) {
+            first += e / count;
+            second += e * e / count;
+            third += e * e * e / count;
+        }
+        return cube_root(count * (2 * third + 6 * second * first) / 2);
+    }
+
+    drifting_points drifting(const config& c) {
+        double sum = 0;
+        for (const double e : edges_) sum += e;
+        const double side = width_ + c.ratio;
+        const double step = step_of(c, sum / std::max(c.objects, 1U), {side, side, side});
+        return {c.objects, 3, width_, {step, step}, random_};
+    }
+
+    void advance() override { centres_.advance(random_); }
+
+    void place(std::span<aabb::box> boxes) override {
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const double shift = -(width_ + edges_[i]) / 2;
+            boxes[i] = cube_at(centres_[i] + aabb::vec3d{shift, shift, shift}, edges_[i]);
+        }
+    }
+
+    std::vector<double> edges_;
+    double width_;
+    drifting_points centres_;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,107 @@
+module;
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+module aabblab.scenes:pile;
+
+import aabb;
+import :boxes;
+import :motion;
+import :random;
+
+namespace aabblab {
+
+/// Unit cubes heaped on a floor: their lowest corners fill a pyramid half as high as it is wide. They only jiggle.
+class pile final : public generated_boxes {
+public:
+    static constexpr std::string_view name = "pile";
+    static constexpr std::string_view summary =
+        "unit cubes heaped on a floor, each overlapping many others and jiggling about its place";
+
+    struct config : scene_size {
+        /// How far a box moves in a frame.
+        double displacement = 0.02;
+        length_unit unit = length_unit::extent;
+        /// How many others a box overlaps, mean.
+        std::uint32_t neighbours = 20;
+    };
+    static constexpr auto parameters =
+        std::tuple_cat(size_parameters, displacement_parameters<config>("the way of every box in a frame"),
+                       std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
+                                                          "mean number of others that a box overlaps"}});
+
+    pile(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(jiggling_box)) {
+        const double height = height_for(c);
+        step_ = step_of(c, 1, {2 * height + 1, 2 * height + 1, height + 1});
+        boxes_.reserve(c.objects);
+        for (std::uint32_t i = 0; i < c.objects; ++i) {
+            const aabb::vec3d home = place_in_heap(height);
+            boxes_.push_back({home, home});
+        }
+    }
+
+private:
+    struct jiggling_box {
+        aabb::vec3d home;
+        aabb::vec3d corner;
+    };
+
+    static bool is_in_heap(const aabb::vec3d& p, double height) {
+        return p[2] >= 0 && std::abs(p[0]) <= height - p[2] && std::abs(p[1]) <= height - p[2];
+    }
+
+    aabb::vec3d place_in_heap(double height) {
+        while (true) {
+            const aabb::vec3d p = {random_.within() * height, random_.within() * height, random_.unit() * height};
+            if (is_in_heap(p, height)) return p;
+        }
+    }
+
+    /// A box overlaps those whose corners lie in the cube of volume 8 around its own, so far as this is in the heap,
+    /// whose volume is 4/3 height^3. The share that is in it follows from the height, so that they are found in turns.
+    double height_for(const config& c) {
+        if (c.objects < 2) return 1;
+        double height = 0;
+        double share = 1;
+        for (int turn = 0; turn < 10; ++turn) {
+            height = cube_root(6 * share * (c.objects - 1) / c.neighbours);
+            if (height < 1) return 1;
+            share = share_in_heap(height);
+        }
+        return height;
+    }
+
+    double share_in_heap(double height) {
+        constexpr int samples = 4096;
+        int inside = 0;
+        for (int i = 0; i < samples; ++i) {
+            const aabb::vec3d beside = {random_.within(), random_.within(), random_.within()};
+            inside += is_in_heap(place_in_heap(height) + beside, height);
+        }
+        return static_cast<double>(inside) / samples;
+    }
+
+    /// Of the two ways along a random line a box takes the one that leads nearer home, and it bounces off the floor.
+    void advance() override {
+        for (jiggling_box& b : boxes_) {
+            const aabb::vec3d direction = random_.direction();
+            const double step = aabb::dot(direction, b.corner - b.home) > 0 ? -step_ : step_;
+            for (int k = 0; k < 3; ++k) b.corner[k] += step * direction[k];
+            b.corner[2] = std::abs(b.corner[2]);
+        }
+    }
+
+    void place(std::span<aabb::box> boxes) override {
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = cube_at(boxes_[i].corner, 1);
+    }
+
+    double step_;
+    std::vector<jiggling_box> boxes_;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,36 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+module aabblab.scenes:teleport;
+
+import aabb;
+import :boxes;
+import :random;
+
+namespace aabblab {
+
+/// Unit cubes without temporal coherence: what was learnt in one frame is worth nothing in the next.
+class teleport final : public generated_boxes {
+public:
+    static constexpr std::string_view name = "teleport";
+    static constexpr std::string_view summary =
+        "unit cubes, each at a fresh random place in every frame: no coherence between frames";
+
+    using config = scene_size;
+    static constexpr auto parameters = size_parameters;
+
+    teleport(const config& c, std::uint64_t seed)
+        : generated_boxes(name, c, seed, 0), width_(width_for(c.objects, 3)) {}
+
+private:
+    void place(std::span<aabb::box> boxes) override {
+        for (aabb::box& b : boxes) b = cube_at(random_.point(width_), 1);
+    }
+
+    double width_;
+};
+
+}  // namespace aabblab

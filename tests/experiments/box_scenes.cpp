@@ -1,0 +1,328 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+import aabb;
+import aabb.validation;
+import aabblab.scenes;
+
+// What each kind of scene promises, measured on the boxes that it plays.
+namespace {
+
+using aabblab::scene_choice;
+
+struct frame {
+    std::vector<aabb::box> boxes;
+    std::vector<std::uint8_t> present;
+
+    [[nodiscard]] bool has(std::size_t i) const { return present.empty() || present[i] != 0; }
+};
+
+std::vector<frame> play(const std::string& kind, const std::vector<aabb::setting>& settings = {}) {
+    const auto scene = aabblab::make_box_scene({kind, settings, {}, 1});
+    std::vector<frame> frames;
+    for (std::vector<aabb::box> boxes; scene->next(boxes);)
+        frames.push_back({boxes, {scene->present().begin(), scene->present().end()}});
+    for (const frame& f : frames) REQUIRE_NOTHROW(aabb::require_valid(f.boxes));
+    return frames;
+}
+
+/// Every pair of overlapping boxes, of objects that are present or of all.
+std::vector<aabb::index_pair> pairs_of(const frame& f, bool only_present) {
+    const auto search = aabb::make_box_engine("brute_force");
+    for (std::uint32_t i = 0; i < f.boxes.size(); ++i)
+        if (!only_present || f.has(i)) search->insert(i);
+    std::vector<aabb::index_pair> pairs;
+    search->update(f.boxes);
+    search->search(pairs);
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+double neighbours_in(const frame& f) {
+    return 2 * static_cast<double>(pairs_of(f, false).size()) / static_cast<double>(f.boxes.size());
+}
+
+double edge(const aabb::box& b, int k = 0) {
+    return double{b.max[k]} - double{b.min[k]};
+}
+
+double way(const aabb::box& from, const aabb::box& to) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double moved = (double{to.min[k]} + double{to.max[k]} - double{from.min[k]} - double{from.max[k]}) / 2;
+        square += moved * moved;
+    }
+    return std::sqrt(square);
+}
+
+struct ways {
+    double mean = 0;
+    double longest = 0;
+};
+ways ways_in(const std::vector<frame>& frames) {
+    ways all;
+    std::size_t count = 0;
+    for (std::size_t f = 1; f < frames.size(); ++f)
+        for (std::size_t i = 0; i < frames[f].boxes.size(); ++i) {
+            if (!frames[f].has(i) || !frames[f - 1].has(i)) continue;
+            const double one = way(frames[f - 1].boxes[i], frames[f].boxes[i]);
+            all.mean += one;
+            all.longest = std::max(all.longest, one);
+            ++count;
+        }
+    all.mean /= static_cast<double>(count);
+    return all;
+}
+
+aabb::box world_of(const std::vector<frame>& frames) {
+    aabb::box world = aabb::empty_box();
+    for (const frame& f : frames)
+        for (std::size_t i = 0; i < f.boxes.size(); ++i)
+            if (f.has(i)) world = aabb::merged(world, f.boxes[i]);
+    return world;
+}
+
+bool is_flat(const std::vector<frame>& frames, int k) {
+    const aabb::box& some = frames[0].boxes[0];
+    return std::ranges::all_of(frames, [&](const frame& f) {
+        return std::ranges::all_of(
+            f.boxes, [&](const aabb::box& b) { return b.min[k] == some.min[k] && b.max[k] == some.max[k]; });
+    });
+}
+
+double measured_spacing(const std::vector<frame>& frames) {
+    const aabb::box world = world_of(frames);
+    double volume = 1;
+    int axes = 0;
+    for (int k = 0; k < 3; ++k)
+        if (!is_flat(frames, k)) {
+            volume *= edge(world, k);
+            ++axes;
+        }
+    return std::pow(volume / static_cast<double>(frames[0].boxes.size()), 1.0 / axes);
+}
+
+double mean_extent(const frame& f) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < f.boxes.size(); ++i)
+        if (f.has(i)) {
+            sum += edge(f.boxes[i]);
+            ++count;
+        }
+    return sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+TEST_CASE("boxes move by the displacement, in either unit") {
+    std::size_t moving = 0;
+    for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
+        if (std::ranges::find(info.parameters, "unit", &aabb::parameter_info::name) == info.parameters.end()) continue;
+        ++moving;
+        const auto displacement = std::ranges::find(info.parameters, "displacement", &aabb::parameter_info::name);
+        const bool is_longest = displacement->help.find("longest") != std::string::npos;
+        for (const std::string unit : {"extent", "spacing"}) {
+            CAPTURE(info.name, unit);
+            // The longest way is that of the highest box when it meets the floor.
+            const double fraction = is_longest ? 0.2 : 0.05;
+            const auto frames = play(
+                info.name,
+                {{"displacement", std::to_string(fraction)}, {"unit", unit}, {"frames", is_longest ? "150" : "3"}});
+            const double length = unit == "extent" ? mean_extent(frames[0]) : measured_spacing(frames);
+            const ways all = ways_in(frames);
+            CHECK(all.longest < 1.06 * fraction * length);
+            CHECK((is_longest ? all.longest : all.mean) > 0.95 * fraction * length);
+            for (const std::string objects : {"0", "1", "2"})
+                play(info.name, {{"unit", unit}, {"objects", objects}, {"frames", "3"}});
+        }
+    }
+    REQUIRE(moving == 8);
+}
+
+TEST_CASE("overlapping pairs grow with the number of boxes, not with its square") {
+    for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
+        if (info.has_meshes) continue;
+        CAPTURE(info.name);
+        const double few = neighbours_in(play(info.name, {{"objects", "1000"}, {"frames", "0"}})[0]);
+        const double many = neighbours_in(play(info.name, {{"objects", "8000"}, {"frames", "0"}})[0]);
+        CHECK(few > 0.3);
+        CHECK(few < 22);
+        CHECK(many > 0.8 * few);
+        CHECK(many < 1.3 * few);
+    }
+}
+
+TEST_CASE("free_fall comes down along z alone, bounces and gathers at the floor") {
+    const auto frames = play("free_fall");
+    std::size_t rising = 0;
+    for (std::size_t f = 1; f < frames.size(); ++f)
+        for (std::size_t i = 0; i < 1000; ++i) {
+            const aabb::box& before = frames[f - 1].boxes[i];
+            const aabb::box& now = frames[f].boxes[i];
+            REQUIRE(now.min[2] >= 0);
+            for (int k = 0; k < 2; ++k) REQUIRE(now.min[k] == before.min[k]);
+            if (f == 1 && before.min[2] > 1) REQUIRE(now.min[2] < before.min[2]);
+            rising += now.min[2] > before.min[2];
+        }
+    REQUIRE(rising > 1000);
+    REQUIRE(edge(world_of({frames[0]}), 2) > 10);
+    REQUIRE(edge(world_of({frames.back()}), 2) == 1);
+}
+
+TEST_CASE("free_fall loses height with each bounce, whatever the displacement") {
+    for (const std::string displacement : {"0.01", "3", "1e9"}) {
+        CAPTURE(displacement);
+        const aabb::box world = world_of(play("free_fall", {{"displacement", displacement}, {"frames", "200"}}));
+        REQUIRE(world.min[2] >= 0);
+        REQUIRE(world.max[2] <= 11);
+    }
+}
+
+TEST_CASE("pile boxes have the neighbours asked for and stay in their heap on the floor") {
+    const auto neighbours = GENERATE(10, 20, 50);
+    const auto objects = GENERATE("1000", "4000");
+    CAPTURE(neighbours, objects);
+    const auto frames = play("pile", {{"objects", objects}, {"neighbours", std::to_string(neighbours)}});
+    for (const frame* f : {&frames.front(), &frames.back()}) {
+        const double measured = neighbours_in(*f);
+        CHECK(measured > 0.75 * neighbours);
+        CHECK(measured < 1.25 * neighbours);
+    }
+    REQUIRE(world_of(frames).min[2] >= 0);
+    for (std::size_t i = 0; i < frames[0].boxes.size(); ++i)
+        REQUIRE(way(frames.front().boxes[i], frames.back().boxes[i]) < 0.15);
+    // Narrower above than below.
+    std::array<std::vector<float>, 2> across;
+    const float middle = world_of(frames).max[2] / 2;
+    for (const aabb::box& b : frames[0].boxes) across[b.min[2] > middle].push_back(std::abs(b.min[0]));
+    REQUIRE(across[0].size() > 2 * across[1].size());
+    REQUIRE(*std::ranges::max_element(across[0]) > 1.7 * *std::ranges::max_element(across[1]));
+}
+
+TEST_CASE("clustered boxes stay in tight clusters far apart") {
+    for (const std::size_t clusters : {1, 7, 64}) {
+        CAPTURE(clusters);
+        const auto frames = play("clustered", {{"clusters", std::to_string(clusters)}, {"displacement", "1"}});
+        std::vector<aabb::box> spans(clusters, aabb::empty_box());
+        for (const frame& f : frames)
+            for (std::size_t i = 0; i < 1000; ++i) spans[i % clusters] = aabb::merged(spans[i % clusters], f.boxes[i]);
+        double volume = 0;
+        for (std::size_t a = 0; a < clusters; ++a) {
+            volume += edge(spans[a], 0) * edge(spans[a], 1) * edge(spans[a], 2);
+            for (std::size_t b = 0; b < a; ++b) {
+                double gap = 0;
+                for (int k = 0; k < 3; ++k)
+                    gap = std::max({gap, double{spans[a].min[k]} - double{spans[b].max[k]},
+                                    double{spans[b].min[k]} - double{spans[a].max[k]}});
+                REQUIRE(gap > 3.9 * edge(spans[a]));
+            }
+        }
+        const aabb::box world = world_of(frames);
+        if (clusters > 1) REQUIRE(volume < 0.02 * edge(world, 0) * edge(world, 1) * edge(world, 2));
+    }
+}
+
+TEST_CASE("mixed_sizes reach their ratio, evenly in the logarithm") {
+    for (const std::string ratio : {"10", "100", "1e6"}) {
+        CAPTURE(ratio);
+        const auto frames = play("mixed_sizes", {{"ratio", ratio}});
+        std::vector<double> edges;
+        for (const aabb::box& b : frames[0].boxes) edges.push_back(edge(b));
+        const double most = std::stod(ratio);
+        // Far from the origin a float is off by up to an eighth.
+        const auto about = [](double value, double wanted) { return std::abs(value - wanted) <= 0.13 * wanted; };
+        for (std::size_t i = 0; i < 1000; ++i) {
+            REQUIRE(about(edges[i], std::pow(most, static_cast<double>(i) / 999)));
+            for (int k = 1; k < 3; ++k) REQUIRE(about(edge(frames[0].boxes[i], k), edges[i]));
+        }
+        REQUIRE(about(edges.front(), 1));
+        REQUIRE(std::abs(edges.back() - most) < 1e-5 * most);
+        const double neighbours = neighbours_in(frames[0]);
+        CHECK(neighbours > 1);
+        CHECK(neighbours < 4);
+    }
+}
+
+TEST_CASE("one_huge is object 0 and spans what it is told") {
+    for (const std::string span : {"0.2", "0.5", "1"}) {
+        CAPTURE(span);
+        const auto frames = play("one_huge", {{"span", span}});
+        const aabb::box world = world_of(frames);
+        for (int k = 0; k < 3; ++k)
+            REQUIRE(std::abs(edge(frames[0].boxes[0], k) / edge(world, k) - std::stod(span)) < 0.01);
+        for (std::size_t i = 1; i < 1000; ++i) REQUIRE(std::abs(edge(frames[0].boxes[i]) - 1) < 1e-5);
+        const auto touched =
+            std::ranges::count_if(pairs_of(frames[0], false), [](const aabb::index_pair& p) { return p.a == 0; });
+        const double volume = std::pow(std::stod(span), 3);
+        REQUIRE(static_cast<double>(touched) > 900 * volume);
+        REQUIRE((span == "1") == (way(frames.front().boxes[0], frames.back().boxes[0]) == 0));
+    }
+}
+
+TEST_CASE("flat and line move on two axes and on one; the others tell nothing") {
+    const auto flat = play("flat");
+    REQUIRE((!is_flat(flat, 0) && !is_flat(flat, 1) && is_flat(flat, 2)));
+    const auto line = play("line");
+    REQUIRE((!is_flat(line, 0) && is_flat(line, 1) && is_flat(line, 2)));
+    for (const auto* frames : {&flat, &line}) REQUIRE(std::abs(edge(frames->back().boxes[7], 2) - 1) < 1e-6);
+}
+
+TEST_CASE("teleport leaves nothing where it was") {
+    const auto frames = play("teleport");
+    const double side = edge(world_of(frames));
+    const ways all = ways_in(frames);
+    // Two random points of a cube are 0.66 of its side apart.
+    REQUIRE(std::abs(all.mean / (side - 1) - 0.66) < 0.02);
+    for (std::size_t f = 1; f < frames.size(); ++f)
+        for (std::size_t i = 0; i < 1000; ++i) REQUIRE(frames[f].boxes[i] != frames[f - 1].boxes[i]);
+}
+
+TEST_CASE("still never moves") {
+    const auto frames = play("still");
+    REQUIRE(frames.size() == 21);
+    for (const frame& f : frames) REQUIRE(f.boxes == frames[0].boxes);
+}
+
+TEST_CASE("population comes and goes as told, and the absent overlap nothing") {
+    for (const std::string turnover : {"0.02", "0.3", "1"}) {
+        CAPTURE(turnover);
+        const auto frames = play("population", {{"turnover", turnover}});
+        double changes = 0;
+        for (std::size_t f = 0; f < frames.size(); ++f) {
+            REQUIRE(frames[f].present.size() == 1000);
+            const auto present = std::ranges::count(frames[f].present, 1);
+            REQUIRE(present > 430);
+            REQUIRE(present < 570);
+            REQUIRE(pairs_of(frames[f], true) == pairs_of(frames[f], false));
+            REQUIRE(pairs_of(frames[f], true).size() > 100);
+            for (std::size_t i = 0; i < 1000; ++i) {
+                REQUIRE((edge(frames[f].boxes[i]) == 0) != frames[f].has(i));
+                if (f > 0) changes += frames[f].has(i) != frames[f - 1].has(i);
+            }
+        }
+        REQUIRE(std::abs(changes / (1000 * 20) / std::stod(turnover) - 1) < 0.1);
+    }
+}
+
+TEST_CASE("who is absent is said by population alone") {
+    for (const aabblab::scene_info& info : aabblab::scene_kinds())
+        if (!info.has_meshes)
+            REQUIRE(play(info.name, {{"frames", "1"}})[1].present.empty() == (info.name != "population"));
+}
+
+TEST_CASE("mean spacing is the edge of what each object has for itself") {
+    REQUIRE(aabblab::mean_spacing({4, 8, 2}, 8) == 2);
+    REQUIRE(aabblab::mean_spacing({4, 0, 9}, 4) == 3);
+    REQUIRE(aabblab::mean_spacing({0, 5, 0}, 10) == 0.5);
+    REQUIRE(aabblab::mean_spacing({0, 0, 0}, 10) == 0);
+    REQUIRE(aabblab::mean_spacing({1, 1, 1}, 0) == 0);
+}
