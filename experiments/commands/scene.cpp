@@ -5,10 +5,13 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -16,7 +19,9 @@
 #include "output.hpp"
 
 import aabb;
+import aabblab.config;
 import aabblab.files;
+import aabblab.picture;
 import aabblab.progress;
 import aabblab.scenes;
 
@@ -29,7 +34,8 @@ struct scene_request {
     std::map<std::string, std::optional<std::string>> settings;  ///< by the parameter's name
     std::vector<std::string> meshes;
     std::string seed = "1";
-    std::string out;
+    std::optional<std::string> out;
+    std::optional<std::string> picture;
 };
 
 /// A scene of meshes as global search sees it: the world boxes of its objects.
@@ -56,6 +62,27 @@ private:
     std::vector<aabb::pose> poses_;
 };
 
+/// A scene that is looked at while it is played.
+class surveyed_scene final : public aabb::box_scene {
+public:
+    explicit surveyed_scene(std::unique_ptr<aabb::box_scene> scene)
+        : scene_(std::move(scene)), seen_(scene_->objects(), scene_->frames()) {}
+
+    [[nodiscard]] std::size_t objects() const override { return scene_->objects(); }
+    [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
+    bool next(std::vector<aabb::box>& boxes) override {
+        if (!scene_->next(boxes)) return false;
+        seen_.see(boxes, scene_->present());
+        return true;
+    }
+    [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
+    [[nodiscard]] const survey& seen() const { return seen_; }
+
+private:
+    std::unique_ptr<aabb::box_scene> scene_;
+    survey seen_;
+};
+
 std::uint64_t parse_seed(const std::string& text) {
     std::uint64_t seed = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -64,25 +91,67 @@ std::uint64_t parse_seed(const std::string& text) {
     return seed;
 }
 
-std::unique_ptr<aabb::box_scene> make_scene(const scene_choice& choice) {
+const scene_info& kind_named(const std::string& name) {
     const auto kinds = scene_kinds();
-    const auto kind = std::ranges::find(kinds, choice.kind, &scene_info::name);
-    if (kind == kinds.end()) throw aabb::input_error(aabb::unknown_name("scene", choice.kind, scene_names()));
-    if (kind->has_meshes) return std::make_unique<world_boxes>(make_mesh_scene(choice));
+    const auto kind = std::ranges::find(kinds, name, &scene_info::name);
+    if (kind == kinds.end()) throw aabb::input_error(aabb::unknown_name("scene", name, scene_names()));
+    return *kind;
+}
+
+std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice) {
+    if (kind.has_meshes) return std::make_unique<world_boxes>(make_mesh_scene(choice));
     return make_box_scene(choice);
 }
 
+/// Every parameter with its value, the defaults too.
+std::string all_parameters(const scene_info& kind, const scene_choice& choice) {
+    scene_choice whole = choice;
+    whole.settings.clear();
+    for (const aabb::parameter_info& p : kind.parameters) {
+        const auto chosen = std::ranges::find(choice.settings, p.name, &aabb::setting::name);
+        whole.settings.push_back({p.name, chosen == choice.settings.end() ? p.fallback : chosen->value});
+    }
+    return parameters_text(whole);
+}
+
+void require_outputs(const scene_request& request) {
+    if (!request.out && !request.picture)
+        throw aabb::input_error("scene: expected --out or --picture, the file to write");
+    if (!request.out || !request.picture) return;
+    std::error_code ignored;  // a file that is not there is no other's
+    if (std::filesystem::equivalent(*request.out, *request.picture, ignored) ||
+        std::filesystem::weakly_canonical(*request.out) == std::filesystem::weakly_canonical(*request.picture))
+        throw aabb::input_error("--out and --picture are the same file, " + *request.out);
+}
+
 void write_scene(const scene_request& request) {
+    require_outputs(request);
     scene_choice choice{request.kind, {}, request.meshes, parse_seed(request.seed)};
     for (const auto& [name, value] : request.settings)
         if (value) choice.settings.push_back({name, *value});
-    const std::unique_ptr<aabb::box_scene> scene = make_scene(choice);
+    const scene_info& kind = kind_named(request.kind);
+    surveyed_scene scene(make_scene(kind, choice));
+    // Opened before anything is played, so that a picture that cannot be written costs no time and no recording.
+    std::optional<output_file> picture;
+    if (request.picture) picture.emplace(*request.picture);
     {
-        progress shown("frames written", scene->frames());
-        write_recording(*scene, request.kind, fmt::format("aabblab, seed {}", choice.seed), request.out,
-                        [&](std::size_t done) { shown.at(done); });
+        progress shown("frames played", scene.frames());
+        if (request.out) {
+            write_recording(scene, request.kind, fmt::format("aabblab, seed {}", choice.seed), *request.out,
+                            [&](std::size_t done) { shown.at(done); });
+        } else {
+            std::vector<aabb::box> boxes;
+            for (std::size_t done = 1; scene.next(boxes); ++done) shown.at(done);
+        }
     }
-    print(fmt::format("wrote {}: {} objects, {} frames\n", request.out, scene->objects(), scene->frames()));
+    const std::string size = fmt::format("{} objects, {} frames", scene.objects(), scene.frames());
+    if (request.out) print(fmt::format("wrote {}: {}\n", *request.out, size));
+    if (picture) {
+        picture->write(picture_of(scene.seen(), {kind.name, kind.summary, all_parameters(kind, choice)}));
+        picture->commit();
+        print(fmt::format("wrote {}: {}\n", *request.picture, size));
+    }
+    print(displacement_text(scene.seen()) + "\n");
 }
 
 /// `--cell_size,--cell-size` of the parameter cell_size; `--n` is short for the number of objects.
@@ -110,7 +179,7 @@ void add_parameters(CLI::App& command, scene_request& request) {
 }  // namespace
 
 void add_scene(CLI::App& program, int&) {
-    auto* command = program.add_subcommand("scene", "Write a generated scene as a recording of boxes");
+    auto* command = program.add_subcommand("scene", "Write a generated scene as a recording of boxes, or as a picture");
     auto request = std::make_shared<scene_request>();
     std::string names;
     for (const std::string& name : scene_names()) names += (names.empty() ? "" : ", ") + name;
@@ -121,7 +190,9 @@ void add_scene(CLI::App& program, int&) {
         ->type_name("MESH");
     command->add_option("--seed", request->seed, "Whole number: the same seed gives the same scene (default 1)")
         ->type_name("S");
-    command->add_option("--out", request->out, "The recording to write (.aabbs)")->required()->type_name("FILE");
+    command->add_option("--out", request->out, "The recording to write (.aabbs)")->type_name("FILE");
+    command->add_option("--picture", request->picture, "The picture to write (.svg): the first and the last frame")
+        ->type_name("FILE");
     command->callback([request] { write_scene(*request); });
 }
 

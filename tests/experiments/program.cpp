@@ -33,7 +33,7 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         {{"pairs", "x", "--out"}, "pairs: --out takes one value"},
         {{"pairs", "x", "--sort", "std", "--sort", "std"}, "pairs: --sort takes one value"},
         {{"collide", "icosphere"}, "collide: B is required"},
-        {{"scene", "brownian"}, "scene: --out is required"},
+        {{"scene", "brownian"}, "scene: expected --out or --picture"},
         {{"list", "--jsn"}, "did you mean '--json'?"},
     }));
     const program_result result = run_program(arguments);

@@ -1,0 +1,174 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+module aabblab.picture;
+
+import aabb;
+import aabb.validation;
+import :panel;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::size_t most_boxes = 4000;
+constexpr std::size_t line_length = 135;  // characters that fit beside one another
+constexpr double line_height = 19;
+constexpr double huge_extents = 5;         // above so many mean extents a box is huge
+constexpr std::size_t most_outlined = 10;  // where more are huge, none stands out
+
+// Blue and vermilion of Okabe and Ito (2008), which people with any colour vision tell apart.
+constexpr std::string_view style =
+    "<style>text{fill:#222}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
+    ".world{fill:none;stroke:#999}.tick{stroke:#999}"
+    ".apart{fill:#0072b2;stroke:#0072b2;stroke-width:.6}.overlapping{fill:#d55e00;stroke:#d55e00;stroke-width:.6}"
+    ".huge{fill:none;stroke:#000;stroke-width:2.5;stroke-dasharray:8 4}"
+    ".way{fill:none;stroke:#000;stroke-width:1.2;stroke-opacity:.7}</style>\n";
+
+double extent_of(const aabb::box& b) {
+    const int k = aabb::longest_axis(b);
+    return double{b.max[k]} - double{b.min[k]};
+}
+
+/// Sorts the objects by size and says how many are huge.
+std::size_t sort_by_size(std::vector<std::size_t>& objects, const std::vector<aabb::box>& boxes) {
+    double sum = 0;
+    for (const std::size_t i : objects) sum += extent_of(boxes[i]);
+    const double huge = huge_extents * sum / static_cast<double>(objects.size());
+    std::ranges::sort(objects, [&](std::size_t a, std::size_t b) {
+        return std::tuple(-extent_of(boxes[a]), a) < std::tuple(-extent_of(boxes[b]), b);
+    });
+    return static_cast<std::size_t>(
+        std::ranges::count_if(objects, [&](std::size_t i) { return extent_of(boxes[i]) > huge; }));
+}
+
+/// Of more than can be shown, keeps the largest of the huge ones and some of the others, evenly spread over the sizes.
+void sample(std::vector<std::size_t>& objects, std::size_t huge) {
+    if (objects.size() <= most_boxes) return;
+    const std::size_t kept = std::min(huge, most_boxes / 2);
+    for (std::size_t i = kept; i < most_boxes; ++i)
+        objects[i] = objects[kept + (i - kept) * (objects.size() - kept) / (most_boxes - kept)];
+    objects.resize(most_boxes);
+}
+
+frame_drawing drawing_of(const survey::frame& frame) {
+    frame_drawing drawing;
+    const std::unique_ptr<aabb::global_stage> search = aabb::make_box_engine("cgal");
+    for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+        if (!frame.has(i)) continue;
+        drawing.drawn.push_back(i);
+        search->insert(static_cast<std::uint32_t>(i));
+    }
+    drawing.present = drawing.drawn.size();
+    std::vector<aabb::index_pair> pairs;
+    search->update(frame.boxes);
+    search->search(pairs);
+    drawing.pairs = pairs.size();
+    drawing.overlapping.resize(frame.boxes.size());
+    for (const auto [a, b] : pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;
+    drawing.huge = sort_by_size(drawing.drawn, frame.boxes);
+    sample(drawing.drawn, drawing.huge);
+    if (drawing.huge > most_outlined) drawing.huge = 0;
+    return drawing;
+}
+
+std::string title_of(std::string_view which, std::size_t number, const frame_drawing& drawing) {
+    return fmt::format("{} frame ({}): boxes {}, overlapping pairs {}", which, number, drawing.present, drawing.pairs);
+}
+
+std::string escaped(std::string_view text) {
+    std::string safe;
+    for (const char c : text) {
+        if (c == '<')
+            safe += "&lt;";
+        else if (c == '&')
+            safe += "&amp;";
+        else
+            safe += c;
+    }
+    return safe;
+}
+
+/// Broken between words; a word longer than a line stays whole.
+void add_wrapped(std::vector<std::string>& lines, std::string_view text) {
+    while (text.size() > line_length) {
+        std::size_t end = text.rfind(' ', line_length);
+        if (end == std::string_view::npos) end = text.find(' ');
+        if (end == std::string_view::npos) break;
+        lines.emplace_back(text.substr(0, end));
+        text.remove_prefix(end + 1);
+    }
+    lines.emplace_back(text);
+}
+
+std::vector<std::string> caption_lines(const survey& seen, const picture_caption& caption, const projection& view,
+                                       bool is_sampled) {
+    std::vector<std::string> lines;
+    add_wrapped(lines, caption.summary);
+    add_wrapped(lines, caption.parameters);
+    lines.push_back(
+        fmt::format("{} objects, {} frames; {}", seen.first().boxes.size(), seen.frames(), displacement_text(seen)));
+    constexpr std::string_view names = "xyz";
+    lines.push_back(fmt::format(
+        "seen along {}: {} across, {} upwards{}{}", names[static_cast<std::size_t>(3 - view.across() - view.up())],
+        names[static_cast<std::size_t>(view.across())], names[static_cast<std::size_t>(view.up())],
+        view.has_equal_scales() ? "" : ", each with a scale of its own",
+        is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
+    return lines;
+}
+
+std::string legend(double y, std::size_t paths, bool has_huge) {
+    std::string svg = fmt::format(
+        "<g transform=\"translate({} {:.1f})\"><rect class=\"apart\" y=\"-11\" width=\"13\" height=\"13\"/>"
+        "<text x=\"20\">overlaps no other</text>"
+        "<rect class=\"overlapping\" x=\"170\" y=\"-11\" width=\"13\" height=\"13\"/>"
+        "<text x=\"190\">overlaps another</text>"
+        "<path class=\"way\" d=\"M340 -4h30\"/><text x=\"378\">paths of {} objects through all frames</text>",
+        left_margin, y, paths);
+    if (has_huge)
+        svg += fmt::format("<path class=\"huge\" d=\"M680 -4h34\"/><text x=\"722\">longer than {} mean extents</text>",
+                           huge_extents);
+    return svg + "</g>\n";
+}
+
+}  // namespace
+
+std::string picture_of(const survey& seen, const picture_caption& caption) {
+    const projection view(seen.world(), seen.sides());
+    const frame_drawing first = drawing_of(seen.first());
+    const frame_drawing last = drawing_of(seen.last());
+    const bool is_sampled = std::max(first.present, last.present) > most_boxes;
+
+    std::string body = fmt::format("<text class=\"name\" x=\"{}\" y=\"32\">{}</text>\n", left_margin, caption.name);
+    double y = 58;
+    for (const std::string& line : caption_lines(seen, caption, view, is_sampled)) {
+        body += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", left_margin, y, escaped(line));
+        y += line_height;
+    }
+    const auto paths = seen.paths().first(clear_paths(view, seen.paths()));
+    body += legend(y + 6, paths.size(), first.huge + last.huge > 0);
+    const pixel left = {left_margin, y + 46};
+    const double panel_height = view.height() + bottom_margin;
+    const pixel right = view.is_wide() ? pixel{left.x, left.y + panel_height + gap}
+                                       : pixel{left.x + panel_side + left_margin + gap, left.y};
+    body += panel_of(view, left, title_of("first", 0, first), seen.first(), first, {});
+    body += panel_of(view, right, title_of("last", seen.frames() - 1, last), seen.last(), last, paths);
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{2}{3}</svg>\n",
+        2 * (panel_side + left_margin + gap), right.y + panel_height + 16, style, body);
+}
+
+}  // namespace aabblab

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.picture;
+
+namespace {
+
+std::size_t occurrences(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+bool holds(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// A unit cube with its lowest corner there.
+aabb::box cube(float x, float y, float z) {
+    return {{x, y, z}, {x + 1, y + 1, z + 1}};
+}
+
+}  // namespace
+
+TEST_CASE("a survey measures displacement over the mean extent and the mean spacing") {
+    aabblab::survey seen(4, 3);
+    const std::vector<std::uint8_t> all(4, 1);
+    seen.see(std::vector<aabb::box>{cube(0, 0, 0), cube(7, 0, 0), cube(0, 7, 0), cube(7, 7, 0)}, all);
+    REQUIRE_FALSE(seen.displacement_over_extent());
+    // The third takes no part, and neither does its way.
+    seen.see(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(99, 99, 99), cube(7, 6, 0)},
+             std::vector<std::uint8_t>{1, 1, 0, 1});
+    REQUIRE(seen.frames() == 2);
+    REQUIRE(*seen.displacement_over_extent() == 1);
+    REQUIRE(seen.sides() == aabb::vec3d{8, 8, 0});
+    REQUIRE(*seen.displacement_over_spacing() == 1 / 4.0);
+    REQUIRE(aabblab::displacement_text(seen) ==
+            "mean displacement a frame: 1 of the mean extent, 0.25 of the mean spacing");
+    REQUIRE(seen.paths().size() == 4);
+    REQUIRE_FALSE(seen.paths()[2][1]);
+    // Back again, which is no way either.
+    seen.see(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(0, 0, 0), cube(7, 6, 0)}, all);
+    REQUIRE(*seen.displacement_over_extent() == 0.5);
+    REQUIRE(seen.paths()[1][1].value() == aabb::vec3d{6.5, 0.5, 0.5});
+}
+
+TEST_CASE("a picture shows each box in the colour of its overlaps") {
+    aabblab::survey seen(5, 2);
+    const std::vector<aabb::box> boxes = {cube(0, 0, 0), cube(0.5F, 0, 0), cube(5, 0, 5), cube(9, 0, 9), cube(9, 0, 9)};
+    seen.see(boxes, std::vector<std::uint8_t>{1, 1, 1, 1, 0});
+    seen.see(boxes, std::vector<std::uint8_t>{1, 0, 1, 1, 0});
+    const std::string svg = aabblab::picture_of(seen, {"a name", "a < b & c", "objects=5"});
+    REQUIRE(svg.starts_with("<svg xmlns="));
+    REQUIRE(svg.ends_with("</svg>\n"));
+    for (const std::string part :
+         {">a name<", ">a &lt; b &amp; c<", ">objects=5<", "5 objects, 2 frames",
+          "first frame (0): boxes 4, overlapping pairs 1", "last frame (1): boxes 3, overlapping pairs 0",
+          "seen along y: x across, z upwards<"})
+        REQUIRE(holds(svg, part));
+    const std::size_t last = svg.find("last frame");
+    REQUIRE(occurrences(svg.substr(0, last), "class=\"overlapping\" x") == 2 + 1);  // one in the legend
+    REQUIRE(occurrences(svg.substr(last), "class=\"overlapping\" x") == 0);
+    REQUIRE(occurrences(svg.substr(last), "class=\"apart\" x") == 3);
+    // One for each object that was ever there, and none in the first frame.
+    REQUIRE(occurrences(svg.substr(last), "class=\"way\"") == 4);
+    REQUIRE(holds(svg, "paths of 5 objects"));
+    REQUIRE_FALSE(holds(svg, "a sample"));
+}
+
+TEST_CASE("of many boxes a picture draws a sample with the largest in it") {
+    aabblab::survey seen(9003, 1);
+    std::vector<aabb::box> boxes;
+    for (int i = 0; i < 9000; ++i) boxes.push_back(cube(static_cast<float>(i % 100) * 3, 0, static_cast<float>(i)));
+    for (int i = 0; i < 3; ++i) boxes.push_back({{-10, 0, 0}, {70, 60, 60}});
+    seen.see(boxes, {});
+    const std::string svg = aabblab::picture_of(seen, {"many", "", ""});
+    REQUIRE(holds(svg, "a sample of 4000 boxes is drawn, huge ones first"));
+    const std::string first = svg.substr(0, svg.find("last frame"));
+    REQUIRE(occurrences(first, "<rect class=\"apart\" x") + occurrences(first, "<rect class=\"overlapping\" x") ==
+            4000 + 1);
+    // Each of the three, outlined where it is.
+    const std::string outline = first.substr(first.find("<rect class=\"huge\""));
+    REQUIRE(occurrences(first, outline.substr(0, outline.find('\n'))) == 3);
+    REQUIRE(holds(first, "longer than 5 mean extents"));
+    REQUIRE(holds(first, "boxes 9003"));
+}
+
+TEST_CASE("a picture shows the axes that tell most and gives each its own scale where one is much longer") {
+    const auto [far, said] = GENERATE(table<aabb::box, std::string>({
+        {cube(9, 8, 7), "seen along y: x across, z upwards<"},
+        {cube(8, 9, 1), "seen along z: x across, y upwards<"},
+        {cube(9, 8, 2), "seen along y: x across, z upwards<"},
+        {cube(50, 0, 0), "seen along z: x across, y upwards, each with a scale of its own<"},
+        {cube(0, 0, 50), "seen along y: x across, z upwards, each with a scale of its own<"},
+    }));
+    aabblab::survey seen(2, 1);
+    seen.see(std::vector<aabb::box>{cube(0, 0, 0), far}, {});
+    const std::string svg = aabblab::picture_of(seen, {"two", "", ""});
+    CAPTURE(svg);
+    REQUIRE(holds(svg, said));
+}
+
+TEST_CASE("a picture of what lies far from the origin has an end") {
+    aabblab::survey seen(1, 1);
+    seen.see(std::vector<aabb::box>{{{1e30F, 0, 1e30F}, {1e30F, 0, 1e30F}}}, {});
+    REQUIRE(occurrences(aabblab::picture_of(seen, {"far", "", ""}), "class=\"tick\"") < 100);
+}
+
+TEST_CASE("scene draws every kind, without a recording where none is wanted") {
+    const temporary_folder folder;
+    const std::string kind = GENERATE("brownian", "clustered", "flat", "free_fall", "lattice", "line", "mixed_sizes",
+                                      "one_huge", "pile", "population", "still", "teleport", "mesh_swarm");
+    const std::string objects = GENERATE("0", "1", "30");
+    CAPTURE(kind, objects);
+    const std::string file = folder / "scene.svg";
+    const program_result result =
+        run_program({"scene", kind, "--n", objects, "--frames", "2", "--seed", "9", "--picture", file});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    REQUIRE(folder.files() == 1);
+    REQUIRE(holds(result.out, "wrote " + file + ": " + objects + " objects, 3 frames\n"));
+    REQUIRE(holds(result.out, "mean displacement a frame: "));
+    const std::string svg = bytes_of_file(file);
+    for (const std::string& part : {">" + kind + "<", "objects=" + objects + " frames=2", std::string(" seed=9<")})
+        REQUIRE(holds(svg, part));
+    REQUIRE_FALSE(holds(svg, "nan"));
+    REQUIRE_FALSE(holds(svg, "inf<"));
+    REQUIRE(holds(svg, "first frame (0): boxes " + (kind == "population" && objects == "30" ? "15" : objects) + ","));
+}
+
+TEST_CASE("scene writes the same recording with a picture as without") {
+    const temporary_folder folder;
+    const std::string alone = folder / "alone.aabbs";
+    const std::string both = folder / "both.aabbs";
+    REQUIRE(run_program({"scene", "flat", "--n", "40", "--out", alone}).status == 0);
+    const program_result result =
+        run_program({"scene", "flat", "--n", "40", "--out", both, "--picture", folder / "both.svg"});
+    REQUIRE(result.status == 0);
+    REQUIRE(holds(result.out, "both.aabbs: 40 objects, 21 frames"));
+    REQUIRE(holds(result.out, "both.svg: 40 objects, 21 frames"));
+    REQUIRE(bytes_of_file(alone) == bytes_of_file(both));
+    REQUIRE(holds(bytes_of_file(folder / "both.svg"), "</svg>"));
+}
+
+TEST_CASE("scene says the displacement that was asked for") {
+    const temporary_folder folder;
+    const std::string out = folder / "scene.aabbs";
+    const auto said = [&](const std::string& unit) {
+        return run_program({"scene", "line", "--displacement", "0.25", "--unit", unit, "--out", out}).out;
+    };
+    REQUIRE(holds(said("extent"), "mean displacement a frame: 0.25 of the mean extent, "));
+    REQUIRE(holds(said("spacing"), " of the mean extent, 0.25 of the mean spacing\n"));
+    const std::string once = run_program({"scene", "line", "--frames", "0", "--out", out}).out;
+    REQUIRE(holds(once, "mean displacement a frame: - of the mean extent, - of the mean spacing\n"));
+}
+
+TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind") {
+    const temporary_folder folder;
+    std::filesystem::create_directory(folder / "sub");
+    const std::string file = folder / "scene.aabbs";
+    const std::string same = folder / "sub" / ".." / "scene.aabbs";
+    const std::string nowhere = folder / "missing" / "scene.svg";
+    const auto refused = [&](const std::vector<std::string>& outputs, const std::string& said) {
+        std::vector<std::string> arguments = {"scene", "brownian"};
+        arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+        const program_result result = run_program(arguments);
+        INFO(result.err);
+        REQUIRE(result.status == 2);
+        REQUIRE(is_one_sentence(result.err));
+        REQUIRE(holds(result.err, said));
+        REQUIRE(folder.files() == 1);
+    };
+    refused({}, "expected --out or --picture");
+    refused({"--out", file, "--picture", file}, "--out and --picture are the same file");
+    refused({"--out", file, "--picture", same}, "--out and --picture are the same file");
+    refused({"--out", file, "--picture", nowhere}, "scene.svg: cannot be written");
+    refused({"--picture", folder / "sub"}, "it is a folder");
+}
