@@ -60,8 +60,11 @@ std::vector<std::string> play_experiment(const experiment& e, results_folder& re
         std::vector<row> rows;
         for (const row& r : results.rows())
             if (r.scene == scene.kind && r.scene_parameters == parameters_text(scene)) rows.push_back(r);
-        for (const scene_summary& summary : summarise(rows))
+        for (const scene_summary& summary : summarise(rows)) {
             print(heading_of(summary) + "\n" + to_text(table_of(summary, number_style::grouped)) + "\n");
+            if (const table counts = counts_table_of(summary, number_style::grouped); !counts.columns.empty())
+                print("work a frame, and bytes\n" + to_text(counts) + "\n");
+        }
         flush_output();
     }
     return failures;

@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,31 +53,56 @@ std::vector<aabb::strategy_choice> strategies_of(const document& doc, aabb::stra
 
 }  // namespace
 
-/// @param compose null where the config has no [compose].
-std::vector<composition> compositions_of(const document& doc, const node* compose) {
-    static const node nothing{};
-    if (!compose) compose = &nothing;
-    doc.require_table("compose", *compose);
+namespace {
+
+std::vector<std::optional<double>> splits_of(const document& doc, const node* value) {
+    if (!value) return {std::nullopt};
+    std::vector<std::optional<double>> sizes;
+    for (const located_text& one : doc.alternatives_of("split_large", *value))
+        sizes.push_back(doc.at(one.line, [&] { return aabb::parse_split_large(one.text); }));
+    return sizes;
+}
+
+void add_compositions(const document& doc, const node& compose, std::vector<composition>& all) {
+    doc.require_table("compose", compose);
     std::vector<std::string> known;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) known.emplace_back(name_of(kind));
-    doc.require_keys(*compose, " of [compose]", known);
+    known.emplace_back("split_large");
+    doc.require_keys(compose, " of [compose]", known);
     const composition fallback;
     const auto of = [&](aabb::strategy_kind kind, const aabb::strategy_choice& otherwise) {
-        return strategies_of(doc, kind, compose->find(name_of(kind)), otherwise);
+        return strategies_of(doc, kind, compose.find(name_of(kind)), otherwise);
     };
-    std::vector<composition> all;
+    const auto add = [&](const composition& c) {
+        for (const std::string_view reason : {aabb::refusal_of(c.global), aabb::refusal_of(c.local)})
+            if (!reason.empty())
+                doc.fail(compose.line,
+                         to_text(c.global) + " + " + to_text(c.local) + " makes no sense: " + std::string(reason));
+        if (std::ranges::find(all, c) != all.end())
+            doc.fail(compose.line, "this composition is listed twice: " + to_text(c.global) + " + " + to_text(c.local));
+        all.push_back(c);
+    };
     for (const auto& sort : of(aabb::strategy_kind::sort, fallback.global.sort))
         for (const auto& partition : of(aabb::strategy_kind::partition, fallback.global.partition))
             for (const auto& sweep : of(aabb::strategy_kind::sweep, fallback.global.sweep))
-                for (const auto& tree : of(aabb::strategy_kind::tree, fallback.local.tree))
-                    for (const auto& triangle : of(aabb::strategy_kind::triangle, fallback.local.triangle))
-                        all.push_back({{sort, partition, sweep}, {tree, triangle}});
-    for (const composition& c : all) {
-        if (const std::string_view reason = aabb::refusal_of(c.global); !reason.empty())
-            doc.fail(compose->line, to_text(c.global) + ": " + std::string(reason));
-        if (const std::string_view reason = aabb::refusal_of(c.local); !reason.empty())
-            doc.fail(compose->line, to_text(c.local) + ": " + std::string(reason));
-    }
+                for (const auto& split : splits_of(doc, compose.find("split_large")))
+                    for (const auto& tree : of(aabb::strategy_kind::tree, fallback.local.tree))
+                        for (const auto& triangle : of(aabb::strategy_kind::triangle, fallback.local.triangle))
+                            add({{sort, partition, sweep, split}, {tree, triangle}});
+}
+
+}  // namespace
+
+/// One [compose], or several [[compose]], whose lists multiply each for itself.
+/// @param compose null where the config has none.
+std::vector<composition> compositions_of(const document& doc, const node* compose) {
+    static const node nothing{};
+    std::vector<composition> all;
+    if (compose && compose->kind == node_kind::list)
+        for (const node& one : compose->items) add_compositions(doc, one, all);
+    else
+        add_compositions(doc, compose ? *compose : nothing, all);
+    if (all.empty()) doc.fail(compose->line, "compose is an empty list; expected a table");
     return all;
 }
 

@@ -89,7 +89,8 @@ table table_of(std::span<const difference> differences) {
     table t{{{"scene", false}, {"composition or engine", false}, {"what", false}, {"class", false}, {"count"}}, {}};
     for (const difference& d : differences) {
         std::string who = d.name.engine;
-        if (who.empty()) who = d.name.sort + " + " + d.name.partition + " + " + d.name.sweep;
+        if (who.empty())
+            who = d.name.sort + " + " + d.name.partition + " + " + d.name.sweep + " + " + d.name.split_large;
         if (d.name.engine.empty() && !d.name.tree.empty()) who += " + " + d.name.tree + " + " + d.name.triangle;
         t.rows.push_back({d.scene + " " + d.scene_parameters, who, d.what, d.kind, std::to_string(d.count)});
     }
@@ -110,6 +111,10 @@ void add_part(document& out, const report_part& part) {
         out.preformatted(heading_of(scene));
         out.add(file, table_of(scene, number_style::grouped), table_of(scene, number_style::plain));
         out.figure(file, figure_of(scene));
+        if (const table counts = counts_table_of(scene, number_style::grouped); !counts.columns.empty()) {
+            out.paragraph("Work a frame, and bytes of the parts:");
+            out.add(file + "-counts", counts, counts_table_of(scene, number_style::plain));
+        }
     }
     const std::filesystem::path differences_file = part.results / "differences.csv";
     if (!std::filesystem::exists(differences_file)) return;
@@ -145,7 +150,10 @@ void write_report(const std::filesystem::path& folder, std::span<const report_pa
                                 : std::to_string(failures) + " compositions were wrong; they have no times.");
     out.paragraph(
         "Times are medians over interleaved repeats in one process; compare them within a table only. The "
-        "ratio is to the first line. \"build\" is the time, in ms, to make the stages and trees.");
+        "ratio is the median, over the repeats, of the time to the first line's in the same repeat; \"95 %\" holds it "
+        "with that confidence (the whole range where there are fewer than six repeats). \"build\" is the time, in ms, "
+        "to "
+        "make the stages and trees.");
     for (const report_part& part : parts) add_part(out, part);
     out.write();
 }

@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -40,6 +41,15 @@ struct quartiles {
 /// Interpolated between the nearest two values; `values` must not be empty.
 [[nodiscard]] quartiles quartiles_of(std::vector<double> values);
 
+struct interval {
+    double low;
+    double high;
+};
+/// Holds the median of what the values are drawn from with a confidence of 95 % or more, whatever the distribution:
+/// from the order statistics that a sign test would not reject. With fewer than six values it is all their range, which
+/// is less sure. `values` must not be empty.
+[[nodiscard]] interval median_interval(std::vector<double> values);
+
 /// All repeats of one composition or engine in one scene.
 struct summary_line {
     contender_name name;
@@ -48,9 +58,14 @@ struct summary_line {
     std::optional<std::uint64_t> contacts;
     std::string answer;                   ///< "exact", or "-3 +5": 3 are missing and 5 invented
     std::optional<quartiles> ms_a_frame;  ///< of the frames after frame 0; of frame 0 where there is no other
-    std::optional<double> ratio;          ///< of the medians, to the first line
-    std::optional<double> build_ms;       ///< median
-    std::optional<std::uint64_t> bytes;   ///< of all parts; empty for an engine, which does not say
+    /// Of the time to the first line's in the same repeat, median over the repeats.
+    std::optional<double> ratio;
+    std::optional<interval> ratio_interval;
+    std::optional<double> build_ms;      ///< median
+    std::optional<std::uint64_t> bytes;  ///< of all parts; empty for an engine, which does not say
+    /// Empty where they were not asked for, or for an engine.
+    std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
+    std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes_by_part;
 };
 
 /// One of the kinds of strategy, and where it stands in a name.
@@ -78,6 +93,10 @@ struct scene_summary {
 enum class number_style { grouped, plain };
 [[nodiscard]] table table_of(const scene_summary& scene, number_style style);
 
+/// The work of each composition, per frame, and the bytes of its parts, as far as any line has them. Copies have their
+/// number per object beside them. Without columns where nothing was counted.
+[[nodiscard]] table counts_table_of(const scene_summary& scene, number_style style);
+
 /// What stands above the table, some lines.
 [[nodiscard]] std::string heading_of(const scene_summary& scene);
 
@@ -93,5 +112,15 @@ struct report_part {
 /// Writes report.md and report.html, and every table and figure as .csv, .md, .tex and .svg under tables/.
 /// @throws aabb::input_error where a file cannot be read or written.
 void write_report(const std::filesystem::path& folder, std::span<const report_part> parts);
+
+}  // namespace aabblab
+
+// What the parts of the module share.
+namespace aabblab {
+
+[[nodiscard]] std::string number_text(std::uint64_t n, number_style style);
+/// The columns that name a line of a scene's tables, and a line's cells in them.
+[[nodiscard]] std::vector<column> name_columns_of(const scene_summary& scene);
+[[nodiscard]] std::vector<std::string> name_cells_of(const scene_summary& scene, const summary_line& line);
 
 }  // namespace aabblab

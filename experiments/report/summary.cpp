@@ -23,9 +23,10 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::array<name_part, 5> composition_parts{{{"sort", &contender_name::sort},
+constexpr std::array<name_part, 6> composition_parts{{{"sort", &contender_name::sort},
                                                       {"partition", &contender_name::partition},
                                                       {"sweep", &contender_name::sweep},
+                                                      {"split_large", &contender_name::split_large},
                                                       {"tree", &contender_name::tree},
                                                       {"triangle", &contender_name::triangle}}};
 
@@ -53,6 +54,8 @@ summary_line line_of(std::span<const row* const> repeats) {
     line.contacts = any.contacts;
     line.answer = answer_of(any);
     line.bytes = bytes_of(any);
+    line.counts = any.counts;
+    line.bytes_by_part = any.bytes;
     std::vector<double> times, builds;
     for (const row* r : repeats)
         if (const std::optional<double> ms = ms_a_frame(*r)) {
@@ -63,6 +66,18 @@ summary_line line_of(std::span<const row* const> repeats) {
     line.ms_a_frame = quartiles_of(times);
     line.build_ms = quartiles_of(builds).median;
     return line;
+}
+
+/// The line's times over those of another in the same repeats.
+void set_ratio(summary_line& line, std::span<const row* const> repeats, std::span<const row* const> base) {
+    std::vector<double> ratios;
+    for (const row* r : repeats)
+        for (const row* b : base)
+            if (r->repeat == b->repeat && ms_a_frame(*r) && ms_a_frame(*b).value_or(0) > 0)
+                ratios.push_back(*ms_a_frame(*r) / *ms_a_frame(*b));
+    if (ratios.empty()) return;
+    line.ratio = quartiles_of(ratios).median;
+    line.ratio_interval = median_interval(ratios);
 }
 
 /// Finds what differs between the compositions and what they share, and names the lines by what differs.
@@ -85,13 +100,6 @@ void set_labels(scene_summary& scene) {
     }
 }
 
-std::string number(std::uint64_t n, number_style style) {
-    std::string digits = std::to_string(n);
-    if (style == number_style::plain) return digits;
-    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-    return digits;
-}
-
 /// Decimals that leave the fastest line of a scene three digits or more.
 int decimals_of(const scene_summary& scene) {
     double least = 100;
@@ -107,13 +115,18 @@ std::string three_digits(double value) {
 
 /// The cells of a line from its times, "-" for what was not timed.
 std::vector<std::string> time_cells(const summary_line& line, int decimals, number_style style) {
-    if (!line.ms_a_frame) return {"-", "-", "-", "-"};
+    if (!line.ms_a_frame) return {"-", "-", "-", "-", "-"};
     const auto [low, median, high] = *line.ms_a_frame;
-    const std::string ratio = line.ratio ? fmt::format("{:.2f}", *line.ratio) : "-";
-    if (style == number_style::plain)
-        return {fmt::format("{:.6f}", median), fmt::format("{:.6f}-{:.6f}", low, high), ratio,
+    const bool plain = style == number_style::plain;
+    const std::string ratio = line.ratio ? fmt::format("{:.{}f}", *line.ratio, plain ? 6 : 2) : "-";
+    const std::string around = line.ratio_interval
+                                   ? fmt::format("{:.{}f}-{:.{}f}", line.ratio_interval->low, plain ? 6 : 2,
+                                                 line.ratio_interval->high, plain ? 6 : 2)
+                                   : "-";
+    if (plain)
+        return {fmt::format("{:.6f}", median), fmt::format("{:.6f}-{:.6f}", low, high), ratio, around,
                 fmt::format("{:.6f}", *line.build_ms)};
-    return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high), ratio,
+    return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high), ratio, around,
             fmt::format("{:.2f}", *line.build_ms)};
 }
 
@@ -121,10 +134,33 @@ std::string bytes_cell(const std::optional<std::uint64_t>& bytes, number_style s
     if (!bytes) return "-";
     if (style == number_style::plain) return std::to_string(*bytes);
     const double kib = static_cast<double>(*bytes) / 1024;
-    return kib < 100 ? fmt::format("{:.1f}", kib) : number(static_cast<std::uint64_t>(std::llround(kib)), style);
+    return kib < 100 ? fmt::format("{:.1f}", kib) : number_text(static_cast<std::uint64_t>(std::llround(kib)), style);
 }
 
 }  // namespace
+
+std::string number_text(std::uint64_t n, number_style style) {
+    std::string digits = std::to_string(n);
+    if (style == number_style::plain) return digits;
+    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+    return digits;
+}
+
+std::vector<column> name_columns_of(const scene_summary& scene) {
+    std::vector<column> columns;
+    for (const name_part& part : scene.differing) columns.push_back({std::string(part.kind), false});
+    if (columns.empty()) columns.push_back({"composition", false});
+    return columns;
+}
+
+std::vector<std::string> name_cells_of(const scene_summary& scene, const summary_line& line) {
+    std::vector<std::string> cells;
+    if (line.name.engine.empty())
+        for (const name_part& part : scene.differing) cells.push_back(line.name.*part.field);
+    if (cells.empty()) cells.push_back(line.label);
+    cells.resize(std::max<std::size_t>(scene.differing.size(), 1));
+    return cells;
+}
 
 quartiles quartiles_of(std::vector<double> values) {
     std::ranges::sort(values);
@@ -135,6 +171,21 @@ quartiles quartiles_of(std::vector<double> values) {
         return values[below] + (values[above] - values[below]) * (place - static_cast<double>(below));
     };
     return {at(0.25), at(0.5), at(0.75)};
+}
+
+interval median_interval(std::vector<double> values) {
+    std::ranges::sort(values);
+    // The chance that fewer than `cut` + 1 of the values lie below the median.
+    const auto n = static_cast<double>(values.size());
+    double chance = std::pow(0.5, n);
+    double sum = chance;
+    std::size_t cut = 0;
+    for (; sum <= 0.025; sum += chance) {
+        chance *= (n - static_cast<double>(cut)) / static_cast<double>(cut + 1);
+        ++cut;
+    }
+    const std::size_t low = cut > 0 ? cut - 1 : 0;
+    return {values[low], values[values.size() - 1 - low]};
 }
 
 std::vector<scene_summary> summarise(std::span<const row> rows) {
@@ -162,10 +213,10 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
     }
     std::vector<scene_summary> scenes;
     for (group& g : groups) {
-        for (const auto& line : g.lines) g.scene.lines.push_back(line_of(line));
-        const std::optional<quartiles> first = g.scene.lines[0].ms_a_frame;
-        for (summary_line& line : g.scene.lines)
-            if (first && line.ms_a_frame && first->median > 0) line.ratio = line.ms_a_frame->median / first->median;
+        for (const auto& line : g.lines) {
+            g.scene.lines.push_back(line_of(line));
+            set_ratio(g.scene.lines.back(), line, g.lines[0]);
+        }
         set_labels(g.scene);
         scenes.push_back(std::move(g.scene));
     }
@@ -177,24 +228,15 @@ table table_of(const scene_summary& scene, number_style style) {
     const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_a_frame.has_value(); });
     const bool sized = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.bytes.has_value(); });
     const int decimals = decimals_of(scene);
-    table t;
-    for (const name_part& part : scene.differing) t.columns.push_back({std::string(part.kind), false});
-    if (scene.differing.empty()) t.columns.push_back({"composition", false});
-    const std::size_t name_columns = t.columns.size();
+    table t{name_columns_of(scene), {}};
     t.columns.insert(t.columns.end(), {{"answer", false}, {"pairs"}});
     if (meshes) t.columns.push_back({"contacts"});
-    if (timed) t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles"}, {"ratio"}, {"build"}});
+    if (timed) t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles"}, {"ratio"}, {"95 %"}, {"build"}});
     if (sized) t.columns.push_back({style == number_style::plain ? "bytes" : "KiB"});
     for (const summary_line& line : scene.lines) {
-        std::vector<std::string>& cells = t.rows.emplace_back();
-        if (line.name.engine.empty())
-            for (const name_part& part : scene.differing) cells.push_back(line.name.*part.field);
-        else
-            cells.push_back(line.name.engine);
-        if (cells.empty()) cells.push_back(line.label);
-        cells.resize(name_columns);
-        cells.insert(cells.end(), {line.answer, number(line.pairs, style)});
-        if (meshes) cells.push_back(line.contacts ? number(*line.contacts, style) : "-");
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene, line));
+        cells.insert(cells.end(), {line.answer, number_text(line.pairs, style)});
+        if (meshes) cells.push_back(line.contacts ? number_text(*line.contacts, style) : "-");
         if (timed)
             for (std::string& cell : time_cells(line, decimals, style)) cells.push_back(std::move(cell));
         if (sized) cells.push_back(bytes_cell(line.bytes, style));
@@ -204,7 +246,7 @@ table table_of(const scene_summary& scene, number_style style) {
 
 std::string heading_of(const scene_summary& scene) {
     std::string text = fmt::format("{}: {} objects, {} frames\n{}\n", scene.scene,
-                                   number(scene.objects, number_style::grouped), scene.frames, scene.parameters);
+                                   number_text(scene.objects, number_style::grouped), scene.frames, scene.parameters);
     if (!scene.common.empty()) text += "all compositions: " + scene.common + "\n";
     if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
     const auto is_inexact = [](const summary_line& line) { return line.answer != "exact"; };

@@ -23,14 +23,14 @@ export namespace aabblab {
 
 /// What played a scene, as it stands in the columns of every table. Empty where there is no such part.
 struct contender_name {
-    std::string sort, partition, sweep, tree, triangle, engine;
+    std::string sort, partition, sweep, split_large, tree, triangle, engine;
 
     friend auto operator<=>(const contender_name&, const contender_name&) = default;
 };
 
 /// Parts of a stage that have a column; what an engine calls otherwise is under `engine`.
-inline constexpr std::array<std::string_view, 7> byte_columns = {"projections", "sort",  "partition", "sweep",
-                                                                 "tree",        "stack", "engine"};
+inline constexpr std::array<std::string_view, 8> byte_columns = {"projections", "sort", "partition", "sweep",
+                                                                 "split_large", "tree", "stack",     "engine"};
 
 /// One row: one scene played once from a fresh start. Metrics that were not asked for are empty.
 struct row {

@@ -27,6 +27,7 @@ void for_each_name(Name& name, Field field) {
     field("sort", name.sort);
     field("partition", name.partition);
     field("sweep", name.sweep);
+    field("split_large", name.split_large);
     field("tree", name.tree);
     field("triangle", name.triangle);
     field("engine", name.engine);

@@ -23,6 +23,7 @@ void use_global(contender& who, const aabb::global_composition& composition) {
     who.name.sort = to_text(composition.sort);
     who.name.partition = to_text(composition.partition);
     who.name.sweep = to_text(composition.sweep);
+    who.name.split_large = split_large_text(composition);
     who.exact_boxes = is_exact(composition);
     who.exact = who.exact && who.exact_boxes;
     who.make_global = [composition](aabb::instrumentation counted) { return aabb::compose(composition, counted); };
@@ -82,7 +83,10 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
 
 std::string text_of(const contender_name& name) {
     std::string text;
-    for (const std::string* part : {&name.engine, &name.sort, &name.partition, &name.sweep, &name.tree, &name.triangle})
+    const std::string split =
+        name.split_large.empty() || name.split_large == "off" ? "" : "split_large=" + name.split_large;
+    for (const std::string* part :
+         {&name.engine, &name.sort, &name.partition, &name.sweep, &split, &name.tree, &name.triangle})
         if (!part->empty()) text += (text.empty() ? "" : " + ") + *part;
     return text;
 }

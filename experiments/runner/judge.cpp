@@ -28,8 +28,8 @@ judge::judge(const scene_play& scene) : scene_(scene) {
     constexpr std::size_t most_for_brute_force = 20000;
     box_engine_ = scene.objects() <= most_for_brute_force ? "brute_force" : "cgal";
     boxes_ = aabb::make_box_engine(box_engine_);
-    for (std::uint32_t object = 0; object < scene.objects(); ++object) boxes_->insert(object);
     if (!scene.meshes()) return;
+    for (std::uint32_t object = 0; object < scene.objects(); ++object) boxes_->insert(object);
     triangles_ = aabb::make_mesh_engine("cgal");
     for (const aabb::mesh& m : scene.meshes()->meshes) {
         triangles_->add_model(m);
@@ -44,6 +44,8 @@ std::string judge::name() const {
 void judge::play(std::span<const aabb::box> boxes) {
     pairs_.clear();
     contacts_.clear();
+    for (const std::uint32_t object : scene_.departures()) boxes_->remove(object);
+    for (const std::uint32_t object : scene_.arrivals()) boxes_->insert(object);
     boxes_->update(boxes);
     boxes_->search(pairs_);
     std::ranges::sort(pairs_);

@@ -5,6 +5,7 @@ module;
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,22 @@ std::size_t scene_play::frames() const {
 }
 
 bool scene_play::next() {
-    return meshes_ ? meshes_->next(poses_) : box_scene_->next(boxes_);
+    if (meshes_) return meshes_->next(poses_);
+    if (!box_scene_->next(boxes_)) return false;
+    note_changes(box_scene_->present());
+    return true;
+}
+
+void scene_play::note_changes(std::span<const std::uint8_t> present) {
+    arrivals_.clear();
+    departures_.clear();
+    present_.resize(boxes_.size(), 0);
+    for (std::uint32_t object = 0; object < boxes_.size(); ++object) {
+        const bool is_present = present.empty() || present[object] != 0;
+        if (is_present == (present_[object] != 0)) continue;
+        present_[object] = is_present;
+        (is_present ? arrivals_ : departures_).push_back(object);
+    }
 }
 
 player::player(const contender& who, const scene_play& scene, aabb::instrumentation counted)
@@ -41,16 +57,14 @@ player::player(const contender& who, const scene_play& scene, aabb::instrumentat
     if (scene.meshes()) {
         local_ = who.make_local(counted);
         pipeline_ = std::make_unique<aabb::pipeline>(*scene.meshes(), *global_, *local_);
-    } else {
-        for (std::uint32_t object = 0; object < scene.objects(); ++object) global_->insert(object);
     }
 }
 
 void player::update() {
-    if (pipeline_)
-        pipeline_->update(scene_.poses());
-    else
-        global_->update(scene_.boxes());
+    if (pipeline_) return pipeline_->update(scene_.poses());
+    for (const std::uint32_t object : scene_.departures()) global_->remove(object);
+    for (const std::uint32_t object : scene_.arrivals()) global_->insert(object);
+    global_->update(scene_.boxes());
 }
 
 void player::search() {

@@ -40,15 +40,23 @@ public:
     [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
     [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }
     [[nodiscard]] std::span<const aabb::pose> poses() const { return poses_; }
+    /// Objects of a scene of boxes that are in this frame and were not in the one before, and the other way round.
+    [[nodiscard]] std::span<const std::uint32_t> arrivals() const { return arrivals_; }
+    [[nodiscard]] std::span<const std::uint32_t> departures() const { return departures_; }
 
 private:
+    void note_changes(std::span<const std::uint8_t> present);
+
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
     std::vector<aabb::box> boxes_;
     std::vector<aabb::pose> poses_;
+    std::vector<std::uint8_t> present_;  // by object
+    std::vector<std::uint32_t> arrivals_;
+    std::vector<std::uint32_t> departures_;
 };
 
-/// A contender in a scene: its stages with the objects taken and the trees built. The scene must outlive it.
+/// A contender in a scene: its stages, with the trees built. The scene must outlive it.
 class player {
 public:
     player(const contender& who, const scene_play& scene, aabb::instrumentation counted);

@@ -36,8 +36,14 @@ public:
     uniform_grid_partition() = default;
     explicit uniform_grid_partition(const config& c) : config_(c) {}
 
+    /// It looks at boxes, not at lists.
+    static axis_set axes(std::span<const box>, std::span<const projection>, axis_set) noexcept { return 0; }
+
     /// @throws input_error when the cells would be more than 2^26.
-    void fit(std::span<const box> boxes, std::span<const projection> present) {
+    void fit(const whole_subset& all) {
+        const std::span<const projection> present =
+            *std::ranges::max_element(all.lists, {}, [](const auto& list) { return list.size(); });
+        const std::span<const box> boxes = all.boxes;
         box world = empty_box();
         double extents = 0;
         for (const projection& p : present) {
@@ -66,7 +72,7 @@ public:
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return cells_[0] * cells_[1] * cells_[2]; }
 
     template <class Visit>
-    void for_each_subset(const box& b, Visit visit) const {
+    void for_each_subset(std::uint32_t, const box& b, Visit visit) const {
         std::array<std::uint32_t, 3> first{};
         std::array<std::uint32_t, 3> last{};
         for (int k = 0; k < 3; ++k) {

@@ -66,7 +66,7 @@ public:
         std::vector<std::string> absent;
         if constexpr (!CuttingPartition<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
         for (int k = 0; k < 3; ++k)
-            if (!(search_.sorted_axes() >> k & 1U))
+            if (!has_axis(search_.sorted_axes(), static_cast<std::size_t>(k)))
                 absent.push_back(std::string("no projection list of the ") + "xyz"[k] + " axis");
         if constexpr (!Counters::enabled) absent.emplace_back("no work counters");
         return absent;

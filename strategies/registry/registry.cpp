@@ -1,11 +1,13 @@
 module;
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 module aabb.registry;
@@ -53,8 +55,15 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     registry::check_settings(kind, choice);
 }
 
+std::string split_large_text(const global_composition& c) {
+    if (!c.split_large) return "off";
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), *c.split_large).ptr};
+}
+
 std::string to_text(const global_composition& c) {
-    return to_text(c.sort) + " + " + to_text(c.partition) + " + " + to_text(c.sweep);
+    const std::string split = c.split_large ? " + split_large=" + split_large_text(c) : "";
+    return to_text(c.sort) + " + " + to_text(c.partition) + " + " + to_text(c.sweep) + split;
 }
 
 std::string to_text(const local_composition& c) {
@@ -109,7 +118,9 @@ bool is_exact(const local_composition& c) {
 std::unique_ptr<global_stage> compose(const global_composition& c, instrumentation counted) {
     const composed::global_row& row = row_for(c);
     if (!row.make) throw input_error(to_text(c) + ": " + std::string(row.refusal));
-    return row.make(c.sort, c.partition, c.sweep, counted);
+    std::unique_ptr<global_stage> search = row.make(c.sort, c.partition, c.sweep, counted);
+    if (!c.split_large) return search;
+    return std::make_unique<split_large_stage>(std::move(search), *c.split_large, counted);
 }
 
 std::unique_ptr<local_stage> compose(const local_composition& c, instrumentation counted) {

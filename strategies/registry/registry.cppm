@@ -1,5 +1,6 @@
 module;
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +43,7 @@ struct global_composition {
     strategy_choice sort{"std", {}};
     strategy_choice partition{"none", {}};
     strategy_choice sweep{"one_axis", {}};
+    std::optional<double> split_large = std::nullopt;  ///< see split_large_stage
 
     friend bool operator==(const global_composition&, const global_composition&) = default;
 };
@@ -54,7 +56,11 @@ struct local_composition {
     friend bool operator==(const local_composition&, const local_composition&) = default;
 };
 
-/// "sort + partition + sweep" and "tree + triangle", each as the command line takes it.
+/// "off", or the size as a setting takes it.
+[[nodiscard]] std::string split_large_text(const global_composition& composition);
+
+/// "sort + partition + sweep" and "tree + triangle", each as the command line takes it; with "split_large=4" behind the
+/// sweep where there is that.
 [[nodiscard]] std::string to_text(const global_composition& composition);
 [[nodiscard]] std::string to_text(const local_composition& composition);
 

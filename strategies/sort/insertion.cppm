@@ -10,20 +10,28 @@ import aabb;
 export namespace aabb {
 
 /// Insertion sort, the paper's traditional method (section 2). When to use: lists that stay almost sorted between
-/// frames, where it takes n + d comparisons for d inversions; quadratic on anything else.
+/// frames, where it takes n + d comparisons for d inversions; quadratic on anything else. It exchanges neighbours only,
+/// each two entries at most once, and can tell of it.
 struct insertion_sort {
     static constexpr std::string_view name = "insertion";
     static constexpr std::string_view summary =
         "insertion sort, the traditional method: linear on almost sorted lists, else quadratic";
 
-    template <CounterPolicy Counters>
-    static constexpr void sort(std::span<projection> list, Counters& counters) {
+    struct ignore_swaps {
+        template <class Entry>
+        constexpr void operator()(const Entry&, const Entry&) const noexcept {}
+    };
+
+    /// @param on_swap gets the entry that is passed and the one that moves before it
+    template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
+    static constexpr void sort(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
         for (std::size_t i = 1; i < list.size(); ++i) {
-            const projection inserted = list[i];
+            const Entry inserted = list[i];
             std::size_t hole = i;
             while (hole > 0) {
                 counters.add(work::comparisons);
-                if (!(inserted.key < list[hole - 1].key)) break;
+                if (!precedes(inserted, list[hole - 1])) break;
+                on_swap(list[hole - 1], inserted);
                 list[hole] = list[hole - 1];
                 counters.add(work::moves);
                 --hole;
@@ -35,6 +43,6 @@ struct insertion_sort {
     }
 };
 
-static_assert(SortPolicy<insertion_sort>);
+static_assert(SwapReportingSort<insertion_sort>);
 
 }  // namespace aabb

@@ -19,7 +19,7 @@ struct std_sort {
     static constexpr void sort(std::span<projection> list, Counters& counters) {
         std::ranges::sort(list, [&counters](const projection& p, const projection& q) {
             counters.add(work::comparisons);
-            return p.key < q.key;
+            return precedes(p, q);
         });
     }
 };

@@ -3,7 +3,7 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <ranges>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -28,17 +28,7 @@ public:
         "three sorted lists; a pair is reported when its projections overlap on all three";
 
     static axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set) {
-        vec3f last_begin = empty_box().max;
-        vec3f first_end = empty_box().min;
-        for (const projection& p : present)
-            for (int k = 0; k < 3; ++k) {
-                last_begin[k] = std::max(last_begin[k], boxes[p.id].min[k]);
-                first_end[k] = std::min(first_end[k], boxes[p.id].max[k]);
-            }
-        axis_set needed = 0;
-        for (int k = 0; k < 3; ++k)
-            if (last_begin[k] > first_end[k]) needed |= axis_set{1} << k;
-        return needed ? needed : axis_set{1};
+        return separating_axes(separation_of(boxes, present | std::views::transform(&projection::id)));
     }
 
     template <class Subset, CounterPolicy Counters>
@@ -125,6 +115,6 @@ private:
     std::vector<std::uint32_t> end_;    // by rank
 };
 
-static_assert(SweepPolicy<all_axes_sweep>);
+static_assert(ListSweep<all_axes_sweep>);
 
 }  // namespace aabb

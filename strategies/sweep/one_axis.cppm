@@ -38,7 +38,7 @@ public:
         if (config_.axis != axis_choice::automatic) {
             axis_ = static_cast<int>(config_.axis) - 1;
         } else {
-            const vec3d variance = variances(boxes, present);
+            const vec3d variance = spread_of(boxes, present).variance;
             const double margin = chosen_ ? 1.5 : 1.0;
             for (int k = 0; k < 3; ++k)
                 if (variance[k] > margin * variance[axis_]) axis_ = k;
@@ -82,32 +82,12 @@ private:
         }
     }
 
-    /// Of the doubled centres, taken from the first one, so that far from the origin no digits are lost.
-    [[nodiscard]] static vec3d variances(std::span<const box> boxes, std::span<const projection> present) {
-        const auto centre = [&](const projection& p, int k) {
-            return double{boxes[p.id].min[k]} + double{boxes[p.id].max[k]};
-        };
-        vec3d sum{};
-        vec3d squares{};
-        for (const projection& p : present)
-            for (int k = 0; k < 3; ++k) {
-                const double from_first = centre(p, k) - centre(present[0], k);
-                sum[k] += from_first;
-                squares[k] += from_first * from_first;
-            }
-        const auto n = static_cast<double>(present.size());
-        vec3d variance{};
-        if (!present.empty())
-            for (int k = 0; k < 3; ++k) variance[k] = std::max(0.0, squares[k] - sum[k] / n * sum[k]);
-        return variance;
-    }
-
     config config_;
     int axis_ = 0;
     bool chosen_ = false;
     std::vector<swept_box> swept_;  // the boxes of the subset at hand, in sorted order
 };
 
-static_assert(SweepPolicy<one_axis_sweep>);
+static_assert(ListSweep<one_axis_sweep>);
 
 }  // namespace aabb

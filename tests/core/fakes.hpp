@@ -30,9 +30,12 @@ struct fake_whole_partition {
 struct fake_cutting_partition {
     static constexpr std::string_view name = "fake_cutting";
     static constexpr std::string_view summary = "two halves";
-    static void fit(std::span<const aabb::box>, std::span<const aabb::projection>) {}
+    static aabb::axis_set axes(std::span<const aabb::box>, std::span<const aabb::projection>, aabb::axis_set) {
+        return 0;
+    }
+    static void fit(const aabb::whole_subset&) {}
     [[nodiscard]] static std::uint32_t subset_count() { return 2; }
-    static void for_each_subset(const aabb::box& b, auto visit) {
+    static void for_each_subset(std::uint32_t, const aabb::box& b, auto visit) {
         if (b.min[0] < 0) visit(std::uint32_t{0}, aabb::every_axis);
         if (b.max[0] >= 0) visit(std::uint32_t{1}, aabb::axis_set{b.min[0] < 0 ? 0b110U : 0b111U});
     }

@@ -75,7 +75,12 @@ TEST_CASE("pairs refuses what it cannot do and leaves no file behind") {
         {{"--sort", "std:gaps=1"}, "takes no parameters"},
         {{"--partition", "uniform_grid:cell_size"}, "name=value"},
         {{"--engine", "brute_farce"}, "did you mean 'brute_force'?"},
-        {{"--engine", "brute_force", "--sweep", "one_axis"}, "--engine stands in for --sort, --partition and --sweep"},
+        {{"--engine", "brute_force", "--sweep", "one_axis"}, "--engine stands in for --sort, --partition, --sweep and --split-large"},
+        {{"--split-large", "0"}, "split_large must be off or a number above 0, in mean extents, not '0'"},
+        {{"--sort", "std", "--sweep", "incremental"}, "goes with insertion only"},
+        {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "it goes with none only"},
+        {{"--partition", "axial_cut:axes=4"}, "axial_cut: axes must be a whole number from 1 to 3, not '4'"},
+        {{"--partition", "axial_cut:segments=0"}, "axial_cut: segments must be a whole number from 1 to 65535 or auto"},
     }));
     std::vector<std::string> arguments = {"pairs", scene, "--out", folder / "pairs.csv"};
     arguments.insert(arguments.end(), options.begin(), options.end());

@@ -1,0 +1,77 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.report;
+
+import aabb;
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+/// Whether any line has a number other than 0 in this place.
+template <class Numbers>
+bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t place) {
+    return std::ranges::any_of(scene.lines,
+                               [&](const summary_line& line) { return (line.*numbers)[place].value_or(0) > 0; });
+}
+
+std::string spaced(std::string_view name) {
+    std::string text(name);
+    std::ranges::replace(text, '_', ' ');
+    return text;
+}
+
+std::string cell(double value, number_style style) {
+    if (style == number_style::plain) return fmt::format("{:.3f}", value);
+    return value != 0 && value < 100 ? fmt::format("{:.1f}", value)
+                                     : number_text(static_cast<std::uint64_t>(std::llround(value)), style);
+}
+
+}  // namespace
+
+table counts_table_of(const scene_summary& scene, number_style style) {
+    constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
+    table t{name_columns_of(scene), {}};
+    std::vector<std::size_t> works;
+    std::vector<std::size_t> parts;
+    for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
+        if (!is_used(scene, &summary_line::counts, i)) continue;
+        works.push_back(i);
+        t.columns.push_back({spaced(aabb::work_names[i])});
+        if (i == copies) t.columns.push_back({"an object"});
+    }
+    for (std::size_t i = 0; i < byte_columns.size(); ++i) {
+        if (!is_used(scene, &summary_line::bytes_by_part, i)) continue;
+        parts.push_back(i);
+        t.columns.push_back({(style == number_style::plain ? "bytes " : "KiB ") + spaced(byte_columns[i])});
+    }
+    if (works.empty() && parts.empty()) return {};
+    for (const summary_line& line : scene.lines) {
+        if (!line.name.engine.empty()) continue;
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene, line));
+        for (const std::size_t i : works) {
+            const double each = static_cast<double>(line.counts[i].value_or(0)) / static_cast<double>(scene.frames);
+            cells.push_back(cell(each, style));
+            if (i == copies) cells.push_back(fmt::format("{:.3f}", each / static_cast<double>(scene.objects)));
+        }
+        for (const std::size_t i : parts) {
+            const auto bytes = static_cast<double>(line.bytes_by_part[i].value_or(0));
+            cells.push_back(style == number_style::plain ? fmt::format("{:.0f}", bytes) : cell(bytes / 1024, style));
+        }
+    }
+    return t;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,74 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+export module aabb:membership;
+
+import :error;
+import :policy;
+
+export namespace aabb {
+
+/// Which objects are present, and which came and left since the frame before. Ids are stable.
+class membership {
+public:
+    /// @throws input_error when the object is present already.
+    void insert(std::uint32_t id) {
+        if (id >= state_.size()) state_.resize(std::size_t{id} + 1, state::absent);
+        if (contains(id)) throw input_error("object " + std::to_string(id) + " is inserted twice");
+        // An object that leaves and comes back before the next frame never left.
+        state_[id] = state_[id] == state::leaving ? state::known : state::coming;
+        if (state_[id] == state::coming) arrivals_.push_back(id);
+    }
+
+    /// @throws input_error when the object is not present.
+    void remove(std::uint32_t id) {
+        if (!contains(id)) throw input_error("object " + std::to_string(id) + " is removed but was never inserted");
+        if (state_[id] == state::coming) {
+            std::erase(arrivals_, id);
+            state_[id] = state::absent;
+        } else {
+            state_[id] = state::leaving;
+            departures_ = true;
+        }
+    }
+
+    [[nodiscard]] bool contains(std::uint32_t id) const noexcept {
+        return id < state_.size() && (state_[id] == state::coming || state_[id] == state::known);
+    }
+    [[nodiscard]] std::span<const std::uint32_t> arrivals() const noexcept { return arrivals_; }
+    [[nodiscard]] bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::coming; }
+    [[nodiscard]] bool any_departures() const noexcept { return departures_; }
+    [[nodiscard]] bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
+
+    /// @throws input_error when an object that is present has no box.
+    void require_boxes_for_all(std::size_t boxes) const {
+        for (std::size_t id = boxes; id < state_.size(); ++id)
+            if (contains(static_cast<std::uint32_t>(id)))
+                throw input_error("object " + std::to_string(id) + " is present, but the frame has only " +
+                                  std::to_string(boxes) + " boxes");
+    }
+
+    /// To be called when arrivals and departures have been taken note of.
+    void settle() {
+        if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
+        for (const std::uint32_t id : arrivals_) state_[id] = state::known;
+        departures_ = false;
+        arrivals_.clear();
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(state_) + bytes_of(arrivals_); }
+
+private:
+    enum class state : std::uint8_t { absent, coming, known, leaving };
+
+    std::vector<state> state_;  // by id
+    std::vector<std::uint32_t> arrivals_;
+    bool departures_ = false;
+};
+
+}  // namespace aabb

@@ -1,0 +1,92 @@
+module;
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+export module aabb:pair_set;
+
+import :geometry;
+import :policy;
+
+export namespace aabb {
+
+/// A set of pairs that can be walked as an array: the pairs stand in a vector, and a hash table with linear probing,
+/// at most half full, finds their places. Up to 2^32 - 2 pairs.
+class pair_set {
+public:
+    [[nodiscard]] std::span<const index_pair> pairs() const noexcept { return pairs_; }
+
+    /// Nothing happens when the pair is there already.
+    void insert(index_pair pair) {
+        if (2 * (pairs_.size() + 1) > table_.size()) grow();
+        const std::size_t slot = slot_of(pair);
+        if (table_[slot] != none) return;
+        table_[slot] = static_cast<std::uint32_t>(pairs_.size());
+        pairs_.push_back(pair);
+    }
+
+    /// Nothing happens when the pair is not there.
+    void erase(index_pair pair) {
+        if (pairs_.empty()) return;
+        const std::size_t slot = slot_of(pair);
+        const std::uint32_t place = table_[slot];
+        if (place == none) return;
+        // The last pair takes the place of the one that goes.
+        table_[slot_of(pairs_.back())] = place;
+        pairs_[place] = pairs_.back();
+        pairs_.pop_back();
+        close_gap(slot);
+    }
+
+    template <class Predicate>
+    void erase_if(Predicate goes) {
+        for (std::size_t i = pairs_.size(); i-- > 0;)
+            if (goes(pairs_[i])) erase(pairs_[i]);
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(pairs_) + bytes_of(table_); }
+
+private:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    /// Where the search for a pair begins: the high bits of a product with 2^64 over the golden ratio.
+    [[nodiscard]] std::size_t home_of(index_pair pair) const noexcept {
+        const std::uint64_t both = std::uint64_t{pair.a} << 32 | pair.b;
+        const std::uint64_t mixed = (both ^ both >> 29) * 0x9e3779b97f4a7c15U;
+        return mixed >> (64 - std::countr_zero(table_.size()));
+    }
+
+    /// The slot of a pair, or the free one where it would stand.
+    [[nodiscard]] std::size_t slot_of(index_pair pair) const noexcept {
+        std::size_t slot = home_of(pair);
+        while (table_[slot] != none && pairs_[table_[slot]] != pair) slot = next(slot);
+        return slot;
+    }
+
+    [[nodiscard]] std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
+
+    /// Moves back what was pushed on past the gap, so that every search still ends at a free slot.
+    void close_gap(std::size_t gap) {
+        for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
+            const std::size_t home = home_of(pairs_[table_[at]]);
+            const std::size_t mask = table_.size() - 1;
+            if (((at - home) & mask) < ((at - gap) & mask)) continue;
+            table_[gap] = table_[at];
+            gap = at;
+        }
+        table_[gap] = none;
+    }
+
+    void grow() {
+        table_.assign(table_.empty() ? 64 : 2 * table_.size(), none);
+        for (std::size_t i = 0; i < pairs_.size(); ++i) table_[slot_of(pairs_[i])] = static_cast<std::uint32_t>(i);
+    }
+
+    std::vector<index_pair> pairs_;
+    std::vector<std::uint32_t> table_;  // a power of two of places in pairs_
+};
+
+}  // namespace aabb

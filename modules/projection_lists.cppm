@@ -1,0 +1,154 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+export module aabb:projection_lists;
+
+import :counters;
+import :geometry;
+import :inversions;
+import :membership;
+import :policy;
+import :projection;
+import :sort_policy;
+
+export namespace aabb {
+
+/// The sorted projection lists of global search, kept between frames (paper, section 2).
+///
+/// What was never in a list before, a new axis or an object that arrives, is sorted by std::sort, since insertion sort
+/// is quadratic there. Afterwards the sort policy gets the entries whose key changed, in the order of the list, and
+/// they are merged with those that stood still, which are never sorted again. Where all move that is the whole list.
+template <CounterPolicy Counters>
+class projection_lists {
+public:
+    /// Takes arrivals and departures over; the order of what is in the lists stays.
+    void settle(const membership& objects) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!has_axis(axes_, k)) continue;
+            if (objects.any_departures())
+                std::erase_if(lists_[k], [&](const projection& p) { return objects.is_leaving(p.id); });
+            for (const std::uint32_t id : objects.arrivals()) lists_[k].push_back({0, id});
+        }
+        arrivals_ = objects.arrivals().size();
+    }
+
+    /// Brings the lists of these axes up to the boxes of a frame, and drops the others.
+    template <SortPolicy Sort>
+    void sort(std::span<const box> boxes, axis_set axes, Sort& sort, Counters& counters) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (has_axis(axes & ~axes_, k)) {
+                lists_[k].assign(members().begin(), members().end());
+                sort_new(boxes, k, lists_[k]);
+            }
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!has_axis(axes, k))
+                lists_[k].clear();
+            else if (has_axis(axes_, k)) {
+                sort_known(boxes, k, sort, counters);
+                sort_arrivals(boxes, k, counters);
+            }
+        }
+        axes_ = axes;
+        arrivals_ = 0;
+    }
+
+    /// Any one list, which has every object.
+    [[nodiscard]] std::span<const projection> members() const noexcept {
+        return lists_[static_cast<std::size_t>(std::countr_zero(axes_))];
+    }
+    [[nodiscard]] axis_set axes() const noexcept { return axes_; }
+    [[nodiscard]] whole_subset all(std::span<const box> boxes) const noexcept {
+        return {boxes, {lists_[0], lists_[1], lists_[2]}};
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return bytes_of(lists_[0]) + bytes_of(lists_[1]) + bytes_of(lists_[2]) + bytes_of(moved_);
+    }
+
+private:
+    static void sort_new(std::span<const box> boxes, std::size_t axis, std::span<projection> list) {
+        for (projection& p : list) p.key = boxes[p.id].min[static_cast<int>(axis)];
+        std::ranges::sort(list, precedes);
+    }
+
+    template <class Sort>
+    void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
+        const std::span known = std::span(lists_[axis]).first(lists_[axis].size() - arrivals_);
+        moved_.clear();
+        moved_.reserve(known.size());
+        std::size_t still = 0;
+        for (const projection& p : known) {
+            const float key = boxes[p.id].min[static_cast<int>(axis)];
+            if (key == p.key)
+                known[still++] = p;
+            else
+                moved_.push_back({key, p.id});
+        }
+        if (moved_.empty()) return;
+        if constexpr (Counters::enabled) counters.add(work::inversions, inversions_.count(moved_));
+        sort.sort(std::span(moved_), counters);
+        if (still == 0 && arrivals_ == 0)
+            lists_[axis].swap(moved_);
+        else
+            merge_moved_into(known, still, counters);
+    }
+
+    void sort_arrivals(std::span<const box> boxes, std::size_t axis, Counters& counters) {
+        if (arrivals_ == 0) return;
+        const std::span list(lists_[axis]);
+        const std::size_t known = list.size() - arrivals_;
+        moved_.assign(list.begin() + static_cast<std::ptrdiff_t>(known), list.end());
+        sort_new(boxes, axis, moved_);
+        merge_moved_into(list, known, counters);
+    }
+
+    /// From the back, so that it needs no room of its own.
+    void merge_moved_into(std::span<projection> list, std::size_t still, Counters& counters) {
+        std::size_t out = list.size();
+        for (std::size_t i = moved_.size(); i-- > 0;) {
+            const std::size_t place = place_of(moved_[i], list.first(still), counters);
+            std::copy_backward(list.begin() + static_cast<std::ptrdiff_t>(place),
+                               list.begin() + static_cast<std::ptrdiff_t>(still),
+                               list.begin() + static_cast<std::ptrdiff_t>(out));
+            counters.add(work::moves, still - place + 1);
+            out -= still - place + 1;
+            still = place;
+            list[out] = moved_[i];
+        }
+    }
+
+    /// Behind those of a sorted list that do not follow the entry; doubling steps from the back find it.
+    static std::size_t place_of(const projection& entry, std::span<const projection> list, Counters& counters) {
+        std::size_t reach = 1;
+        const auto follows = [&](std::size_t i) {
+            counters.add(work::comparisons);
+            return precedes(entry, list[i]);
+        };
+        while (reach <= list.size() && follows(list.size() - reach)) reach *= 2;
+        std::size_t low = reach > list.size() ? 0 : list.size() - reach + 1;
+        std::size_t high = list.size() - reach / 2;
+        while (low < high) {
+            const std::size_t middle = low + (high - low) / 2;
+            if (follows(middle))
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        return low;
+    }
+
+    std::array<std::vector<projection>, 3> lists_;  // only those of axes_ have entries
+    std::vector<projection> moved_;
+    axis_set axes_ = 0b001;
+    std::size_t arrivals_ = 0;  // at the end of each list, until they are sorted
+    [[no_unique_address]] std::conditional_t<Counters::enabled, inversion_counter, no_inversion_counter> inversions_;
+};
+
+}  // namespace aabb

@@ -1,0 +1,186 @@
+module;
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+module aabb;
+
+import :counters;
+import :error;
+import :geometry;
+import :membership;
+import :policy;
+import :split_large;
+import :stage;
+
+namespace aabb {
+
+std::optional<double> parse_split_large(std::string_view text) {
+    if (text == "off") return std::nullopt;
+    double size = 0;
+    const char* const end = text.data() + text.size();
+    if (std::from_chars(text.data(), end, size) != std::from_chars_result{end, std::errc{}} || !(size > 0) ||
+        !std::isfinite(size))
+        throw input_error("split_large must be off or a number above 0, in mean extents, not '" + std::string(text) +
+                          "'");
+    return size;
+}
+
+split_large_stage::split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
+    : search_(std::move(search)), size_(size), counted_(counted) {}
+
+void split_large_stage::insert(std::uint32_t id) {
+    objects_.insert(id);
+    if (id >= first_piece_) drop_pieces();
+    search_->insert(id);
+}
+
+void split_large_stage::remove(std::uint32_t id) {
+    objects_.remove(id);
+    search_->remove(id);
+}
+
+void split_large_stage::update(std::span<const box> boxes) {
+    objects_.require_boxes_for_all(boxes.size());
+    require_valid(boxes);
+    boxes_ = boxes;
+    objects_.settle();
+    const double longest = longest_whole(boxes);
+    find_splits(boxes, longest);
+    const bool changed = splits_ != splits_now_ || first_piece_ != boxes.size();
+    if (changed) drop_pieces();
+    splits_.assign(splits_now_.begin(), splits_now_.end());
+    first_piece_ = static_cast<std::uint32_t>(boxes.size());
+    make_pieces(boxes, longest);
+    if (changed)
+        for (std::size_t i = 0; i < piece_objects_.size(); ++i)
+            search_->insert(first_piece_ + static_cast<std::uint32_t>(i));
+    if (counted_ == instrumentation::counters) pieces_counted_ += piece_objects_.size() + splits_.size();
+    search_->update(pieces_);
+}
+
+void split_large_stage::search(std::vector<index_pair>& pairs) {
+    found_.clear();
+    search_->search(found_);
+    for (const auto [a, b] : found_)
+        if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
+}
+
+work_counters split_large_stage::counters() const {
+    work_counters all = search_->counters();
+    all.add(work::pieces, pieces_counted_);
+    return all;
+}
+
+std::vector<part_bytes> split_large_stage::bytes() const {
+    std::vector<part_bytes> parts = search_->bytes();
+    parts.push_back({"split_large", bytes_of(objects_) + bytes_of(splits_) + bytes_of(splits_now_) +
+                                        bytes_of(piece_objects_) + bytes_of(pieces_) + bytes_of(found_)});
+    return parts;
+}
+
+std::vector<std::string> split_large_stage::left_out() const {
+    return search_->left_out();
+}
+
+/// The longest extent that is left whole.
+double split_large_stage::longest_whole(std::span<const box> boxes) const {
+    double extents = 0;
+    std::size_t objects = 0;
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+        if (!objects_.contains(id)) continue;
+        for (int k = 0; k < 3; ++k) extents += double{boxes[id].max[k]} - double{boxes[id].min[k]};
+        ++objects;
+    }
+    return objects == 0 ? 0 : size_ * extents / (3 * static_cast<double>(objects));
+}
+
+split_large_stage::cut_interval split_large_stage::cut(float lower, float upper, double longest) {
+    const double extent = double{upper} - double{lower};
+    cut_interval interval{1, {lower, upper}};
+    if (!(extent > longest)) return interval;
+    const double wanted = std::min(std::ceil(extent / longest), static_cast<double>(most_pieces));
+    interval.pieces = static_cast<std::size_t>(wanted);
+    for (std::size_t i = 1; i < interval.pieces; ++i) {
+        interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
+        // Between floats that are this near each other there is no room for pieces.
+        if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper)) return {1, {lower, upper}};
+    }
+    interval.at[interval.pieces] = upper;
+    return interval;
+}
+
+void split_large_stage::find_splits(std::span<const box> boxes, double longest) {
+    splits_now_.clear();
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+        if (!objects_.contains(id)) continue;
+        split found{id, {}};
+        bool is_split = false;
+        for (int k = 0; k < 3; ++k) {
+            const std::size_t pieces = cut(boxes[id].min[k], boxes[id].max[k], longest).pieces;
+            found.pieces[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(pieces);
+            is_split = is_split || pieces > 1;
+        }
+        if (is_split) splits_now_.push_back(found);
+    }
+}
+
+void split_large_stage::drop_pieces() {
+    for (std::size_t i = 0; i < piece_objects_.size(); ++i)
+        search_->remove(first_piece_ + static_cast<std::uint32_t>(i));
+    piece_objects_.clear();
+    splits_.clear();
+}
+
+void split_large_stage::make_pieces(std::span<const box> boxes, double longest) {
+    pieces_.assign(boxes.begin(), boxes.end());
+    piece_objects_.clear();
+    for (const auto& [object, pieces] : splits_) {
+        const box& whole = boxes[object];
+        std::array<cut_interval, 3> cuts;
+        for (int k = 0; k < 3; ++k) cuts[static_cast<std::size_t>(k)] = cut(whole.min[k], whole.max[k], longest);
+        for (std::size_t x = 0; x < pieces[0]; ++x)
+            for (std::size_t y = 0; y < pieces[1]; ++y)
+                for (std::size_t z = 0; z < pieces[2]; ++z) {
+                    const box piece{{cuts[0].at[x], cuts[1].at[y], cuts[2].at[z]},
+                                    {cuts[0].at[x + 1], cuts[1].at[y + 1], cuts[2].at[z + 1]}};
+                    if (x + y + z == 0) {
+                        pieces_[object] = piece;
+                    } else {
+                        pieces_.push_back(piece);
+                        piece_objects_.push_back(object);
+                    }
+                }
+    }
+}
+
+bool split_large_stage::counts(std::uint32_t piece_a, std::uint32_t piece_b) const {
+    const std::uint32_t a = object_of(piece_a);
+    const std::uint32_t b = object_of(piece_b);
+    if (a == b) return false;
+    for (int k = 0; k < 3; ++k) {
+        const float corner = std::max(boxes_[a].min[k], boxes_[b].min[k]);
+        for (const auto& [piece, object] : {std::pair{piece_a, a}, std::pair{piece_b, b}}) {
+            const bool is_last = pieces_[piece].max[k] == boxes_[object].max[k];
+            if (pieces_[piece].min[k] > corner || (!is_last && pieces_[piece].max[k] <= corner)) return false;
+        }
+    }
+    return true;
+}
+
+std::uint32_t split_large_stage::object_of(std::uint32_t piece) const {
+    return piece < first_piece_ ? piece : piece_objects_[piece - first_piece_];
+}
+
+}  // namespace aabb

@@ -1,0 +1,55 @@
+module;
+#include <concepts>
+#include <span>
+#include <string_view>
+#include <vector>
+
+export module aabb:sweep_policy;
+
+import :counters;
+import :geometry;
+import :membership;
+import :policy;
+import :projection;
+import :sort_policy;
+
+export namespace aabb {
+
+/// Finds the overlapping pairs of a subset from sorted lists. `axes(boxes, present, now)` says which projection lists
+/// it needs this frame: `present` is any one list, `now` the axes that are sorted already.
+template <class S>
+concept ListSweep = Strategy<S> && requires(S policy, std::span<const box> boxes, std::span<const projection> present,
+                                            axis_set now, const whole_subset& all, const partition_subset& part,
+                                            std::vector<index_pair>& pairs, no_counters none, work_counters some) {
+    { policy.axes(boxes, present, now) } -> std::same_as<axis_set>;
+    policy.sweep(all, pairs, none);
+    policy.sweep(part, pairs, some);
+};
+
+namespace detail {
+/// A sort as a sweep that follows swaps may use it.
+struct any_swap_reporting_sort {
+    static constexpr std::string_view name = "any";
+    static constexpr std::string_view summary = "any";
+    template <class Entry, class Counters>
+    static void sort(std::span<Entry>, Counters&) {}
+    template <class Entry, class Counters, class OnSwap>
+    static void sort(std::span<Entry>, Counters&, OnSwap) {}
+};
+}  // namespace detail
+
+/// Keeps the overlapping pairs from frame to frame, and changes them as the swaps of the sort tell: `update` brings the
+/// sweep's own lists up to a frame, `search` appends the pairs.
+template <class S>
+concept CoherentSweep =
+    Strategy<S> && requires(S policy, std::span<const box> boxes, const membership& objects,
+                            detail::any_swap_reporting_sort sort, std::vector<index_pair>& pairs, no_counters none) {
+        policy.update(boxes, objects, sort, none);
+        policy.search(pairs);
+    };
+
+/// Either of the two.
+template <class S>
+concept SweepPolicy = ListSweep<S> || CoherentSweep<S>;
+
+}  // namespace aabb

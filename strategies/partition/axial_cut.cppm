@@ -1,0 +1,210 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+export module aabb.partition.axial_cut;
+
+import aabb;
+
+export namespace aabb {
+
+/// The paper's axial cut (section 2): axes are cut into segments that hold the same number of projection intervals, and
+/// overlap checking stays inside a subset. When to use: almost always in place of a grid; cuts follow the objects, so
+/// neither the size of the world nor clusters matter.
+///
+/// A cut is the lower end of a box, and a box reaches into a segment when lower end < next cut and upper end >= cut.
+/// With the limit no box is cut more than once on any axis, so it has at most two copies for each axis cut: a wanted
+/// cut is left out unless it lies beyond every upper end of the boxes that begin before the cut before it. That takes
+/// comparisons only, and one wide box costs the cuts within it, not those elsewhere.
+class axial_cut_partition {
+public:
+    static constexpr std::string_view name = "axial_cut";
+    static constexpr std::string_view summary =
+        "cuts axes into segments with the same number of projections, no box more than once on an axis";
+
+    enum class limit_choice : std::uint8_t { on, off };
+    struct config {
+        /// How many axes are cut: those on which the centres vary most, the axis that a sweep sorts along last.
+        std::uint32_t axes = 2;
+        /// Segments wanted on each of these axes. auto: what a model of uniformly spread boxes finds cheapest.
+        std::optional<std::uint32_t> segments;
+        /// off: a box may be cut any number of times.
+        limit_choice limit = limit_choice::on;
+    };
+    static constexpr std::tuple parameters{
+        integer_parameter{"axes", &config::axes, 1U, 3U, "how many axes are cut"},
+        integer_parameter{"segments", &config::segments, 1U, 65'535U, "wanted on each of these axes"},
+        choice_parameter{"limit", &config::limit, std::array<std::string_view, 2>{"on", "off"},
+                         "cut no box more than once on an axis"}};
+
+    axial_cut_partition() = default;
+    explicit axial_cut_partition(const config& c) : config_(c) {}
+
+    /// An axis is exchanged for one on which centres vary half as much again only, since its list must be sorted from
+    /// scratch. One on which they do not vary is not cut.
+    axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set swept) {
+        const spread along = spread_of(boxes, present);
+        std::array<int, 3> order{0, 1, 2};
+        const auto is_last = [&](int k) { return swept == axis_set{1} << k; };
+        const auto weight = [&](int k) { return along.variance[k] * (has_axis(cut_, index(k)) ? 1.5 : 1.0); };
+        std::ranges::sort(order, [&](int k, int l) {
+            if (is_last(k) != is_last(l)) return is_last(l);
+            return weight(k) > weight(l) || (weight(k) == weight(l) && k < l);
+        });
+        cut_ = 0;
+        for (std::size_t i = 0; i < config_.axes; ++i)
+            if (along.variance[order[i]] > 0) cut_ |= axis_set{1} << order[i];
+        wanted_ = config_.segments.value_or(cut_ ? cheapest_segments(along, present.size(), swept) : 1);
+        return cut_;
+    }
+
+    /// @throws input_error when there would be more than 2^26 subsets.
+    void fit(const whole_subset& all) {
+        places_.resize(all.boxes.size());
+        std::uint64_t subsets = 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            cuts_[k].clear();
+            if (has_axis(cut_, k)) {
+                choose_cuts(all.boxes, all.lists[k], k);
+                classify(all.boxes, all.lists[k], k);
+            }
+            subsets *= cuts_[k].size() + 1;
+        }
+        if (subsets > most_subsets)
+            throw input_error("axial_cut: " + std::to_string(wanted_) +
+                              " segments an axis make more than 2^26 subsets");
+    }
+
+    [[nodiscard]] std::uint32_t subset_count() const noexcept {
+        return segments_on(0) * segments_on(1) * segments_on(2);
+    }
+
+    [[nodiscard]] segment_counts segments() const noexcept {
+        segment_counts counts{0, 0};
+        for (std::size_t k = 0; k < 3; ++k)
+            if (has_axis(cut_, k)) {
+                counts.wanted += wanted_;
+                counts.got += segments_on(k);
+            }
+        return counts;
+    }
+
+    template <class Visit>
+    void for_each_subset(std::uint32_t id, const box&, Visit visit) const {
+        std::array<range, 3> reach{};
+        for (std::size_t k = 0; k < 3; ++k)
+            if (has_axis(cut_, k)) reach[k] = places_[id][k];
+        for (std::uint32_t x = reach[0].first; x <= reach[0].last; ++x)
+            for (std::uint32_t y = reach[1].first; y <= reach[1].last; ++y)
+                for (std::uint32_t z = reach[2].first; z <= reach[2].last; ++z)
+                    visit((x * segments_on(1) + y) * segments_on(2) + z, axis_set{x == reach[0].first} |
+                                                                             axis_set{y == reach[1].first} << 1 |
+                                                                             axis_set{z == reach[2].first} << 2);
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return bytes_of(places_) + bytes_of(cuts_[0]) + bytes_of(cuts_[1]) + bytes_of(cuts_[2]);
+    }
+
+private:
+    static constexpr std::uint64_t most_subsets = std::uint64_t{1} << 26;
+
+    /// The segments into which a box reaches on an axis, both included.
+    struct range {
+        std::uint16_t first;
+        std::uint16_t last;
+    };
+
+    static constexpr std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
+    [[nodiscard]] std::uint32_t segments_on(std::size_t k) const noexcept {
+        return static_cast<std::uint32_t>(cuts_[k].size()) + 1;
+    }
+
+    void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
+        std::vector<float>& cuts = cuts_[k];
+        float reached =
+            -std::numeric_limits<float>::infinity();  // the last upper end of those begun before the last cut
+        std::size_t begun = 0;
+        for (std::uint64_t i = 1; i < wanted_ && !list.empty(); ++i) {
+            const float cut = list[i * list.size() / wanted_].key;
+            if (!(cut > (cuts.empty() ? list[0].key : cuts.back()))) continue;
+            if (config_.limit == limit_choice::on && !cuts.empty()) {
+                for (; list[begun].key < cuts.back(); ++begun)
+                    reached = std::max(reached, boxes[list[begun].id].max[static_cast<int>(k)]);
+                if (!(cut > reached)) continue;
+            }
+            cuts.push_back(cut);
+        }
+    }
+
+    /// The list is in order, so the segment of a lower end is found by walking along.
+    void classify(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
+        const std::vector<float>& cuts = cuts_[k];
+        std::size_t first = 0;
+        for (const projection& p : list) {
+            while (first < cuts.size() && cuts[first] <= p.key) ++first;
+            const float upper = boxes[p.id].max[static_cast<int>(k)];
+            std::size_t last = first;
+            if (config_.limit == limit_choice::on)
+                last += first < cuts.size() && cuts[first] <= upper;
+            else
+                last = static_cast<std::size_t>(std::ranges::upper_bound(cuts, upper) - cuts.begin());
+            places_[p.id][k] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
+        }
+    }
+
+    /// The number of segments an axis at which copies, subsets and box tests together cost least, were n boxes of the
+    /// mean size spread evenly: S segments of an axis make 1 + x copies of a box, x = S · extent / width, and within a
+    /// subset each box is tested against those that it overlaps on the swept axis. Beyond x = 1 the limit ends it.
+    [[nodiscard]] std::uint32_t cheapest_segments(const spread& along, std::size_t n, axis_set swept) const {
+        constexpr double copy_cost = 8;     // of one box test
+        constexpr double subset_cost = 16;  // the same
+        const auto objects = static_cast<double>(n);
+        vec3d share{};  // of the width of the boxes that a mean box takes; a uniform spread is sqrt(12) deviations wide
+        for (int k = 0; k < 3; ++k) {
+            const double width = std::sqrt(12 * along.variance[k] / objects) / 2 + along.extent[k];
+            share[k] = width > 0 ? along.extent[k] / width : 1;
+        }
+        std::uint32_t best = 1;
+        double least = std::numeric_limits<double>::infinity();
+        for (double s = 1; s <= 65'535; s = std::ceil(s * 1.1)) {
+            double subsets = 1;
+            double copies = objects;
+            double swept_share = 1;
+            for (int k = 0; k < 3; ++k) {
+                const bool is_cut = has_axis(cut_, index(k));
+                if (is_cut) {
+                    subsets *= s;
+                    copies *= 1 + s * share[k];
+                }
+                if (has_axis(swept, index(k))) swept_share = std::min(swept_share, 2 * share[k] * (is_cut ? s : 1));
+            }
+            const double tests = copies / subsets * copies / 2 * std::min(1.0, swept_share);
+            const double cost = copy_cost * copies + subset_cost * subsets + tests;
+            if (cost > least) continue;
+            least = cost;
+            best = static_cast<std::uint32_t>(s);
+        }
+        return best;
+    }
+
+    config config_;
+    axis_set cut_ = 0;
+    std::uint32_t wanted_ = 1;                  // segments an axis
+    std::array<std::vector<float>, 3> cuts_;    // ascending
+    std::vector<std::array<range, 3>> places_;  // by id
+};
+
+static_assert(SegmentingPartition<axial_cut_partition>);
+
+}  // namespace aabb

@@ -1,0 +1,93 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <tuple>
+
+export module aabb.sort.shell;
+
+import aabb;
+
+export namespace aabb {
+
+/// Shell sort, the paper's improved method (section 2): insertion sort over entries a gap apart, for ever smaller gaps.
+/// When to use: lists with entries far from their place, which it brings near in few steps; on lists that are almost
+/// sorted the passes over large gaps are comparisons for nothing.
+class shell_sort {
+public:
+    static constexpr std::string_view name = "shell";
+    static constexpr std::string_view summary =
+        "Shell sort, the improved method: insertion sort over gaps that shrink to 1";
+
+    enum class gap_sequence : std::uint8_t { shell, ciura, tokuda };
+    struct config {
+        /// shell: n/2, n/4, … 1 (Shell 1959). ciura: measured best up to 701 (Ciura 2001), beyond it each 2.25 times
+        /// the one before. tokuda: the integers above (9 (9/4)^k - 4) / 5 (Tokuda 1992).
+        gap_sequence gaps = gap_sequence::ciura;
+    };
+    static constexpr std::tuple parameters{choice_parameter{
+        "gaps", &config::gaps, std::array<std::string_view, 3>{"shell", "ciura", "tokuda"}, "the sequence of gaps"}};
+
+    shell_sort() = default;
+    explicit shell_sort(const config& c) : config_(c) {}
+
+    template <CounterPolicy Counters>
+    constexpr void sort(std::span<projection> list, Counters& counters) const {
+        if (config_.gaps == gap_sequence::shell) {
+            for (std::size_t gap = list.size() / 2; gap > 0; gap /= 2) pass(list, gap, counters);
+            return;
+        }
+        const table& gaps = config_.gaps == gap_sequence::ciura ? ciura : tokuda;
+        for (std::size_t i = gaps.size(); i-- > 0;)
+            if (gaps[i] < list.size()) pass(list, gaps[i], counters);
+    }
+
+private:
+    /// Ascending; the last gap is beyond half of any list of 2^32 entries.
+    using table = std::array<std::size_t, 28>;
+
+    static constexpr table ciura = [] {
+        table gaps{1, 4, 10, 23, 57, 132, 301, 701};
+        for (std::size_t i = 8; i < gaps.size(); ++i) gaps[i] = gaps[i - 1] * 9 / 4;
+        return gaps;
+    }();
+
+    static constexpr table tokuda = [] {
+        table gaps{};
+        double exact = 1;
+        for (std::size_t& gap : gaps) {
+            gap = static_cast<std::size_t>(exact);
+            if (static_cast<double>(gap) < exact) ++gap;
+            exact = 2.25 * exact + 1;
+        }
+        return gaps;
+    }();
+    static_assert(tokuda[1] == 4 && tokuda[2] == 9 && tokuda[3] == 20 && tokuda[4] == 46 && tokuda[8] == 1182);
+
+    template <CounterPolicy Counters>
+    static constexpr void pass(std::span<projection> list, std::size_t gap, Counters& counters) {
+        for (std::size_t i = gap; i < list.size(); ++i) {
+            const projection inserted = list[i];
+            std::size_t hole = i;
+            while (hole >= gap) {
+                counters.add(work::comparisons);
+                if (!precedes(inserted, list[hole - gap])) break;
+                list[hole] = list[hole - gap];
+                counters.add(work::moves);
+                hole -= gap;
+            }
+            if (hole == i) continue;
+            list[hole] = inserted;
+            counters.add(work::moves);
+        }
+    }
+
+    config config_;
+};
+
+static_assert(SortPolicy<shell_sort> && !SwapReportingSort<shell_sort>);
+
+}  // namespace aabb

@@ -1,0 +1,200 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <ranges>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+export module aabb.sweep.incremental;
+
+import aabb;
+
+export namespace aabb {
+
+/// The classic sort and sweep (Baraff 1992; Cohen, Lin, Manocha and Ponamgi, "I-COLLIDE", 1995): lists of both ends of
+/// all intervals, kept sorted by insertion sort, whose swaps are where overlaps begin and end; the overlapping pairs
+/// are kept from frame to frame. When to use: little motion. A frame in which nothing moved tests no pair; one in which
+/// much did costs a step for each two ends that pass each other.
+///
+/// A lower end comes before an upper end of the same value, so touching is overlapping. A pair is put in when it begins
+/// to overlap on an axis and its boxes overlap on all: the order in which axes are sorted does not matter then. Memory
+/// is 16 bytes an object and axis, and 16 to 24 bytes a pair.
+class incremental_sweep {
+public:
+    static constexpr std::string_view name = "incremental";
+    static constexpr std::string_view summary =
+        "keeps the overlapping pairs between frames and follows the swaps of insertion sort";
+
+    template <class... All>
+    static constexpr std::string_view refuses() {
+        if ((CuttingPartition<All> || ...))
+            return "incremental keeps its pairs between frames, but this partition makes other subsets in each frame; "
+                   "it "
+                   "goes with none only";
+        if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
+            return "incremental follows the swaps of neighbours, of which this sort does not tell; it goes with "
+                   "insertion "
+                   "only";
+        return {};
+    }
+
+    template <class Sort, CounterPolicy Counters>
+    void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
+        if (boxes.size() > most_objects)
+            throw input_error("incremental takes at most 2^31 objects, not " + std::to_string(boxes.size()));
+        if (objects.any_departures()) forget_departures(objects);
+        const axis_set before = axes_;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (has_axis(before, k)) sort_known(boxes, k, sort, counters);
+        for (const std::uint32_t id : objects.arrivals()) members_.push_back(id);
+        const vec3d separation = separation_of(boxes, members_);
+        axes_ = separating_axes(separation);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (has_axis(axes_ & ~before, k)) begin_axis(boxes, k);
+            if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
+            if (!has_axis(axes_, k)) ends_[k].clear();
+        }
+        if (axes_ & ~before) {
+            // All overlapped on a new axis until now, so no other pair can have changed on it.
+            pairs_.erase_if([&](index_pair p) {
+                counters.add(work::box_tests);
+                return !overlaps(boxes[p.a], boxes[p.b]);
+            });
+        }
+        if (!objects.arrivals().empty()) find_pairs_of_arrivals(boxes, objects, longest_axis(separation), counters);
+    }
+
+    void search(std::vector<index_pair>& pairs) const {
+        pairs.insert(pairs.end(), pairs_.pairs().begin(), pairs_.pairs().end());
+    }
+
+    [[nodiscard]] axis_set axes() const noexcept { return axes_; }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return bytes_of(ends_[0]) + bytes_of(ends_[1]) + bytes_of(ends_[2]) + bytes_of(arriving_) + bytes_of(members_) +
+               bytes_of(place_) + bytes_of(active_[0]) + bytes_of(active_[1]) + bytes_of(pairs_);
+    }
+
+private:
+    static constexpr std::size_t most_objects = std::size_t{1} << 31;
+
+    /// One end of an object's interval on an axis.
+    struct interval_end {
+        float key;
+        std::uint32_t id : 31;
+        std::uint32_t is_upper : 1;
+
+        friend constexpr bool precedes(const interval_end& e, const interval_end& f) noexcept {
+            return e.key < f.key || (e.key == f.key && e.is_upper < f.is_upper);
+        }
+    };
+    static_assert(sizeof(interval_end) == 8);
+
+    [[nodiscard]] static interval_end lower_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
+        return {boxes[id].min[static_cast<int>(axis)], id, 0};
+    }
+    [[nodiscard]] static interval_end upper_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
+        return {boxes[id].max[static_cast<int>(axis)], id, 1};
+    }
+
+    void forget_departures(const membership& objects) {
+        for (auto& list : ends_) std::erase_if(list, [&](const interval_end& e) { return objects.is_leaving(e.id); });
+        std::erase_if(members_, [&](std::uint32_t id) { return objects.is_leaving(id); });
+        pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
+    }
+
+    template <class Sort, CounterPolicy Counters>
+    void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
+        bool moved = false;
+        for (interval_end& e : ends_[axis]) {
+            const float key =
+                e.is_upper ? boxes[e.id].max[static_cast<int>(axis)] : boxes[e.id].min[static_cast<int>(axis)];
+            moved |= key != e.key;
+            e.key = key;
+        }
+        if (!moved) return;
+        sort.sort(std::span(ends_[axis]), counters, [&](const interval_end& passed, const interval_end& mover) {
+            if (passed.is_upper == mover.is_upper) return;
+            const index_pair pair = ordered_pair(passed.id, mover.id);
+            if (mover.is_upper) return pairs_.erase(pair);
+            counters.add(work::box_tests);
+            if (overlaps(boxes[pair.a], boxes[pair.b])) pairs_.insert(pair);
+        });
+    }
+
+    /// A list from scratch, of all objects.
+    void begin_axis(std::span<const box> boxes, std::size_t axis) {
+        std::vector<interval_end>& list = ends_[axis];
+        list.clear();
+        for (const std::uint32_t id : members_) {
+            list.push_back(lower_end(boxes, id, axis));
+            list.push_back(upper_end(boxes, id, axis));
+        }
+        std::ranges::sort(list, [](const auto& e, const auto& f) { return precedes(e, f); });
+    }
+
+    void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
+        arriving_.clear();
+        for (const std::uint32_t id : objects.arrivals()) {
+            arriving_.push_back(lower_end(boxes, id, axis));
+            arriving_.push_back(upper_end(boxes, id, axis));
+        }
+        std::ranges::sort(arriving_, [](const auto& e, const auto& f) { return precedes(e, f); });
+        std::vector<interval_end>& list = ends_[axis];
+        std::size_t known = list.size();
+        list.resize(known + arriving_.size());
+        for (std::size_t out = list.size(), left = arriving_.size(); left > 0;)
+            list[--out] =
+                known > 0 && precedes(arriving_[left - 1], list[known - 1]) ? list[--known] : arriving_[--left];
+    }
+
+    /// Of the axes with a list.
+    [[nodiscard]] std::size_t longest_axis(const vec3d& separation) const {
+        auto longest = static_cast<std::size_t>(std::countr_zero(axes_));
+        for (std::size_t k = longest + 1; k < 3; ++k)
+            if (has_axis(axes_, k) && separation[static_cast<int>(k)] > separation[static_cast<int>(longest)])
+                longest = k;
+        return longest;
+    }
+
+    /// Sweeps one list, and tests what arrived against what is active and what begins against active arrivals.
+    template <CounterPolicy Counters>
+    void find_pairs_of_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis,
+                                Counters& counters) {
+        place_.resize(boxes.size());
+        for (const interval_end& e : ends_[axis]) {
+            const bool is_arrival = objects.is_arrival(e.id);
+            std::vector<std::uint32_t>& own = active_[is_arrival];
+            if (e.is_upper) {
+                place_[own.back()] = place_[e.id];
+                own[place_[e.id]] = own.back();
+                own.pop_back();
+                continue;
+            }
+            for (std::size_t of_arrivals = is_arrival ? 0 : 1; of_arrivals < 2; ++of_arrivals)
+                for (const std::uint32_t other : active_[of_arrivals]) {
+                    counters.add(work::box_tests);
+                    if (overlaps(boxes[e.id], boxes[other])) pairs_.insert(ordered_pair(e.id, other));
+                }
+            place_[e.id] = static_cast<std::uint32_t>(own.size());
+            own.push_back(e.id);
+        }
+    }
+
+    axis_set axes_ = 0;                              // with a list
+    std::array<std::vector<interval_end>, 3> ends_;  // sorted
+    std::vector<std::uint32_t> members_;             // all objects
+    pair_set pairs_;
+    // While arrivals are brought in:
+    std::vector<interval_end> arriving_;
+    std::array<std::vector<std::uint32_t>, 2> active_;  // those met and not yet left, known ones and arrivals
+    std::vector<std::uint32_t> place_;                  // of an active object in its vector
+};
+
+static_assert(CoherentSweep<incremental_sweep>);
+
+}  // namespace aabb
