@@ -69,6 +69,21 @@ metrics = ["time", "bytes"]
     REQUIRE((e.measured.time && !e.measured.counts && e.measured.bytes && !e.measured.error));
 }
 
+TEST_CASE("Several [[compose]] multiply each for itself, and large objects may be split") {
+    const experiment e = parsed(minimal + R"(
+[[compose]]
+sort = ["insertion", "shell"]
+partition = "axial_cut"
+split_large = ["off", 4, 2.5]
+[[compose]]
+sort = "insertion"
+sweep = "incremental"
+)");
+    REQUIRE(e.compositions.size() == 2 * 3 + 1);
+    REQUIRE(to_text(e.compositions[2].global) == "insertion + axial_cut + one_axis + split_large=2.5");
+    REQUIRE(to_text(e.compositions[6].global) == "insertion + none + incremental");
+}
+
 TEST_CASE("The option --quick takes what the config says under quick") {
     const std::string text = minimal + "frames = 7\nquick = { objects = 5 }\n[measure]\nrepeats = 20\n";
     REQUIRE(parsed(text).repeats == 20);

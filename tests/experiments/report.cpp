@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "temporary_folder.hpp"
@@ -47,6 +48,52 @@ TEST_CASE("Quartiles are interpolated") {
     REQUIRE(q.median == 2.5);
     REQUIRE(q.high == 3.25);
     REQUIRE(aabblab::quartiles_of({7}).low == 7);
+}
+
+TEST_CASE("The interval of a median leaves out what a sign test would not reject") {
+    const auto ends = [](int n) {
+        std::vector<double> values;
+        for (int i = 1; i <= n; ++i) values.push_back(i);
+        const aabblab::interval i = aabblab::median_interval(values);
+        return std::pair(i.low, i.high);
+    };
+    // Tables of the binomial distribution: with 6 values the range, with 9 the second and the last but one, with 20 the
+    // sixth and the last but five.
+    REQUIRE(ends(1) == std::pair(1.0, 1.0));
+    REQUIRE(ends(5) == std::pair(1.0, 5.0));
+    REQUIRE(ends(6) == std::pair(1.0, 6.0));
+    REQUIRE(ends(9) == std::pair(2.0, 8.0));
+    REQUIRE(ends(20) == std::pair(6.0, 15.0));
+}
+
+TEST_CASE("Ratios are taken within a repeat") {
+    std::vector<row> rows;
+    for (std::uint64_t repeat = 0; repeat < 7; ++repeat) {
+        // The machine slows down; the second stays twice as slow as the first.
+        const double slow = 1 + static_cast<double>(repeat);
+        rows.push_back(repeat_of("std", repeat, slow));
+        rows.push_back(repeat_of("insertion", repeat, 2 * slow));
+    }
+    const aabblab::summary_line line = aabblab::summarise(rows)[0].lines[1];
+    REQUIRE(line.ratio.value_or(0) == 2);
+    REQUIRE(line.ratio_interval->low == 2);
+    REQUIRE(line.ratio_interval->high == 2);
+}
+
+TEST_CASE("The table of counts has what was counted, a frame, and copies an object") {
+    row counted = repeat_of("std", 0, 1);
+    counted.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 300;
+    counted.counts[static_cast<std::size_t>(aabb::work::subset_copies)] = 45;
+    counted.bytes[0] = 2048;
+    row engine = repeat_of("", 0, 1);
+    engine.name = {};
+    engine.name.engine = "cgal";
+    const auto scene = aabblab::summarise(std::vector<row>{counted, engine})[0];
+    REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene, aabblab::number_style::plain)) ==
+            "composition,comparisons,subset copies,an object,bytes projections\n"
+            "this composition,100.000,15.000,1.500,2048\n");
+    REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0], aabblab::number_style::plain)
+                .columns.empty());
 }
 
 TEST_CASE("CSV fields survive commas and quotes") {

@@ -1,0 +1,48 @@
+#include <rapidcheck.h>
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+import aabb;
+
+using namespace aabb;
+
+namespace {
+
+std::vector<index_pair> sorted(const pair_set& set) {
+    std::vector<index_pair> pairs(set.pairs().begin(), set.pairs().end());
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("a pair set holds what a set would, whatever comes and goes") {
+    REQUIRE(rc::check([] {
+        pair_set set;
+        std::set<index_pair> expected;
+        // Few ids make pairs that are put in twice, and ones that go and come back.
+        const auto ids = *rc::gen::element<std::uint32_t>(4, 40, 4'000'000'000U);
+        for (int step = *rc::gen::inRange(0, 400); step > 0; --step) {
+            const index_pair pair{*rc::gen::inRange<std::uint32_t>(0, ids), *rc::gen::inRange<std::uint32_t>(0, ids)};
+            switch (*rc::gen::inRange(0, 8)) {
+                case 0: {
+                    const std::uint32_t divisor = *rc::gen::inRange<std::uint32_t>(1, 5);
+                    const auto goes = [&](index_pair p) { return p.a % divisor == 0; };
+                    set.erase_if(goes);
+                    std::erase_if(expected, goes);
+                    break;
+                }
+                case 1:
+                case 2:
+                    set.erase(pair);
+                    expected.erase(pair);
+                    break;
+                default: set.insert(pair); expected.insert(pair);
+            }
+        }
+        RC_ASSERT(sorted(set) == std::vector<index_pair>(expected.begin(), expected.end()));
+    }));
+}

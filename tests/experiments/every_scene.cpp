@@ -1,0 +1,49 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "../compositions.hpp"
+
+import aabb;
+import aabb.validation;
+import aabblab.config;
+import aabblab.runner;
+import aabblab.scenes;
+
+TEST_CASE("every composition is exact on every scene of boxes") {
+    std::vector<aabblab::contender> contenders;
+    for (const aabb::global_composition& c : all_global_compositions())
+        contenders.push_back(aabblab::contender_of(aabblab::composition{c, {}}, false));
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (const auto contender = aabblab::contender_of(engine, false)) contenders.push_back(*contender);
+    REQUIRE(contenders.size() > 500);
+    for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
+        if (info.has_meshes) continue;
+        const aabblab::scene_verdicts all =
+            aabblab::validate_scene({info.name, {{"objects", "100"}, {"frames", "4"}}, {}, 3}, contenders);
+        for (const aabblab::verdict& v : all.verdicts) {
+            INFO(info.name << ": " << v.failure);
+            REQUIRE(v.failure.empty());
+            REQUIRE(v.digest == all.digest);
+        }
+    }
+}
+
+TEST_CASE("objects of a scene that come and go come and go in the search") {
+    aabblab::scene_play scene({"population", {{"objects", "200"}, {"frames", "5"}}, {}, 1});
+    std::vector<bool> present(200);
+    std::size_t changes = 0;
+    for (bool first = true; scene.next(); first = false) {
+        for (const std::uint32_t object : scene.arrivals()) {
+            REQUIRE_FALSE(present[object]);
+            present[object] = true;
+        }
+        for (const std::uint32_t object : scene.departures()) {
+            REQUIRE(present[object]);
+            present[object] = false;
+        }
+        if (!first) changes += scene.arrivals().size() + scene.departures().size();
+    }
+    REQUIRE(changes > 0);
+}

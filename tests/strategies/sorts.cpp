@@ -1,0 +1,118 @@
+#include <rapidcheck.h>
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+import aabb;
+import aabb.sort.insertion;
+import aabb.sort.shell;
+import aabb.strategies;
+
+using namespace aabb;
+
+namespace {
+
+std::vector<projection> any_list() {
+    std::vector<projection> list(*rc::gen::inRange<std::size_t>(0, 3000));
+    const int keys = *rc::gen::element(2, 50, 100'000);
+    for (std::uint32_t id = 0; id < list.size(); ++id)
+        list[id] = {static_cast<float>(*rc::gen::inRange(-keys, keys)) / 8, id};
+    return list;
+}
+
+bool by_id(const projection& p, const projection& q) {
+    return p.id < q.id;
+}
+
+template <class Sort>
+void check_sorts(const Sort& sort) {
+    REQUIRE(rc::check([&] {
+        const std::vector<projection> given = any_list();
+        std::vector<projection> list = given;
+        no_counters none;
+        sort.sort(std::span(list), none);
+        RC_ASSERT(std::ranges::is_sorted(list, precedes));
+        std::ranges::sort(list, by_id);
+        for (std::size_t i = 0; i < list.size(); ++i)
+            RC_ASSERT(list[i].id == given[i].id && list[i].key == given[i].key);
+    }));
+}
+
+template <class... Sorts>
+void check_all(type_list<Sorts...>) {
+    (check_sorts(Sorts{}), ...);
+}
+
+std::vector<projection> list_of(const std::vector<float>& keys) {
+    std::vector<projection> list;
+    for (const float key : keys) list.push_back({key, static_cast<std::uint32_t>(list.size())});
+    return list;
+}
+
+}  // namespace
+
+TEST_CASE("every sort sorts and loses nothing") {
+    check_all(sorts{});
+    for (const char* gaps : {"shell", "ciura", "tokuda"})
+        check_sorts(shell_sort(configured<shell_sort>(std::vector<setting>{{"gaps", gaps}})));
+}
+
+TEST_CASE("insertion sort moves and compares as its inversions say") {
+    work_counters counted;
+    auto list = list_of({3, 1, 2, 5, 4});
+    insertion_sort::sort(std::span(list), counted);
+    // Three inversions; one comparison each, and one that ends the way of each entry that does not reach the front.
+    CHECK(counted[work::comparisons] == 6);
+    CHECK(counted[work::moves] == 6);
+    work_counters nothing_to_do;
+    insertion_sort::sort(std::span(list), nothing_to_do);
+    CHECK(nothing_to_do[work::comparisons] == 4);
+    CHECK(nothing_to_do[work::moves] == 0);
+}
+
+TEST_CASE("insertion sort tells of each inversion once") {
+    REQUIRE(rc::check([] {
+        auto list = list_of({});
+        for (auto n = *rc::gen::inRange<std::uint32_t>(0, 40); n > 0; --n)
+            list.push_back({static_cast<float>(*rc::gen::inRange(0, 9)), n});
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+        for (std::size_t i = 0; i < list.size(); ++i)
+            for (std::size_t j = i + 1; j < list.size(); ++j)
+                if (precedes(list[j], list[i])) expected.emplace_back(list[i].id, list[j].id);
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> told;
+        no_counters none;
+        insertion_sort::sort(std::span(list), none, [&](const projection& passed, const projection& moved) {
+            told.emplace_back(passed.id, moved.id);
+        });
+        std::ranges::sort(expected);
+        std::ranges::sort(told);
+        RC_ASSERT(told == expected);
+    }));
+}
+
+TEST_CASE("the gap sequences are the published ones: comparisons on a sorted list of 1000") {
+    // A pass over gap g compares each of the n - g entries once.
+    const auto comparisons = [](const char* gaps) {
+        std::vector<float> keys;
+        for (int i = 0; i < 1000; ++i) keys.push_back(static_cast<float>(i));
+        auto list = list_of(keys);
+        work_counters counted;
+        shell_sort(configured<shell_sort>(std::vector<setting>{{"gaps", gaps}})).sort(std::span(list), counted);
+        CHECK(counted[work::moves] == 0);
+        return counted[work::comparisons];
+    };
+    const auto expected = [](const std::vector<std::uint64_t>& gaps) {
+        std::uint64_t all = 0;
+        for (const std::uint64_t gap : gaps) all += 1000 - gap;
+        return all;
+    };
+    CHECK(comparisons("shell") == expected({500, 250, 125, 62, 31, 15, 7, 3, 1}));
+    CHECK(comparisons("ciura") == expected({701, 301, 132, 57, 23, 10, 4, 1}));
+    CHECK(comparisons("tokuda") == expected({525, 233, 103, 46, 20, 9, 4, 1}));
+}

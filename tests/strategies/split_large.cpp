@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+import aabb;
+import aabb.registry;
+
+using namespace aabb;
+using Catch::Matchers::Message;
+
+namespace {
+
+std::unique_ptr<global_stage> splitting(double size, std::uint32_t objects) {
+    auto stage =
+        compose(global_composition{{"std", {}}, {"none", {}}, {"one_axis", {}}, size}, instrumentation::counters);
+    for (std::uint32_t id = 0; id < objects; ++id) stage->insert(id);
+    return stage;
+}
+
+std::vector<index_pair> pairs_of(global_stage& stage, const std::vector<box>& boxes) {
+    std::vector<index_pair> pairs;
+    stage.update(boxes);
+    stage.search(pairs);
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+box cube(float at, float edge) {
+    return {{at, at, at}, {at + edge, at + edge, at + edge}};
+}
+
+}  // namespace
+
+TEST_CASE("a large object is swept as pieces and reported once") {
+    std::vector<box> boxes;
+    for (int i = 0; i < 60; ++i) boxes.push_back(cube(static_cast<float>(i), 1));
+    boxes.push_back(cube(0, 60));  // overlaps all the others
+    const auto stage = splitting(2, 61);
+    const std::vector<index_pair> pairs = pairs_of(*stage, boxes);
+    // The mean extent is 120 / 61; pieces are no longer than twice that, and no more than 16 an axis.
+    CHECK(stage->counters()[work::pieces] == 16 * 16 * 16);
+    CHECK(pairs.size() == 59 + 60);
+    CHECK(std::ranges::adjacent_find(pairs) == pairs.end());
+    CHECK(std::ranges::count(pairs, 60U, &index_pair::b) == 60);
+}
+
+TEST_CASE("a box is cut on those axes only on which it is long") {
+    std::vector<box> boxes(9, cube(0, 1));
+    boxes.push_back({{0, 0, 0}, {10, 1, 1}});
+    // The mean extent is 1.3: four pieces of at most 2.6.
+    const auto stage = splitting(2, 10);
+    CHECK(pairs_of(*stage, boxes).size() == 45);
+    CHECK(stage->counters()[work::pieces] == 4);
+}
+
+TEST_CASE("pieces follow objects that grow, shrink, come and go, and frames of other sizes") {
+    const auto stage = splitting(1.5, 4);
+    std::vector<box> boxes{cube(0, 1), cube(0.5F, 1), cube(10, 1), cube(0, 1)};
+    CHECK(pairs_of(*stage, boxes).size() == 3);
+    boxes[0] = cube(0, 20);
+    CHECK(pairs_of(*stage, boxes).size() == 4);
+    boxes.push_back(cube(15, 1));
+    stage->insert(4);
+    CHECK(pairs_of(*stage, boxes).size() == 5);
+    stage->remove(0);
+    CHECK(pairs_of(*stage, boxes).size() == 1);
+    stage->insert(0);
+    stage->remove(4);
+    boxes.pop_back();
+    CHECK(pairs_of(*stage, boxes).size() == 4);
+    CHECK_THROWS_MATCHES(stage->insert(2), input_error, Message("object 2 is inserted twice"));
+    CHECK_THROWS_MATCHES(stage->remove(900), input_error, Message("object 900 is removed but was never inserted"));
+}
+
+TEST_CASE("a box without room for pieces between its floats stays whole") {
+    const float next = std::nextafter(1.0F, 2.0F);
+    std::vector<box> boxes(20, {{1, 1, 1}, {1, 1, 1}});
+    boxes.push_back({{1, 1, 1}, {next, next, next}});
+    const auto stage = splitting(0.5, 21);
+    CHECK(pairs_of(*stage, boxes).size() == 21 * 20 / 2);
+    CHECK(stage->counters()[work::pieces] == 0);
+}
+
+TEST_CASE("split_large is off or a number above 0") {
+    CHECK_FALSE(parse_split_large("off").has_value());
+    CHECK(parse_split_large("2.5") == std::optional(2.5));
+    for (const std::string text : {"", "on", "0", "-1", "nan", "inf", "2x"})
+        CHECK_THROWS_MATCHES(
+            parse_split_large(text), input_error,
+            Message("split_large must be off or a number above 0, in mean extents, not '" + text + "'"));
+}
