@@ -47,6 +47,7 @@ void explain_contender(const scene_choice& choice, const contender& who) {
                     p.local_bytes());
     print("    left out\n");
     for (const std::string& sentence : p.left_out()) print("      " + sentence + "\n");
+    if (name.split_large == "off") print("      no split_large: large objects are searched whole\n");
 }
 
 /// Parts of the config that a scene has no use for.

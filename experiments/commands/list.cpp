@@ -33,6 +33,9 @@ constexpr metric_info metrics[] = {
     {"error", "pairs missed and pairs invented against the exact answer"},
 };
 
+constexpr std::string_view split_large_summary =
+    "splits boxes longer than this many mean extents: off or a number above 0";
+
 nlohmann::ordered_json to_json(std::span<const aabb::parameter_info> parameters) {
     auto all = nlohmann::ordered_json::array();
     for (const auto& p : parameters)
@@ -47,6 +50,7 @@ nlohmann::ordered_json everything() {
         for (const auto& s : aabb::strategies(kind))
             of_kind.push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
     }
+    all["split_large"] = {{"default", "off"}, {"summary", split_large_summary}};
     for (const auto& e : aabb::engines())
         all["engines"].push_back({{"name", e.name},
                                   {"summary", e.summary},
@@ -104,6 +108,8 @@ void print_text() {
             all.parameters(s.parameters);
         }
     }
+    all.heading("before the search");
+    all.entry("split_large=off", std::string(split_large_summary));
     all.heading("engines");
     for (const auto& e : aabb::engines()) all.entry(e.name, e.summary + " (" + scope_of(e) + ")");
     all.heading("scenes");

@@ -48,13 +48,14 @@ std::vector<composition> every_composition() {
 
 experiment built_in_experiment() {
     experiment e;
-    e.scenes = {{"brownian", {{"objects", "1000"}, {"frames", "5"}}, {}, 1},
-                {"lattice", {{"objects", "1000"}, {"frames", "5"}}, {}, 1},
-                {"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, 1},
-                {"mesh_swarm",
-                 {{"objects", "40"}, {"frames", "4"}},
-                 {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
-                 1}};
+    for (const scene_info& info : scene_kinds())
+        if (!info.has_meshes) e.scenes.push_back({info.name, {{"objects", "1000"}, {"frames", "5"}}, {}, 1});
+    e.scenes.insert(e.scenes.end(),
+                    {{"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, 1},
+                     {"mesh_swarm",
+                      {{"objects", "40"}, {"frames", "4"}},
+                      {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
+                      1}});
     e.compositions = every_composition();
     for (const aabb::engine_info& engine : aabb::engines()) e.engines.push_back(engine.name);
     return e;
@@ -70,8 +71,15 @@ std::string answer_of(const verdict& v) {
     return text;
 }
 
-int validate(const std::optional<std::string>& config) {
-    const experiment e = config ? open_experiment(*config, false) : built_in_experiment();
+struct validate_request {
+    std::optional<std::string> config;
+    bool quick = false;
+};
+
+int validate(const validate_request& request) {
+    if (request.quick && !request.config)
+        throw aabb::input_error("--quick takes what a config says under quick, so it needs CONFIG");
+    const experiment e = request.config ? open_experiment(*request.config, request.quick) : built_in_experiment();
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
         const scene_verdicts result = validate_scene(scene, contenders_for(e, scene));
@@ -97,10 +105,11 @@ int validate(const std::optional<std::string>& config) {
 void add_validate(CLI::App& program, int& status) {
     auto* command = program.add_subcommand(
         "validate", "Exactness of every composition of an experiment, or of all there are, against the references");
-    auto config = std::make_shared<std::optional<std::string>>();
-    command->add_option("CONFIG", *config, "Config of the experiment (.toml); without one, every composition")
+    auto request = std::make_shared<validate_request>();
+    command->add_option("CONFIG", request->config, "Config of the experiment (.toml); without one, every composition")
         ->type_name("");
-    command->callback([config, &status] { status = validate(*config); });
+    command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
+    command->callback([request, &status] { status = validate(*request); });
 }
 
 }  // namespace aabblab

@@ -65,8 +65,10 @@ public:
     [[nodiscard]] std::vector<std::string> left_out() const override {
         std::vector<std::string> absent;
         if constexpr (!CuttingPartition<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
-        for (int k = 0; k < 3; ++k)
-            if (!has_axis(search_.sorted_axes(), static_cast<std::size_t>(k)))
+        if constexpr (CoherentSweep<Sweep>)
+            absent.emplace_back("no projection lists beside those that the sweep keeps for itself");
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!has_axis(search_.sorted_axes(), k))
                 absent.push_back(std::string("no projection list of the ") + "xyz"[k] + " axis");
         if constexpr (!Counters::enabled) absent.emplace_back("no work counters");
         return absent;
