@@ -13,24 +13,26 @@ namespace aabblab {
 
 namespace {
 
-constexpr double label_width = 330;
+constexpr double character_width = 7;  // of the labels, about
 constexpr double plot_width = 520;
 constexpr double row_height = 24;
 constexpr double top = 40;
 
 /// A logarithmic axis from the decade below the least value to the one above the greatest.
 struct log_axis {
-    log_axis(double least, double greatest)
-        : first_(static_cast<int>(std::floor(std::log10(least)))),
+    log_axis(double begin, double least, double greatest)
+        : begin_(begin),
+          first_(static_cast<int>(std::floor(std::log10(least)))),
           last_(std::max(first_ + 1, static_cast<int>(std::ceil(std::log10(greatest))))) {}
 
     [[nodiscard]] double operator()(double value) const {
-        return label_width + plot_width * (std::log10(value) - first_) / (last_ - first_);
+        return begin_ + plot_width * (std::log10(value) - first_) / (last_ - first_);
     }
     [[nodiscard]] int first() const { return first_; }
     [[nodiscard]] int last() const { return last_; }
 
 private:
+    double begin_;
     int first_;
     int last_;
 };
@@ -48,7 +50,10 @@ std::string figure_of(const scene_summary& scene) {
         least = std::min(least, line->ms_a_frame->low);
         greatest = std::max(greatest, line->ms_a_frame->high);
     }
-    const log_axis x(least, greatest);
+    std::size_t longest = 0;
+    for (const summary_line* line : lines) longest = std::max(longest, line->label.size());
+    const double label_width = character_width * static_cast<double>(longest) + 20;
+    const log_axis x(label_width, least, greatest);
     const double bottom = top + row_height * static_cast<double>(lines.size());
     const double width = label_width + plot_width + 30;
     std::string svg = fmt::format(
@@ -57,13 +62,15 @@ std::string figure_of(const scene_summary& scene) {
         "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
         "<text x=\"10\" y=\"22\" font-weight=\"bold\">{2}: ms a frame, median and quartiles</text>\n",
         width, bottom + 30, scene.scene);
-    for (int decade = x.first(); decade <= x.last(); ++decade) {
-        const double value = std::pow(10, decade);
+    std::vector<double> ticks;
+    for (int decade = x.first(); decade <= x.last(); ++decade)
+        for (const int step : {1, 2, 5})
+            if (step == 1 || decade < x.last()) ticks.push_back(step * std::pow(10, decade));
+    for (const double value : ticks)
         svg += fmt::format(
             "<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"#ccc\"/>\n"
             "<text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">{4:g}</text>\n",
             x(value), top, bottom, bottom + 18, value);
-    }
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const quartiles& q = *lines[i]->ms_a_frame;
         const double y = top + row_height * (static_cast<double>(i) + 0.5);

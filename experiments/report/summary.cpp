@@ -88,14 +88,19 @@ void set_labels(scene_summary& scene) {
             if (line.name.engine.empty()) values.insert(line.name.*part.field);
         if (values.size() > 1)
             scene.differing.push_back(part);
-        else if (!values.empty() && !values.begin()->empty())
+        else if (!values.empty() && !values.begin()->empty() && *values.begin() != "off")
             scene.common += (scene.common.empty() ? "" : ", ") + std::string(part.kind) + " " + *values.begin();
     }
     for (summary_line& line : scene.lines) {
         line.label = line.name.engine;
         if (!line.label.empty()) continue;
-        for (const name_part& part : scene.differing)
-            line.label += (line.label.empty() ? "" : " + ") + line.name.*part.field;
+        for (const name_part& part : scene.differing) {
+            const std::string& value = line.name.*part.field;
+            // A size does not speak for itself, as the name of a strategy does.
+            const bool is_size = part.field == &contender_name::split_large;
+            if (is_size && value == "off") continue;
+            line.label += (line.label.empty() ? "" : " + ") + (is_size ? "split_large=" + value : value);
+        }
         if (line.label.empty()) line.label = "this composition";
     }
 }
@@ -115,7 +120,7 @@ std::string three_digits(double value) {
 
 /// The cells of a line from its times, "-" for what was not timed.
 std::vector<std::string> time_cells(const summary_line& line, int decimals, number_style style) {
-    if (!line.ms_a_frame) return {"-", "-", "-", "-", "-"};
+    if (!line.ms_a_frame) return {"-", "-", "-", "-"};
     const auto [low, median, high] = *line.ms_a_frame;
     const bool plain = style == number_style::plain;
     const std::string ratio = line.ratio ? fmt::format("{:.{}f}", *line.ratio, plain ? 6 : 2) : "-";
@@ -123,11 +128,12 @@ std::vector<std::string> time_cells(const summary_line& line, int decimals, numb
                                    ? fmt::format("{:.{}f}-{:.{}f}", line.ratio_interval->low, plain ? 6 : 2,
                                                  line.ratio_interval->high, plain ? 6 : 2)
                                    : "-";
-    if (plain)
-        return {fmt::format("{:.6f}", median), fmt::format("{:.6f}-{:.6f}", low, high), ratio, around,
-                fmt::format("{:.6f}", *line.build_ms)};
-    return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high), ratio, around,
-            fmt::format("{:.2f}", *line.build_ms)};
+    if (plain) return {fmt::format("{:.6f}", median), fmt::format("{:.6f}-{:.6f}", low, high), ratio, around};
+    return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high), ratio, around};
+}
+
+std::string build_cell(double ms, number_style style) {
+    return fmt::format("{:.{}f}", ms, style == number_style::plain ? 6 : 2);
 }
 
 std::string bytes_cell(const std::optional<std::uint64_t>& bytes, number_style style) {
@@ -231,7 +237,8 @@ table table_of(const scene_summary& scene, number_style style) {
     table t{name_columns_of(scene), {}};
     t.columns.insert(t.columns.end(), {{"answer", false}, {"pairs"}});
     if (meshes) t.columns.push_back({"contacts"});
-    if (timed) t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles"}, {"ratio"}, {"95 %"}, {"build"}});
+    if (timed) t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles"}, {"ratio"}, {"95 %"}});
+    if (timed && meshes) t.columns.push_back({"build"});
     if (sized) t.columns.push_back({style == number_style::plain ? "bytes" : "KiB"});
     for (const summary_line& line : scene.lines) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene, line));
@@ -239,6 +246,7 @@ table table_of(const scene_summary& scene, number_style style) {
         if (meshes) cells.push_back(line.contacts ? number_text(*line.contacts, style) : "-");
         if (timed)
             for (std::string& cell : time_cells(line, decimals, style)) cells.push_back(std::move(cell));
+        if (timed && meshes) cells.push_back(line.build_ms ? build_cell(*line.build_ms, style) : "-");
         if (sized) cells.push_back(bytes_cell(line.bytes, style));
     }
     return t;
