@@ -29,9 +29,8 @@ namespace aabb {
 std::optional<double> parse_split_large(std::string_view text) {
     if (text == "off") return std::nullopt;
     double size = 0;
-    const char* const end = text.data() + text.size();
-    if (std::from_chars(text.data(), end, size) != std::from_chars_result{end, std::errc{}} || !(size > 0) ||
-        !std::isfinite(size))
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
+    if (error != std::errc{} || end != text.data() + text.size() || !(size > 0) || !std::isfinite(size))
         throw input_error("split_large must be off or a number above 0, in mean extents, not '" + std::string(text) +
                           "'");
     return size;
