@@ -1,5 +1,6 @@
 module;
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -48,6 +49,7 @@ struct work_counters {
 /// A policy that receives the work done.
 template <class C>
 concept CounterPolicy = requires(C counters, work what) {
+    { C::enabled } -> std::convertible_to<bool>;
     counters.add(what);
     counters.add(what, std::uint64_t{2});
 };

@@ -44,20 +44,27 @@ public:
     void remove(std::uint32_t id) { objects_.remove(id); }
 
     /// Sorts and partitions the boxes of a frame, indexed by id. They are looked at again by `search`.
-    /// @throws input_error on a box that is not finite or inverted, or when ids reach beyond the boxes.
+    /// @throws input_error on a box that is not finite or inverted, when ids reach beyond the boxes, or when the
+    /// partition refuses; another update must succeed before the next search then.
     void update(std::span<const box> boxes) {
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
         boxes_ = boxes;
         lists_.settle(objects_);
         objects_.settle();
-        const axis_set swept = sweep_.axes(boxes, lists_.members(), lists_.axes());
+        const axis_set swept = sweep_.axes(boxes, objects_);
         axis_set needed = swept;
-        if constexpr (cuts) needed |= partition_.axes(boxes, lists_.members(), swept);
+        if constexpr (cuts) {
+            subsets_.clear();
+            needed |= partition_.axes(boxes, objects_, swept);
+        }
         lists_.sort(boxes, needed, sort_, counters_);
         if constexpr (cuts) {
             partition_.fit(lists_.all(boxes));
-            subsets_.distribute(partition_, lists_.all(boxes), swept, counters_);
+            if (partition_.subset_count() > 1)
+                subsets_.distribute(partition_, lists_.all(boxes), swept, counters_);
+            else
+                counters_.add(work::subsets);
         }
         if constexpr (SegmentingPartition<Partition>) {
             counters_.add(work::segments_wanted, partition_.segments().wanted);
@@ -70,9 +77,9 @@ public:
         if constexpr (cuts) {
             for (std::uint32_t s = 0; s < subsets_.size(); ++s)
                 sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
-        } else {
-            sweep_.sweep(lists_.all(boxes_), pairs, counters_);
+            if (subsets_.size() > 0) return;
         }
+        sweep_.sweep(lists_.all(boxes_), pairs, counters_);
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }

@@ -37,13 +37,13 @@ public:
         }
     }
 
-    [[nodiscard]] bool contains(std::uint32_t id) const noexcept {
+    [[nodiscard]] inline bool contains(std::uint32_t id) const noexcept {
         return id < state_.size() && (state_[id] == state::coming || state_[id] == state::known);
     }
     [[nodiscard]] std::span<const std::uint32_t> arrivals() const noexcept { return arrivals_; }
-    [[nodiscard]] bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::coming; }
+    [[nodiscard]] inline bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::coming; }
     [[nodiscard]] bool any_departures() const noexcept { return departures_; }
-    [[nodiscard]] bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
+    [[nodiscard]] inline bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
 
     /// @throws input_error when an object that is present has no box.
     void require_boxes_for_all(std::size_t boxes) const {
@@ -58,7 +58,11 @@ public:
         if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
         for (const std::uint32_t id : arrivals_) state_[id] = state::known;
         departures_ = false;
-        arrivals_.clear();
+        // Where all arrive at once, as in a first frame, so many will not again.
+        if (2 * arrivals_.size() > state_.size())
+            release(arrivals_);
+        else
+            arrivals_.clear();
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(state_) + bytes_of(arrivals_); }

@@ -8,28 +8,31 @@ module;
 
 export module aabb:pair_set;
 
+import :error;
 import :geometry;
 import :policy;
 
 export namespace aabb {
 
 /// A set of pairs that can be walked as an array: the pairs stand in a vector, and a hash table with linear probing,
-/// at most half full, finds their places. Up to 2^32 - 2 pairs.
+/// at most half full, finds their places.
 class pair_set {
 public:
-    [[nodiscard]] std::span<const index_pair> pairs() const noexcept { return pairs_; }
+    [[nodiscard]] inline std::span<const index_pair> pairs() const noexcept { return pairs_; }
 
     /// Nothing happens when the pair is there already.
-    void insert(index_pair pair) {
+    /// @throws input_error beyond 2^32 - 1 pairs.
+    inline void insert(index_pair pair) {
         if (2 * (pairs_.size() + 1) > table_.size()) grow();
         const std::size_t slot = slot_of(pair);
         if (table_[slot] != none) return;
-        table_[slot] = static_cast<std::uint32_t>(pairs_.size());
+        if (pairs_.size() == none) throw input_error("more than 2^32 - 1 pairs overlap");
         pairs_.push_back(pair);
+        table_[slot] = static_cast<std::uint32_t>(pairs_.size() - 1);
     }
 
     /// Nothing happens when the pair is not there.
-    void erase(index_pair pair) {
+    inline void erase(index_pair pair) {
         if (pairs_.empty()) return;
         const std::size_t slot = slot_of(pair);
         const std::uint32_t place = table_[slot];
@@ -53,23 +56,23 @@ private:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
     /// Where the search for a pair begins: the high bits of a product with 2^64 over the golden ratio.
-    [[nodiscard]] std::size_t home_of(index_pair pair) const noexcept {
+    [[nodiscard]] inline std::size_t home_of(index_pair pair) const noexcept {
         const std::uint64_t both = std::uint64_t{pair.a} << 32 | pair.b;
         const std::uint64_t mixed = (both ^ both >> 29) * 0x9e3779b97f4a7c15U;
         return mixed >> (64 - std::countr_zero(table_.size()));
     }
 
     /// The slot of a pair, or the free one where it would stand.
-    [[nodiscard]] std::size_t slot_of(index_pair pair) const noexcept {
+    [[nodiscard]] inline std::size_t slot_of(index_pair pair) const noexcept {
         std::size_t slot = home_of(pair);
         while (table_[slot] != none && pairs_[table_[slot]] != pair) slot = next(slot);
         return slot;
     }
 
-    [[nodiscard]] std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
+    [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
 
     /// Moves back what was pushed on past the gap, so that every search still ends at a free slot.
-    void close_gap(std::size_t gap) {
+    inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);
             const std::size_t mask = table_.size() - 1;

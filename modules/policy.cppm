@@ -328,6 +328,12 @@ template <class T>
     return v.capacity() * sizeof(T);
 }
 
+/// Empties a vector and gives its memory back.
+template <class T>
+constexpr void release(std::vector<T>& v) {
+    std::vector<T>().swap(v);
+}
+
 namespace detail {
 template <class Policy, class... Others>
 constexpr std::string_view refusal_by() {

@@ -34,9 +34,10 @@ public:
             if (!has_axis(axes_, k)) continue;
             if (objects.any_departures())
                 std::erase_if(lists_[k], [&](const projection& p) { return objects.is_leaving(p.id); });
+            make_room(lists_[k], lists_[k].size() + objects.arrivals().size());
             for (const std::uint32_t id : objects.arrivals()) lists_[k].push_back({0, id});
         }
-        arrivals_ = objects.arrivals().size();
+        arrivals_ += objects.arrivals().size();
     }
 
     /// Brings the lists of these axes up to the boxes of a frame, and drops the others.
@@ -44,25 +45,21 @@ public:
     void sort(std::span<const box> boxes, axis_set axes, Sort& sort, Counters& counters) {
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(axes & ~axes_, k)) {
-                lists_[k].assign(members().begin(), members().end());
+                lists_[k] = members();
                 sort_new(boxes, k, lists_[k]);
             }
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes, k))
-                lists_[k].clear();
+                release(lists_[k]);
             else if (has_axis(axes_, k)) {
                 sort_known(boxes, k, sort, counters);
-                sort_arrivals(boxes, k, counters);
+                sort_arrivals(boxes, k);
             }
         }
         axes_ = axes;
         arrivals_ = 0;
     }
 
-    /// Any one list, which has every object.
-    [[nodiscard]] std::span<const projection> members() const noexcept {
-        return lists_[static_cast<std::size_t>(std::countr_zero(axes_))];
-    }
     [[nodiscard]] axis_set axes() const noexcept { return axes_; }
     [[nodiscard]] whole_subset all(std::span<const box> boxes) const noexcept {
         return {boxes, {lists_[0], lists_[1], lists_[2]}};
@@ -73,16 +70,26 @@ public:
     }
 
 private:
+    /// For n entries; at once where there was none, growing by half where there was.
+    static void make_room(std::vector<projection>& list, std::size_t n) {
+        if (n > list.capacity()) list.reserve(std::max(n, list.capacity() + list.capacity() / 2));
+    }
+
+    /// Any one list, which has every object.
+    [[nodiscard]] const std::vector<projection>& members() const noexcept {
+        return lists_[static_cast<std::size_t>(std::countr_zero(axes_))];
+    }
+
     static void sort_new(std::span<const box> boxes, std::size_t axis, std::span<projection> list) {
         for (projection& p : list) p.key = boxes[p.id].min[static_cast<int>(axis)];
-        std::ranges::sort(list, precedes);
+        std::ranges::sort(list, [](const projection& p, const projection& q) { return precedes(p, q); });
     }
 
     template <class Sort>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         const std::span known = std::span(lists_[axis]).first(lists_[axis].size() - arrivals_);
         moved_.clear();
-        moved_.reserve(known.size());
+        make_room(moved_, known.size());
         std::size_t still = 0;
         for (const projection& p : known) {
             const float key = boxes[p.id].min[static_cast<int>(axis)];
@@ -100,17 +107,19 @@ private:
             merge_moved_into(known, still, counters);
     }
 
-    void sort_arrivals(std::span<const box> boxes, std::size_t axis, Counters& counters) {
+    void sort_arrivals(std::span<const box> boxes, std::size_t axis) {
         if (arrivals_ == 0) return;
         const std::span list(lists_[axis]);
         const std::size_t known = list.size() - arrivals_;
+        if (known == 0) return sort_new(boxes, axis, list);
         moved_.assign(list.begin() + static_cast<std::ptrdiff_t>(known), list.end());
         sort_new(boxes, axis, moved_);
-        merge_moved_into(list, known, counters);
+        no_counters uncounted;  // as what std::sort does is
+        merge_moved_into(list, known, uncounted);
     }
 
     /// From the back, so that it needs no room of its own.
-    void merge_moved_into(std::span<projection> list, std::size_t still, Counters& counters) {
+    void merge_moved_into(std::span<projection> list, std::size_t still, CounterPolicy auto& counters) {
         std::size_t out = list.size();
         for (std::size_t i = moved_.size(); i-- > 0;) {
             const std::size_t place = place_of(moved_[i], list.first(still), counters);
@@ -125,7 +134,8 @@ private:
     }
 
     /// Behind those of a sorted list that do not follow the entry; doubling steps from the back find it.
-    static std::size_t place_of(const projection& entry, std::span<const projection> list, Counters& counters) {
+    static std::size_t place_of(const projection& entry, std::span<const projection> list,
+                                CounterPolicy auto& counters) {
         std::size_t reach = 1;
         const auto follows = [&](std::size_t i) {
             counters.add(work::comparisons);

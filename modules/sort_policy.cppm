@@ -19,12 +19,21 @@ concept SortPolicy =
         policy.sort(list, some);
     };
 
+namespace detail {
+/// An entry that is no projection.
+struct other_entry {
+    int key;
+    friend constexpr bool precedes(const other_entry& e, const other_entry& f) noexcept { return e.key < f.key; }
+};
+}  // namespace detail
+
 /// A sort that exchanges neighbours only and tells of it: `on_swap(passed, moved)` is called once for each two entries
 /// whose order changes. It sorts entries of any type, as `precedes` orders them.
 template <class S>
 concept SwapReportingSort =
-    SortPolicy<S> &&
-    requires(S policy, std::span<projection> list, no_counters none,
-             void (*on_swap)(const projection& passed, const projection& moved)) { policy.sort(list, none, on_swap); };
+    SortPolicy<S> && requires(S policy, std::span<detail::other_entry> list, no_counters none,
+                              void (*on_swap)(const detail::other_entry& passed, const detail::other_entry& moved)) {
+        policy.sort(list, none, on_swap);
+    };
 
 }  // namespace aabb

@@ -41,7 +41,7 @@ split_large_stage::split_large_stage(std::unique_ptr<global_stage> search, doubl
 
 void split_large_stage::insert(std::uint32_t id) {
     objects_.insert(id);
-    if (id >= first_piece_) drop_pieces();
+    if (id >= first_slot_) drop_pieces();
     search_->insert(id);
 }
 
@@ -53,19 +53,15 @@ void split_large_stage::remove(std::uint32_t id) {
 void split_large_stage::update(std::span<const box> boxes) {
     objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
-    boxes_ = boxes;
     objects_.settle();
     const double longest = longest_whole(boxes);
     find_splits(boxes, longest);
-    const bool changed = splits_ != splits_now_ || first_piece_ != boxes.size();
-    if (changed) drop_pieces();
-    splits_.assign(splits_now_.begin(), splits_now_.end());
-    first_piece_ = static_cast<std::uint32_t>(boxes.size());
+    boxes_ = boxes;
+    if (first_slot_ != boxes.size()) drop_pieces();
+    first_slot_ = static_cast<std::uint32_t>(boxes.size());
+    assign_slots();
     make_pieces(boxes, longest);
-    if (changed)
-        for (std::size_t i = 0; i < piece_objects_.size(); ++i)
-            search_->insert(first_piece_ + static_cast<std::uint32_t>(i));
-    if (counted_ == instrumentation::counters) pieces_counted_ += piece_objects_.size() + splits_.size();
+    if (counted_ == instrumentation::counters) pieces_counted_ += slots_.size() + splits_.size();
     search_->update(pieces_);
 }
 
@@ -84,8 +80,9 @@ work_counters split_large_stage::counters() const {
 
 std::vector<part_bytes> split_large_stage::bytes() const {
     std::vector<part_bytes> parts = search_->bytes();
-    parts.push_back({"split_large", bytes_of(objects_) + bytes_of(splits_) + bytes_of(splits_now_) +
-                                        bytes_of(piece_objects_) + bytes_of(pieces_) + bytes_of(found_)});
+    parts.push_back({"split_large", bytes_of(objects_) + bytes_of(splits_) + bytes_of(slots_) + bytes_of(splits_now_) +
+                                        bytes_of(slots_now_) + bytes_of(object_of_slot_) + bytes_of(free_slots_) +
+                                        bytes_of(left_slots_) + bytes_of(pieces_) + bytes_of(found_)});
     return parts;
 }
 
@@ -109,7 +106,7 @@ split_large_stage::cut_interval split_large_stage::cut(float lower, float upper,
     const double extent = double{upper} - double{lower};
     cut_interval interval{1, {lower, upper}};
     if (!(extent > longest)) return interval;
-    const double wanted = std::min(std::ceil(extent / longest), static_cast<double>(most_pieces));
+    const double wanted = std::min(std::ceil(extent / longest - 0.01), static_cast<double>(most_pieces));
     interval.pieces = static_cast<std::size_t>(wanted);
     for (std::size_t i = 1; i < interval.pieces; ++i) {
         interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
@@ -121,46 +118,85 @@ split_large_stage::cut_interval split_large_stage::cut(float lower, float upper,
 }
 
 void split_large_stage::find_splits(std::span<const box> boxes, double longest) {
+    constexpr std::size_t most_in_all = std::size_t{1} << 26;
     splits_now_.clear();
+    std::size_t all = 0;
     for (std::uint32_t id = 0; id < boxes.size(); ++id) {
         if (!objects_.contains(id)) continue;
         split found{id, {}};
-        bool is_split = false;
-        for (int k = 0; k < 3; ++k) {
-            const std::size_t pieces = cut(boxes[id].min[k], boxes[id].max[k], longest).pieces;
-            found.pieces[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(pieces);
-            is_split = is_split || pieces > 1;
-        }
-        if (is_split) splits_now_.push_back(found);
+        for (int k = 0; k < 3; ++k)
+            found.pieces[static_cast<std::size_t>(k)] =
+                static_cast<std::uint8_t>(cut(boxes[id].min[k], boxes[id].max[k], longest).pieces);
+        if (found.further_pieces() == 0) continue;
+        all += found.further_pieces() + 1;
+        if (all > most_in_all)
+            throw input_error("split_large: this size makes more than 2^26 pieces; a greater one makes fewer");
+        splits_now_.push_back(found);
     }
 }
 
+/// A split that stays the same keeps its slots.
+void split_large_stage::assign_slots() {
+    free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
+    left_slots_.clear();
+    slots_now_.clear();
+    std::size_t known = 0;
+    std::size_t first = 0;  // slot of the known split
+    const auto pass_known = [&](auto use) {
+        for (std::size_t end = first + splits_[known].further_pieces(); first < end; ++first) use(slots_[first]);
+        ++known;
+    };
+    const auto leave = [&](std::uint32_t slot) {
+        search_->remove(first_slot_ + slot);
+        left_slots_.push_back(slot);
+    };
+    for (const split& now : splits_now_) {
+        while (known < splits_.size() && splits_[known].object < now.object) pass_known(leave);
+        if (known < splits_.size() && splits_[known] == now) {
+            pass_known([&](std::uint32_t slot) { slots_now_.push_back(slot); });
+            continue;
+        }
+        for (std::size_t i = now.further_pieces(); i > 0; --i) {
+            slots_now_.push_back(take_slot());
+            object_of_slot_[slots_now_.back()] = now.object;
+            search_->insert(first_slot_ + slots_now_.back());
+        }
+    }
+    while (known < splits_.size()) pass_known(leave);
+    splits_.swap(splits_now_);
+    slots_.swap(slots_now_);
+}
+
+std::uint32_t split_large_stage::take_slot() {
+    if (free_slots_.empty()) {
+        object_of_slot_.push_back(0);
+        return static_cast<std::uint32_t>(object_of_slot_.size() - 1);
+    }
+    const std::uint32_t slot = free_slots_.back();
+    free_slots_.pop_back();
+    return slot;
+}
+
 void split_large_stage::drop_pieces() {
-    for (std::size_t i = 0; i < piece_objects_.size(); ++i)
-        search_->remove(first_piece_ + static_cast<std::uint32_t>(i));
-    piece_objects_.clear();
+    for (const std::uint32_t slot : slots_) search_->remove(first_slot_ + slot);
+    for (auto* list : {&slots_, &object_of_slot_, &free_slots_, &left_slots_}) list->clear();
     splits_.clear();
 }
 
 void split_large_stage::make_pieces(std::span<const box> boxes, double longest) {
     pieces_.assign(boxes.begin(), boxes.end());
-    piece_objects_.clear();
+    pieces_.resize(boxes.size() + object_of_slot_.size(), box{});
+    auto slot = slots_.begin();
     for (const auto& [object, pieces] : splits_) {
         const box& whole = boxes[object];
         std::array<cut_interval, 3> cuts;
         for (int k = 0; k < 3; ++k) cuts[static_cast<std::size_t>(k)] = cut(whole.min[k], whole.max[k], longest);
         for (std::size_t x = 0; x < pieces[0]; ++x)
             for (std::size_t y = 0; y < pieces[1]; ++y)
-                for (std::size_t z = 0; z < pieces[2]; ++z) {
-                    const box piece{{cuts[0].at[x], cuts[1].at[y], cuts[2].at[z]},
-                                    {cuts[0].at[x + 1], cuts[1].at[y + 1], cuts[2].at[z + 1]}};
-                    if (x + y + z == 0) {
-                        pieces_[object] = piece;
-                    } else {
-                        pieces_.push_back(piece);
-                        piece_objects_.push_back(object);
-                    }
-                }
+                for (std::size_t z = 0; z < pieces[2]; ++z)
+                    pieces_[x + y + z == 0 ? object : first_slot_ + *slot++] = {
+                        {cuts[0].at[x], cuts[1].at[y], cuts[2].at[z]},
+                        {cuts[0].at[x + 1], cuts[1].at[y + 1], cuts[2].at[z + 1]}};
     }
 }
 
@@ -179,7 +215,7 @@ bool split_large_stage::counts(std::uint32_t piece_a, std::uint32_t piece_b) con
 }
 
 std::uint32_t split_large_stage::object_of(std::uint32_t piece) const {
-    return piece < first_piece_ ? piece : piece_objects_[piece - first_piece_];
+    return piece < first_slot_ ? piece : object_of_slot_[piece - first_slot_];
 }
 
 }  // namespace aabb

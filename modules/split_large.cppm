@@ -26,7 +26,9 @@ export namespace aabb {
 /// before a global search, which sees pieces; pairs of pieces are mapped back to pairs of objects.
 ///
 /// On each axis on which a box is longer than `size` times the mean extent of all boxes it is cut into equal pieces no
-/// longer than that, 16 at most. Pieces are closed and share their faces, so boxes overlap exactly when some pieces do.
+/// longer than that (by more than a hundredth, so that rounding splits nothing), 16 at most. Pieces keep their ids from
+/// frame to frame, and with them their places in sorted lists. They are closed and
+/// share their faces, so boxes overlap exactly when some pieces do.
 /// Of those that do, one pair of pieces holds the corner of greater lower ends, half-open, and only that one counts: no
 /// set is needed to find duplicates.
 class split_large_stage final : public global_stage {
@@ -42,7 +44,7 @@ public:
     [[nodiscard]] std::vector<std::string> left_out() const override;
 
 private:
-    static constexpr std::size_t most_pieces = 16;
+    static constexpr std::size_t most_pieces = 16;  // on an axis
     /// Where the pieces of an interval begin, and the last one's end.
     struct cut_interval {
         std::size_t pieces;
@@ -52,12 +54,17 @@ private:
     struct split {
         std::uint32_t object;
         std::array<std::uint8_t, 3> pieces;
+
+        /// Beside the first, which has the object's own id.
+        [[nodiscard]] std::size_t further_pieces() const { return std::size_t{pieces[0]} * pieces[1] * pieces[2] - 1; }
         friend bool operator==(const split&, const split&) = default;
     };
 
     [[nodiscard]] double longest_whole(std::span<const box> boxes) const;
     [[nodiscard]] static cut_interval cut(float lower, float upper, double longest);
     void find_splits(std::span<const box> boxes, double longest);
+    void assign_slots();
+    [[nodiscard]] std::uint32_t take_slot();
     void drop_pieces();
     void make_pieces(std::span<const box> boxes, double longest);
     /// Of two boxes of the search.
@@ -70,11 +77,15 @@ private:
     std::uint64_t pieces_counted_ = 0;
     membership objects_;
     std::span<const box> boxes_;
-    std::uint32_t first_piece_ = 0;             // ids below are objects, or the first pieces of objects
-    std::vector<split> splits_;                 // of the frame, by object
-    std::vector<split> splits_now_;             // while they are found
-    std::vector<std::uint32_t> piece_objects_;  // from first_piece_ on
-    std::vector<box> pieces_;                   // what the search sees
+    std::uint32_t first_slot_ = 0;      // ids below are objects, or the first pieces of objects; the others are slots
+    std::vector<split> splits_;         // by object
+    std::vector<std::uint32_t> slots_;  // of the further pieces, split after split
+    std::vector<split> splits_now_;     // both, while they are found
+    std::vector<std::uint32_t> slots_now_;
+    std::vector<std::uint32_t> object_of_slot_;
+    std::vector<std::uint32_t> free_slots_;
+    std::vector<std::uint32_t> left_slots_;  // in this frame: the search must see them gone before others take them
+    std::vector<box> pieces_;                // what the search sees
     std::vector<index_pair> found_;
 };
 

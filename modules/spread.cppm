@@ -2,12 +2,12 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <span>
 
 export module aabb:spread;
 
 import :geometry;
+import :membership;
 import :projection;
 
 // How boxes lie along the axes: what strategies choose axes by.
@@ -15,30 +15,32 @@ export namespace aabb {
 
 /// Variance of the boxes' centres and mean of their extents, by axis.
 struct spread {
-    vec3d variance;  ///< of the doubled centres, times the number of boxes
+    std::size_t objects;
+    vec3d variance;  ///< of the doubled centres, times the number of objects
     vec3d extent;    ///< mean
 };
 
-/// Of the boxes with these projections. Sums are taken from the first centre, so that far from the origin no digits are
-/// lost.
-[[nodiscard]] inline spread spread_of(std::span<const box> boxes, std::span<const projection> present) {
+/// Of the boxes of these objects. Sums are taken in the order of ids, so that they do not depend on how a sort leaves
+/// ties, and from the first centre, so that far from the origin no digits are lost.
+[[nodiscard]] inline spread spread_of(std::span<const box> boxes, const membership& objects) {
     spread result{};
-    if (present.empty()) return result;
-    const auto centre = [&](const projection& p, int k) {
-        return double{boxes[p.id].min[k]} + double{boxes[p.id].max[k]};
-    };
     vec3d first{};
-    for (int k = 0; k < 3; ++k) first[k] = centre(present[0], k);
     vec3d sum{};
     vec3d squares{};
-    for (const projection& p : present)
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+        if (!objects.contains(id)) continue;
+        const box& b = boxes[id];
         for (int k = 0; k < 3; ++k) {
-            const double from_first = centre(p, k) - first[k];
-            sum[k] += from_first;
-            squares[k] += from_first * from_first;
-            result.extent[k] += double{boxes[p.id].max[k]} - double{boxes[p.id].min[k]};
+            const double centre = double{b.min[k]} + double{b.max[k]};
+            if (result.objects == 0) first[k] = centre;
+            sum[k] += centre - first[k];
+            squares[k] += (centre - first[k]) * (centre - first[k]);
+            result.extent[k] += double{b.max[k]} - double{b.min[k]};
         }
-    const auto n = static_cast<double>(present.size());
+        ++result.objects;
+    }
+    if (result.objects == 0) return result;
+    const auto n = static_cast<double>(result.objects);
     for (int k = 0; k < 3; ++k) {
         result.variance[k] = std::max(0.0, squares[k] - sum[k] / n * sum[k]);
         result.extent[k] /= n;
@@ -48,16 +50,16 @@ struct spread {
 
 /// How far the last lower end lies above the first upper end, by axis. Where that is not above 0 all boxes overlap, and
 /// the axis tells nothing.
-/// @param ids of boxes: a range
-template <std::ranges::input_range Ids>
-[[nodiscard]] vec3d separation_of(std::span<const box> boxes, Ids&& ids) {
+[[nodiscard]] inline vec3d separation_of(std::span<const box> boxes, const membership& objects) {
     vec3f last_lower = empty_box().max;
     vec3f first_upper = empty_box().min;
-    for (const std::uint32_t id : ids)
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+        if (!objects.contains(id)) continue;
         for (int k = 0; k < 3; ++k) {
             last_lower[k] = std::max(last_lower[k], boxes[id].min[k]);
             first_upper[k] = std::min(first_upper[k], boxes[id].max[k]);
         }
+    }
     vec3d separation{};
     for (int k = 0; k < 3; ++k) separation[k] = double{last_lower[k]} - double{first_upper[k]};
     return separation;

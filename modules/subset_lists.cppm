@@ -12,6 +12,7 @@ export module aabb:subset_lists;
 import :counters;
 import :error;
 import :geometry;
+import :membership;
 import :policy;
 import :projection;
 
@@ -22,15 +23,15 @@ export namespace aabb {
 template <class P>
 concept PartitionPolicy = Strategy<P>;
 
-/// A partition that really cuts. `axes(boxes, present, swept)` says which sorted lists it needs beside those of the
-/// sweep (`present` is any one list); `fit(all)` decides the subsets of a frame; `for_each_subset(id, b, visit)` calls
+/// A partition that really cuts. `axes(boxes, objects, swept)` says which sorted lists it needs beside those of the
+/// sweep; `fit(all)` decides the subsets of a frame; `for_each_subset(id, b, visit)` calls
 /// `visit(subset, owned_axes)` for each subset that box b of object `id` reaches into.
 template <class P>
 concept CuttingPartition =
     PartitionPolicy<P> &&
-    requires(P policy, const P fitted, std::span<const box> boxes, std::span<const projection> present, axis_set swept,
+    requires(P policy, const P fitted, std::span<const box> boxes, const membership& objects, axis_set swept,
              const whole_subset& all, std::uint32_t id, const box& b, void (*visit)(std::uint32_t, axis_set)) {
-        { policy.axes(boxes, present, swept) } -> std::same_as<axis_set>;
+        { policy.axes(boxes, objects, swept) } -> std::same_as<axis_set>;
         policy.fit(all);
         { fitted.subset_count() } -> std::convertible_to<std::uint32_t>;
         fitted.for_each_subset(id, b, visit);
@@ -52,6 +53,9 @@ concept SegmentingPartition = CuttingPartition<P> && requires(const P fitted) {
 /// order, so the sublists come sorted for free.
 class subset_lists {
 public:
+    /// Nothing is partitioned: one subset of all, without a list of its own.
+    void clear() noexcept { starts_.resize(1); }
+
     /// @param axes whose lists are to be distributed; at least one
     /// @throws input_error when the partition makes more than 2^29 copies of objects.
     template <CuttingPartition Partition, CounterPolicy Counters>
@@ -105,9 +109,10 @@ private:
                 ++copies;
             });
             // While they are counted: to count them all could take hours.
-            if (copies > most_copies)
-                throw input_error(std::string(Partition::name) + " makes more than " + std::to_string(most_copies) +
-                                  " copies of " + std::to_string(any.size()) + " objects");
+            if (copies <= most_copies) continue;
+            clear();
+            throw input_error(std::string(Partition::name) + " makes more than " + std::to_string(most_copies) +
+                              " copies of " + std::to_string(any.size()) + " objects");
         }
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
     }

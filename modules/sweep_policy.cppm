@@ -15,13 +15,13 @@ import :sort_policy;
 
 export namespace aabb {
 
-/// Finds the overlapping pairs of a subset from sorted lists. `axes(boxes, present, now)` says which projection lists
-/// it needs this frame: `present` is any one list, `now` the axes that are sorted already.
+/// Finds the overlapping pairs of a subset from sorted lists. `axes(boxes, objects)` says which projection lists it
+/// needs this frame.
 template <class S>
-concept ListSweep = Strategy<S> && requires(S policy, std::span<const box> boxes, std::span<const projection> present,
-                                            axis_set now, const whole_subset& all, const partition_subset& part,
+concept ListSweep = Strategy<S> && requires(S policy, std::span<const box> boxes, const membership& objects,
+                                            const whole_subset& all, const partition_subset& part,
                                             std::vector<index_pair>& pairs, no_counters none, work_counters some) {
-    { policy.axes(boxes, present, now) } -> std::same_as<axis_set>;
+    { policy.axes(boxes, objects) } -> std::same_as<axis_set>;
     policy.sweep(all, pairs, none);
     policy.sweep(part, pairs, some);
 };
@@ -39,13 +39,14 @@ struct any_swap_reporting_sort {
 }  // namespace detail
 
 /// Keeps the overlapping pairs from frame to frame, and changes them as the swaps of the sort tell: `update` brings the
-/// sweep's own lists up to a frame, `search` appends the pairs.
+/// sweep's own lists up to a frame, `search` appends the pairs, `axes` are those on which it has a list.
 template <class S>
 concept CoherentSweep =
     Strategy<S> && requires(S policy, std::span<const box> boxes, const membership& objects,
                             detail::any_swap_reporting_sort sort, std::vector<index_pair>& pairs, no_counters none) {
         policy.update(boxes, objects, sort, none);
         policy.search(pairs);
+        { policy.axes() } -> std::same_as<axis_set>;
     };
 
 /// Either of the two.

@@ -63,7 +63,7 @@ std::vector<std::string> play_experiment(const experiment& e, results_folder& re
         for (const scene_summary& summary : summarise(rows)) {
             print(heading_of(summary) + "\n" + to_text(table_of(summary, number_style::grouped)) + "\n");
             if (const table counts = counts_table_of(summary, number_style::grouped); !counts.columns.empty())
-                print("work a frame, and bytes\n" + to_text(counts) + "\n");
+                print("work a frame after the first one, and bytes\n" + to_text(counts) + "\n");
         }
         flush_output();
     }

@@ -29,7 +29,8 @@ int reproduce(const reproduce_request& request) {
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/reproduce-quick" : "results/reproduce");
     std::vector<experiment> experiments;
-    for (const char* config : {"first.toml", "traditional_improved.toml", "global_search.toml", "local_detection.toml"})
+    for (const char* config : {"first.toml", "traditional_improved.toml", "global_search.toml",
+                               "grid_against_world.toml", "local_detection.toml"})
         experiments.push_back(
             open_experiment((std::filesystem::path(AABBLAB_CONFIGS) / config).string(), request.quick));
     std::vector<report_part> parts;

@@ -50,7 +50,7 @@ table counts_table_of(const scene_summary& scene, number_style style) {
         if (!is_used(scene, &summary_line::counts, i)) continue;
         works.push_back(i);
         t.columns.push_back({spaced(aabb::work_names[i])});
-        if (i == copies) t.columns.push_back({"an object"});
+        if (i == copies) t.columns.push_back({"copies an object"});
     }
     for (std::size_t i = 0; i < byte_columns.size(); ++i) {
         if (!is_used(scene, &summary_line::bytes_by_part, i)) continue;
@@ -58,11 +58,12 @@ table counts_table_of(const scene_summary& scene, number_style style) {
         t.columns.push_back({(style == number_style::plain ? "bytes " : "KiB ") + spaced(byte_columns[i])});
     }
     if (works.empty() && parts.empty()) return {};
+    const double counted_frames = scene.frames > 1 ? static_cast<double>(scene.frames - 1) : 1;
     for (const summary_line& line : scene.lines) {
         if (!line.name.engine.empty()) continue;
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene, line));
         for (const std::size_t i : works) {
-            const double each = static_cast<double>(line.counts[i].value_or(0)) / static_cast<double>(scene.frames);
+            const double each = static_cast<double>(line.counts[i].value_or(0)) / counted_frames;
             cells.push_back(cell(each, style));
             if (i == copies) cells.push_back(fmt::format("{:.3f}", each / static_cast<double>(scene.objects)));
         }

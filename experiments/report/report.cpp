@@ -112,7 +112,7 @@ void add_part(document& out, const report_part& part) {
         out.add(file, table_of(scene, number_style::grouped), table_of(scene, number_style::plain));
         out.figure(file, figure_of(scene));
         if (const table counts = counts_table_of(scene, number_style::grouped); !counts.columns.empty()) {
-            out.paragraph("Work a frame, and bytes of the parts:");
+            out.paragraph("Work a frame, after the first one, and bytes of the parts:");
             out.add(file + "-counts", counts, counts_table_of(scene, number_style::plain));
         }
     }

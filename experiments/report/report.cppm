@@ -93,8 +93,8 @@ struct scene_summary {
 enum class number_style { grouped, plain };
 [[nodiscard]] table table_of(const scene_summary& scene, number_style style);
 
-/// The work of each composition, per frame, and the bytes of its parts, as far as any line has them. Copies have their
-/// number per object beside them. Without columns where nothing was counted.
+/// The work of each composition, per frame after frame 0, and the bytes of its parts, as far as any line has them.
+/// Copies have their number per object beside them. Without columns where nothing was counted.
 [[nodiscard]] table counts_table_of(const scene_summary& scene, number_style style);
 
 /// What stands above the table, some lines.

@@ -49,6 +49,7 @@ struct row {
     std::uint64_t candidates = 0;           ///< pairs of boxes, over all frames
     std::optional<std::uint64_t> contacts;  ///< pairs of triangles, over all frames; empty in scenes of boxes
     std::string digest;                     ///< of the contacts, or of the pairs in scenes of boxes
+    /// Over the frames after frame 0; of frame 0 where there is no other.
     std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes;
     std::optional<std::uint64_t> missing;   ///< pairs or contacts of the exact answer that are not there

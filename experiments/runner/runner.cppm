@@ -43,6 +43,7 @@ struct verdict {
     std::uint64_t missing = 0;
     std::uint64_t invented = 0;
     std::vector<difference> differences;  ///< the same by class
+    /// Over the frames after frame 0, as times are; of frame 0 where there is no other.
     std::array<std::uint64_t, aabb::work_names.size()> counts{};
     std::array<std::uint64_t, byte_columns.size()> bytes{};
 };

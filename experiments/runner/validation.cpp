@@ -67,6 +67,7 @@ public:
         player_.update();
         player_.search();
         player_.detect();
+        if (frame == 0) first_frame_ = player_.counters();
         found_.add(player_.sorted_pairs(), player_.sorted_contacts());
         const set_difference boxes(exact.pairs(), player_.sorted_pairs());
         if (who_.exact_boxes) note(frame, boxes.first());
@@ -92,6 +93,8 @@ public:
         add_differences(v.differences, "missing", boxes_missing_, classes_.missing);
         add_differences(v.differences, "invented", boxes_invented_, classes_.invented);
         v.counts = player_.counters().counts;
+        if (scene_.frames() > 1)
+            for (std::size_t i = 0; i < v.counts.size(); ++i) v.counts[i] -= first_frame_.counts[i];
         for (const auto& parts : {player_.global_bytes(), player_.local_bytes()})
             for (const aabb::part_bytes& part : parts) {
                 auto column = std::ranges::find(byte_columns, part.part);
@@ -145,6 +148,7 @@ private:
     player player_;
     tally found_;
     std::string failure_;
+    aabb::work_counters first_frame_;
     std::uint64_t boxes_missing_ = 0;
     std::uint64_t boxes_invented_ = 0;
     std::uint64_t contacts_missing_ = 0;

@@ -23,9 +23,10 @@ export namespace aabb {
 /// neither the size of the world nor clusters matter.
 ///
 /// A cut is the lower end of a box, and a box reaches into a segment when lower end < next cut and upper end >= cut.
-/// With the limit no box is cut more than once on any axis, so it has at most two copies for each axis cut: a wanted
-/// cut is left out unless it lies beyond every upper end of the boxes that begin before the cut before it. That takes
-/// comparisons only, and one wide box costs the cuts within it, not those elsewhere.
+/// With the limit no box is cut more than once on any axis, so it has at most two copies for each axis cut: each cut
+/// lies beyond every upper end of the boxes that begin before the cut before it. A wanted cut that does not is put at
+/// the first lower end that does, and those wanted before there are left out. That takes comparisons only, and one wide
+/// box costs the cuts within it, not those elsewhere.
 class axial_cut_partition {
 public:
     static constexpr std::string_view name = "axial_cut";
@@ -52,25 +53,28 @@ public:
 
     /// An axis is exchanged for one on which centres vary half as much again only, since its list must be sorted from
     /// scratch. One on which they do not vary is not cut.
-    axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set swept) {
-        const spread along = spread_of(boxes, present);
+    axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
+        const spread along = spread_of(boxes, objects);
         std::array<int, 3> order{0, 1, 2};
+        const auto varies = [&](int k) { return along.variance[k] > 0; };
         const auto is_last = [&](int k) { return swept == axis_set{1} << k; };
         const auto weight = [&](int k) { return along.variance[k] * (has_axis(cut_, index(k)) ? 1.5 : 1.0); };
         std::ranges::sort(order, [&](int k, int l) {
+            if (varies(k) != varies(l)) return varies(k);
             if (is_last(k) != is_last(l)) return is_last(l);
             return weight(k) > weight(l) || (weight(k) == weight(l) && k < l);
         });
         cut_ = 0;
         for (std::size_t i = 0; i < config_.axes; ++i)
-            if (along.variance[order[i]] > 0) cut_ |= axis_set{1} << order[i];
-        wanted_ = config_.segments.value_or(cut_ ? cheapest_segments(along, present.size(), swept) : 1);
+            if (varies(order[i])) cut_ |= axis_set{1} << order[i];
+        wanted_ = config_.segments.value_or(cut_ ? cheapest_segments(along, swept) : 1);
+        if (wanted_ == 1) cut_ = 0;
         return cut_;
     }
 
     /// @throws input_error when there would be more than 2^26 subsets.
     void fit(const whole_subset& all) {
-        places_.resize(all.boxes.size());
+        if (cut_) places_.resize(all.boxes.size());
         std::uint64_t subsets = 1;
         for (std::size_t k = 0; k < 3; ++k) {
             cuts_[k].clear();
@@ -85,7 +89,7 @@ public:
                               " segments an axis make more than 2^26 subsets");
     }
 
-    [[nodiscard]] std::uint32_t subset_count() const noexcept {
+    [[nodiscard]] inline std::uint32_t subset_count() const noexcept {
         return segments_on(0) * segments_on(1) * segments_on(2);
     }
 
@@ -104,12 +108,14 @@ public:
         std::array<range, 3> reach{};
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(cut_, k)) reach[k] = places_[id][k];
+        const std::uint32_t along_y = segments_on(1);
+        const std::uint32_t along_z = segments_on(2);
         for (std::uint32_t x = reach[0].first; x <= reach[0].last; ++x)
             for (std::uint32_t y = reach[1].first; y <= reach[1].last; ++y)
                 for (std::uint32_t z = reach[2].first; z <= reach[2].last; ++z)
-                    visit((x * segments_on(1) + y) * segments_on(2) + z, axis_set{x == reach[0].first} |
-                                                                             axis_set{y == reach[1].first} << 1 |
-                                                                             axis_set{z == reach[2].first} << 2);
+                    visit((x * along_y + y) * along_z + z, axis_set{x == reach[0].first} |
+                                                               axis_set{y == reach[1].first} << 1 |
+                                                               axis_set{z == reach[2].first} << 2);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
@@ -126,25 +132,30 @@ private:
     };
 
     static constexpr std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
-    [[nodiscard]] std::uint32_t segments_on(std::size_t k) const noexcept {
+    [[nodiscard]] inline std::uint32_t segments_on(std::size_t k) const noexcept {
         return static_cast<std::uint32_t>(cuts_[k].size()) + 1;
     }
 
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
-        float reached =
-            -std::numeric_limits<float>::infinity();  // the last upper end of those begun before the last cut
+        // The last upper end of the boxes begun before the last cut.
+        float reached = -std::numeric_limits<float>::infinity();
         std::size_t begun = 0;
         for (std::uint64_t i = 1; i < wanted_ && !list.empty(); ++i) {
-            const float cut = list[i * list.size() / wanted_].key;
-            if (!(cut > (cuts.empty() ? list[0].key : cuts.back()))) continue;
+            std::size_t place = i * list.size() / wanted_;
+            if (!(list[place].key > (cuts.empty() ? list[0].key : cuts.back()))) continue;
             if (config_.limit == limit_choice::on && !cuts.empty()) {
                 for (; list[begun].key < cuts.back(); ++begun)
                     reached = std::max(reached, boxes[list[begun].id].max[static_cast<int>(k)]);
-                if (!(cut > reached)) continue;
+                place = std::max(place, first_beyond(list, reached));
+                if (place == list.size()) return;
             }
-            cuts.push_back(cut);
+            cuts.push_back(list[place].key);
         }
+    }
+
+    [[nodiscard]] static std::size_t first_beyond(std::span<const projection> list, float key) {
+        return static_cast<std::size_t>(std::ranges::upper_bound(list, key, {}, &projection::key) - list.begin());
     }
 
     /// The list is in order, so the segment of a lower end is found by walking along.
@@ -166,10 +177,10 @@ private:
     /// The number of segments an axis at which copies, subsets and box tests together cost least, were n boxes of the
     /// mean size spread evenly: S segments of an axis make 1 + x copies of a box, x = S · extent / width, and within a
     /// subset each box is tested against those that it overlaps on the swept axis. Beyond x = 1 the limit ends it.
-    [[nodiscard]] std::uint32_t cheapest_segments(const spread& along, std::size_t n, axis_set swept) const {
+    [[nodiscard]] std::uint32_t cheapest_segments(const spread& along, axis_set swept) const {
         constexpr double copy_cost = 8;     // of one box test
         constexpr double subset_cost = 16;  // the same
-        const auto objects = static_cast<double>(n);
+        const auto objects = static_cast<double>(along.objects);
         vec3d share{};  // of the width of the boxes that a mean box takes; a uniform spread is sqrt(12) deviations wide
         for (int k = 0; k < 3; ++k) {
             const double width = std::sqrt(12 * along.variance[k] / objects) / 2 + along.extent[k];

@@ -37,7 +37,7 @@ public:
     explicit uniform_grid_partition(const config& c) : config_(c) {}
 
     /// It looks at boxes, not at lists.
-    static axis_set axes(std::span<const box>, std::span<const projection>, axis_set) noexcept { return 0; }
+    static axis_set axes(std::span<const box>, const membership&, axis_set) noexcept { return 0; }
 
     /// @throws input_error when the cells would be more than 2^26.
     void fit(const whole_subset& all) {

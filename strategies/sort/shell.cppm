@@ -25,7 +25,7 @@ public:
     enum class gap_sequence : std::uint8_t { shell, ciura, tokuda };
     struct config {
         /// shell: n/2, n/4, … 1 (Shell 1959). ciura: measured best up to 701 (Ciura 2001), beyond it each 2.25 times
-        /// the one before. tokuda: the integers above (9 (9/4)^k - 4) / 5 (Tokuda 1992).
+        /// the one before. tokuda: (9 (9/4)^k - 4) / 5, rounded up (Tokuda 1992).
         gap_sequence gaps = gap_sequence::ciura;
     };
     static constexpr std::tuple parameters{choice_parameter{

@@ -3,7 +3,7 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <ranges>
+
 #include <span>
 #include <string_view>
 #include <vector>
@@ -27,8 +27,8 @@ public:
     static constexpr std::string_view summary =
         "three sorted lists; a pair is reported when its projections overlap on all three";
 
-    static axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set) {
-        return separating_axes(separation_of(boxes, present | std::views::transform(&projection::id)));
+    static axis_set axes(std::span<const box> boxes, const membership& objects) {
+        return separating_axes(separation_of(boxes, objects));
     }
 
     template <class Subset, CounterPolicy Counters>
@@ -51,7 +51,10 @@ public:
         };
         if (n_lists == 1) {
             for (std::size_t i = 0; i < n; ++i)
-                for (std::size_t j = i + 1; j < end_[i]; ++j) report(i, j);
+                for (std::size_t j = i + 1; j < end_[i]; ++j) {
+                    counters.add(work::box_tests);
+                    report(i, j);
+                }
             return;
         }
         const auto overlap_on_first = [&](std::size_t i, std::size_t j) { return j < end_[i]; };

@@ -19,11 +19,12 @@ export namespace aabb {
 /// The classic sort and sweep (Baraff 1992; Cohen, Lin, Manocha and Ponamgi, "I-COLLIDE", 1995): lists of both ends of
 /// all intervals, kept sorted by insertion sort, whose swaps are where overlaps begin and end; the overlapping pairs
 /// are kept from frame to frame. When to use: little motion. A frame in which nothing moved tests no pair; one in which
-/// much did costs a step for each two ends that pass each other.
+/// much did costs a test for each two ends of different kinds that pass each other.
 ///
 /// A lower end comes before an upper end of the same value, so touching is overlapping. A pair is put in when it begins
 /// to overlap on an axis and its boxes overlap on all: the order in which axes are sorted does not matter then. Memory
-/// is 16 bytes an object and axis, and 16 to 24 bytes a pair.
+/// is 16 bytes an object and axis, 24 an object for the boxes of the frame before, up to 36 while arrivals are brought
+/// in, and 16 to 32 bytes a pair.
 class incremental_sweep {
 public:
     static constexpr std::string_view name = "incremental";
@@ -34,12 +35,10 @@ public:
     static constexpr std::string_view refuses() {
         if ((CuttingPartition<All> || ...))
             return "incremental keeps its pairs between frames, but this partition makes other subsets in each frame; "
-                   "it "
-                   "goes with none only";
+                   "it goes with none only";
         if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
-            return "incremental follows the swaps of neighbours, of which this sort does not tell; it goes with "
-                   "insertion "
-                   "only";
+            return "incremental follows the swaps of neighbours, of which this sort does not tell; "
+                   "it goes with insertion only";
         return {};
     }
 
@@ -51,13 +50,12 @@ public:
         const axis_set before = axes_;
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(before, k)) sort_known(boxes, k, sort, counters);
-        for (const std::uint32_t id : objects.arrivals()) members_.push_back(id);
-        const vec3d separation = separation_of(boxes, members_);
+        const vec3d separation = separation_of(boxes, objects);
         axes_ = separating_axes(separation);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (has_axis(axes_ & ~before, k)) begin_axis(boxes, k);
+            if (has_axis(axes_ & ~before, k)) begin_axis(boxes, objects, k);
             if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
-            if (!has_axis(axes_, k)) ends_[k].clear();
+            if (!has_axis(axes_, k)) release(ends_[k]);
         }
         if (axes_ & ~before) {
             // All overlapped on a new axis until now, so no other pair can have changed on it.
@@ -67,6 +65,7 @@ public:
             });
         }
         if (!objects.arrivals().empty()) find_pairs_of_arrivals(boxes, objects, longest_axis(separation), counters);
+        before_.assign(boxes.begin(), boxes.end());
     }
 
     void search(std::vector<index_pair>& pairs) const {
@@ -75,7 +74,7 @@ public:
 
     [[nodiscard]] axis_set axes() const noexcept { return axes_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(ends_[0]) + bytes_of(ends_[1]) + bytes_of(ends_[2]) + bytes_of(arriving_) + bytes_of(members_) +
+        return bytes_of(ends_[0]) + bytes_of(ends_[1]) + bytes_of(ends_[2]) + bytes_of(arriving_) + bytes_of(before_) +
                bytes_of(place_) + bytes_of(active_[0]) + bytes_of(active_[1]) + bytes_of(pairs_);
     }
 
@@ -103,7 +102,7 @@ private:
 
     void forget_departures(const membership& objects) {
         for (auto& list : ends_) std::erase_if(list, [&](const interval_end& e) { return objects.is_leaving(e.id); });
-        std::erase_if(members_, [&](std::uint32_t id) { return objects.is_leaving(id); });
+
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
     }
 
@@ -118,19 +117,26 @@ private:
         }
         if (!moved) return;
         sort.sort(std::span(ends_[axis]), counters, [&](const interval_end& passed, const interval_end& mover) {
+            counters.add(work::inversions);
             if (passed.is_upper == mover.is_upper) return;
             const index_pair pair = ordered_pair(passed.id, mover.id);
-            if (mover.is_upper) return pairs_.erase(pair);
             counters.add(work::box_tests);
-            if (overlaps(boxes[pair.a], boxes[pair.b])) pairs_.insert(pair);
+            // Of the pairs whose overlap ends on this axis few overlapped on the others: a test spares the look for
+            // them.
+            if (mover.is_upper) {
+                if (overlaps(before_[pair.a], before_[pair.b])) pairs_.erase(pair);
+            } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
+                pairs_.insert(pair);
+            }
         });
     }
 
     /// A list from scratch, of all objects.
-    void begin_axis(std::span<const box> boxes, std::size_t axis) {
+    void begin_axis(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         std::vector<interval_end>& list = ends_[axis];
-        list.clear();
-        for (const std::uint32_t id : members_) {
+        list.reserve(2 * boxes.size());
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+            if (!objects.contains(id)) continue;
             list.push_back(lower_end(boxes, id, axis));
             list.push_back(upper_end(boxes, id, axis));
         }
@@ -187,7 +193,8 @@ private:
 
     axis_set axes_ = 0;                              // with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
-    std::vector<std::uint32_t> members_;             // all objects
+
+    std::vector<box> before_;  // by id, of the frame before
     pair_set pairs_;
     // While arrivals are brought in:
     std::vector<interval_end> arriving_;

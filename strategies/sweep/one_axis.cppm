@@ -34,15 +34,15 @@ public:
     one_axis_sweep() = default;
     explicit one_axis_sweep(const config& c) : config_(c) {}
 
-    axis_set axes(std::span<const box> boxes, std::span<const projection> present, axis_set) {
+    axis_set axes(std::span<const box> boxes, const membership& objects) {
         if (config_.axis != axis_choice::automatic) {
             axis_ = static_cast<int>(config_.axis) - 1;
         } else {
-            const vec3d variance = spread_of(boxes, present).variance;
+            const spread along = spread_of(boxes, objects);
             const double margin = chosen_ ? 1.5 : 1.0;
             for (int k = 0; k < 3; ++k)
-                if (variance[k] > margin * variance[axis_]) axis_ = k;
-            chosen_ |= !present.empty();
+                if (along.variance[k] > margin * along.variance[axis_]) axis_ = k;
+            chosen_ |= along.objects > 0;
         }
         return axis_set{1} << axis_;
     }

@@ -15,7 +15,10 @@ using namespace aabb;
 static_assert(SortPolicy<fake_sort>);
 static_assert(PartitionPolicy<fake_whole_partition> && !CuttingPartition<fake_whole_partition>);
 static_assert(CuttingPartition<fake_cutting_partition>);
-static_assert(SweepPolicy<fake_sweep>);
+static_assert(SwapReportingSort<fake_swapping_sort> && !SwapReportingSort<fake_sort>);
+static_assert(ListSweep<fake_sweep> && !CoherentSweep<fake_sweep>);
+static_assert(CoherentSweep<fake_coherent_sweep> && !ListSweep<fake_coherent_sweep>);
+static_assert(!SegmentingPartition<fake_cutting_partition>);
 static_assert(TreePolicy<fake_tree>);
 static_assert(TrianglePolicy<fake_triangle> && !DoubleTrianglePolicy<fake_triangle>);
 static_assert(CounterPolicy<no_counters> && CounterPolicy<work_counters>);
@@ -33,9 +36,9 @@ const std::vector<box> row = {
     {{-3, 0, 0}, {-1, 1, 1}}, {{-1, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {3, 1, 1}}, {{-9, 0, 0}, {9, 1, 1}}};
 const std::vector<index_pair> row_pairs = {{0, 1}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-template <class Partition>
+template <class Partition, class Sweep = fake_sweep>
 std::vector<index_pair> pairs_with() {
-    global_search<fake_sort, Partition, fake_sweep> search;
+    global_search<fake_sort, Partition, Sweep> search;
     for (std::uint32_t id = 0; id < row.size(); ++id) search.insert(id);
     std::vector<index_pair> pairs;
     search.update(row);
@@ -49,6 +52,7 @@ std::vector<index_pair> pairs_with() {
 TEST_CASE("a global search works with the least that a strategy can be") {
     CHECK(pairs_with<fake_whole_partition>() == row_pairs);
     CHECK(pairs_with<fake_cutting_partition>() == row_pairs);
+    CHECK(pairs_with<fake_whole_partition, fake_coherent_sweep>() == row_pairs);
 }
 
 TEST_CASE("a local detection works with the least that a strategy can be") {

@@ -30,9 +30,7 @@ struct fake_whole_partition {
 struct fake_cutting_partition {
     static constexpr std::string_view name = "fake_cutting";
     static constexpr std::string_view summary = "two halves";
-    static aabb::axis_set axes(std::span<const aabb::box>, std::span<const aabb::projection>, aabb::axis_set) {
-        return 0;
-    }
+    static aabb::axis_set axes(std::span<const aabb::box>, const aabb::membership&, aabb::axis_set) { return 0; }
     static void fit(const aabb::whole_subset&) {}
     [[nodiscard]] static std::uint32_t subset_count() { return 2; }
     static void for_each_subset(std::uint32_t, const aabb::box& b, auto visit) {
@@ -41,13 +39,41 @@ struct fake_cutting_partition {
     }
 };
 
+/// Sorts anything by `precedes`, and tells of its swaps.
+struct fake_swapping_sort {
+    static constexpr std::string_view name = "fake_swapping";
+    static constexpr std::string_view summary = "a bubble sort that tells";
+    static void sort(auto list, auto&, auto... on_swap) {
+        for (std::size_t end = list.size(); end > 1; --end)
+            for (std::size_t i = 1; i < end; ++i)
+                if (precedes(list[i], list[i - 1])) {
+                    (on_swap(list[i - 1], list[i]), ...);
+                    std::swap(list[i], list[i - 1]);
+                }
+    }
+};
+
+/// Finds all pairs when it is updated.
+struct fake_coherent_sweep {
+    static constexpr std::string_view name = "fake_coherent";
+    static constexpr std::string_view summary = "all pairs of all objects";
+    void update(std::span<const aabb::box> boxes, const aabb::membership& objects, auto&, auto&) {
+        pairs.clear();
+        for (std::uint32_t a = 0; a < boxes.size(); ++a)
+            for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
+                if (objects.contains(a) && objects.contains(b) && overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
+    }
+    void search(std::vector<aabb::index_pair>& found) const { found.insert(found.end(), pairs.begin(), pairs.end()); }
+    [[nodiscard]] static aabb::axis_set axes() { return 0; }
+
+    std::vector<aabb::index_pair> pairs;
+};
+
 /// Every pair of the subset, without looking at the order.
 struct fake_sweep {
     static constexpr std::string_view name = "fake";
     static constexpr std::string_view summary = "all pairs of a subset";
-    static aabb::axis_set axes(std::span<const aabb::box>, std::span<const aabb::projection>, aabb::axis_set) {
-        return 0b010;
-    }
+    static aabb::axis_set axes(std::span<const aabb::box>, const aabb::membership&) { return 0b010; }
     template <class Subset>
     static void sweep(const Subset& subset, std::vector<aabb::index_pair>& pairs, auto&) {
         const auto list = subset.lists[1];

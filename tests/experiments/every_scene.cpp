@@ -22,6 +22,7 @@ TEST_CASE("every composition is exact on every scene of boxes") {
         if (info.has_meshes) continue;
         const aabblab::scene_verdicts all =
             aabblab::validate_scene({info.name, {{"objects", "100"}, {"frames", "4"}}, {}, 3}, contenders);
+        REQUIRE(all.verdicts.size() == contenders.size());
         for (const aabblab::verdict& v : all.verdicts) {
             INFO(info.name << ": " << v.failure);
             REQUIRE(v.failure.empty());

@@ -90,8 +90,8 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     engine.name.engine = "cgal";
     const auto scene = aabblab::summarise(std::vector<row>{counted, engine})[0];
     REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene, aabblab::number_style::plain)) ==
-            "composition,comparisons,subset copies,an object,bytes projections\n"
-            "this composition,100.000,15.000,1.500,2048\n");
+            "composition,comparisons,subset copies,copies an object,bytes projections\n"
+            "this composition,150.000,22.500,2.250,2048\n");
     REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0], aabblab::number_style::plain)
                 .columns.empty());
 }

@@ -22,7 +22,8 @@ box any_box(int world) {
     box b;
     for (int k = 0; k < 3; ++k) {
         b.min[k] = static_cast<float>(*rc::gen::inRange(0, world)) / 2;
-        b.max[k] = b.min[k] + static_cast<float>(*rc::gen::inRange(0, 4)) / 2;
+        // Some large ones, for limits of cuts and for splitting.
+        b.max[k] = b.min[k] + static_cast<float>(*rc::gen::element(0, 0, 1, 1, 2, 3, 40)) / 2;
     }
     return b;
 }
@@ -65,7 +66,7 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                     const int unrest = *rc::gen::element(0, 1, 4);
                     for (std::uint32_t id = 0; id < n; ++id) {
                         if (frame == 0 || (unrest > 0 && *rc::gen::inRange(0, unrest) == 0)) boxes[id] = any_box(world);
-                        if (flat) boxes[id].min[1] = boxes[id].max[1] = static_cast<float>(frame / 4 * id);
+                        if (flat) boxes[id].min[1] = boxes[id].max[1] = static_cast<float>(frame / 2 % 2 * id);
                         for (int times = *rc::gen::element(0, 0, 0, 1, 2); times > 0; --times) {
                             present[id] ? stage->remove(id) : stage->insert(id);
                             present[id] = !present[id];
@@ -139,10 +140,14 @@ TEST_CASE("counted compositions do the same and say what they did") {
 }
 
 TEST_CASE("without a partition there are no cells and no copies") {
+    std::vector<box> boxes;
+    for (int i = 0; i < 50; ++i) {
+        const vec3f at{static_cast<float>(i), static_cast<float>(i * 7 % 50), static_cast<float>(i * 11 % 50)};
+        boxes.push_back({at, at + vec3f{1, 1, 1}});
+    }
     for (const global_composition& composition : all_global_compositions()) {
         INFO(to_text(composition));
         const auto stage = compose(composition, instrumentation::counters);
-        const std::vector<box> boxes(50, box{{0, 0, 0}, {1, 1, 1}});
         for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
         stage->update(boxes);
@@ -150,10 +155,25 @@ TEST_CASE("without a partition there are no cells and no copies") {
         const bool whole = composition.partition.name == "none";
         const auto parts = stage->bytes();
         CHECK(std::ranges::none_of(parts, [](const part_bytes& p) { return p.part == "partition"; }) == whole);
-        CHECK((stage->counters()[work::subset_copies] == 0) == whole);
+        CHECK((stage->counters()[work::subsets] == 0) == whole);
+        // A partition that cuts nothing copies nothing.
+        CHECK((stage->counters()[work::subset_copies] == 0) == (stage->counters()[work::subsets] <= 1));
         CHECK(std::ranges::any_of(stage->left_out(),
                                   [](const std::string& s) { return s.starts_with("no partition"); }) == whole);
     }
+}
+
+TEST_CASE("a list of an axis that is not needed takes no memory") {
+    std::vector<box> boxes;
+    for (int i = 0; i < 500; ++i) boxes.push_back({{1, static_cast<float>(i), 1}, {2, static_cast<float>(i + 1), 2}});
+    const auto projections = [&](const char* axis) {
+        const auto stage = compose({{"std", {}}, {"none", {}}, {"one_axis", {{"axis", axis}}}}, instrumentation::none);
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
+        stage->update(boxes);
+        return stage->bytes()[0].bytes;
+    };
+    CHECK(projections("y") == projections("x"));
+    CHECK(projections("x") < 500 * (sizeof(projection) + 4));
 }
 
 TEST_CASE("a flat scene drops its flat axis") {
@@ -193,6 +213,28 @@ TEST_CASE("a grid that no machine can hold is refused") {
     CHECK(search("1e-310", point) == 1);
     const std::vector<box> large(200, box{{0, 0, 0}, {400, 400, 400}});
     CHECK_THROWS_AS(search("1", large), input_error);
+}
+
+TEST_CASE("a search goes on after its partition refused a frame") {
+    for (const auto& [partition, refused] :
+         {std::pair<strategy_choice, float>{{"uniform_grid", {{"cell_size", "0.1"}}}, 1e6F},
+          {{"axial_cut", {{"axes", "3"}, {"segments", "65535"}}}, 0.0F}}) {
+        INFO(to_text(partition));
+        const auto stage = compose({{"insertion", {}}, partition, {"one_axis", {}}}, instrumentation::none);
+        std::vector<box> points;
+        for (std::uint32_t id = 0; id < 1000; ++id) {
+            stage->insert(id);
+            const vec3f p{static_cast<float>(id) + (id == 0 ? refused : 0), static_cast<float>(id * 7 % 1000),
+                          static_cast<float>(id * 11 % 1000)};
+            points.push_back({p, p});
+        }
+        std::vector<index_pair> pairs;
+        CHECK_THROWS_AS(stage->update(points), input_error);
+        const std::vector<box> together(1000, box{{0, 0, 0}, {1, 1, 1}});
+        stage->update(together);
+        stage->search(pairs);
+        CHECK(pairs.size() == 1000 * 999 / 2);
+    }
 }
 
 TEST_CASE("far from the origin the axis to sort along is still the one on which objects vary") {

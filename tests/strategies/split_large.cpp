@@ -79,6 +79,38 @@ TEST_CASE("pieces follow objects that grow, shrink, come and go, and frames of o
     CHECK_THROWS_MATCHES(stage->remove(900), input_error, Message("object 900 is removed but was never inserted"));
 }
 
+TEST_CASE("pieces keep their places in sorted lists when other objects come and go") {
+    auto stage =
+        compose(global_composition{{"insertion", {}}, {"none", {}}, {"one_axis", {}}, 0.9}, instrumentation::counters);
+    std::vector<box> boxes;
+    for (std::uint32_t id = 0; id < 400; ++id) {
+        const float edge = 1 + static_cast<float>(id * 7 % 4);
+        boxes.push_back(cube(static_cast<float>(id * 37 % 401), edge));
+        stage->insert(id);
+    }
+    pairs_of(*stage, boxes);
+    const std::uint64_t before = stage->counters()[work::comparisons];
+    stage->remove(1);
+    stage->remove(399);
+    pairs_of(*stage, boxes);
+    CHECK(stage->counters()[work::pieces] > 2000);
+    CHECK(stage->counters()[work::comparisons] - before < 1000);
+}
+
+TEST_CASE("a size that would make more pieces than a machine can hold is refused") {
+    const auto stage = splitting(1e-6, 20'000);
+    CHECK_THROWS_MATCHES(stage->update(std::vector<box>(20'000, cube(0, 1))), input_error,
+                         Message("split_large: this size makes more than 2^26 pieces; a greater one makes fewer"));
+}
+
+TEST_CASE("rounding of coordinates splits nothing") {
+    std::vector<box> boxes;
+    for (int i = 0; i < 200; ++i) boxes.push_back(cube(static_cast<float>(i) * 0.7F + 1000, 1));
+    const auto stage = splitting(1, 200);
+    pairs_of(*stage, boxes);
+    CHECK(stage->counters()[work::pieces] == 0);
+}
+
 TEST_CASE("a box without room for pieces between its floats stays whole") {
     const float next = std::nextafter(1.0F, 2.0F);
     std::vector<box> boxes(20, {{1, 1, 1}, {1, 1, 1}});
