@@ -52,31 +52,45 @@ public:
         const auto& list = subset.lists[static_cast<std::size_t>(axis_)];
         if (list.size() < 2) return;
         swept_.clear();
-        for (const auto& e : list) swept_.push_back({subset.boxes[e.id], e.id, Subset::owned(e)});
-        switch (axis_) {
-            case 0: return scan<0, Subset>(pairs, counters);
-            case 1: return scan<1, Subset>(pairs, counters);
-            default: return scan<2, Subset>(pairs, counters);
+        const int u = (axis_ + 1) % 3;
+        const int v = (axis_ + 2) % 3;
+        for (const auto& e : list) {
+            const box& b = subset.boxes[e.id];
+            swept_.push_back(
+                {{b.max[u], b.max[v], -b.min[u], -b.min[v]}, b.min[axis_], b.max[axis_], e.id, Subset::owned(e)});
         }
+        scan<Subset>(pairs, counters);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(swept_); }
 
 private:
-    struct swept_box {
-        box bounds;
+    using quad = float __attribute__((vector_size(16)));
+
+    /// A box as the scan sees it, the same for all axes; aligned, so that none lies across two cache lines.
+    struct alignas(32) swept_box {
+        quad bounds;  ///< on the axes u and v that are not swept: u max, v max, -u min, -v min
+        float begin;  ///< on the swept axis
+        float end;
         std::uint32_t id;
         axis_set owned;
     };
+    static_assert(sizeof(swept_box) == 32);
 
-    template <int Axis, class Subset, CounterPolicy Counters>
+    /// Four comparisons at once: which of them fails cannot be foreseen, so branches would cost more.
+    [[nodiscard]] static inline bool all_at_most(quad lower, quad upper) noexcept {
+        return __builtin_reduce_and(lower <= upper) != 0;
+    }
+
+    template <class Subset, CounterPolicy Counters>
     void scan(std::vector<index_pair>& pairs, Counters& counters) const {
         for (std::size_t i = 0; i < swept_.size(); ++i) {
-            const swept_box& a = swept_[i];
-            for (std::size_t j = i + 1; j < swept_.size() && swept_[j].bounds.min[Axis] <= a.bounds.max[Axis]; ++j) {
+            const swept_box a = swept_[i];
+            const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};
+            for (std::size_t j = i + 1; j < swept_.size() && swept_[j].begin <= a.end; ++j) {
                 const swept_box& b = swept_[j];
                 counters.add(work::box_tests);
-                if (overlaps(a.bounds, b.bounds) && Subset::owns(a.owned, b.owned))
+                if (all_at_most(lower, b.bounds) && Subset::owns(a.owned, b.owned))
                     pairs.push_back(ordered_pair(a.id, b.id));
             }
         }

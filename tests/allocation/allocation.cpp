@@ -22,7 +22,19 @@ void* operator new(std::size_t bytes) {
     if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
     throw std::bad_alloc();
 }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+    ++allocations;
+    const auto multiple = static_cast<std::size_t>(alignment);
+    if (void* memory = std::aligned_alloc(multiple, (bytes + multiple) / multiple * multiple)) return memory;
+    throw std::bad_alloc();
+}
 void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
     std::free(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {

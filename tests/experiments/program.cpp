@@ -14,7 +14,7 @@ TEST_CASE("The program prints its version and its help") {
     REQUIRE(run_program({"--version"}).out.starts_with("aabblab "));
     const program_result help = run_program({"--help"});
     REQUIRE(help.status == 0);
-    for (const char* command : {"pairs", "collide", "classify", "scene", "list", "run", "test", "data"})
+    for (const char* command : {"pairs", "collide", "classify", "scene", "list", "run", "test", "data", "benchmark"})
         REQUIRE(help.out.find(std::string("\n  ") + command + " ") != std::string::npos);
     REQUIRE(run_program({"pairs", "--help"}).out.find("--sweep") != std::string::npos);
 }
@@ -25,6 +25,7 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         {{"pairz", "x"}, "unknown command 'pairz'; did you mean 'pairs'?"},
         {{"dta"}, "did you mean 'data'?"},
         {{"data"}, "command of the script"},
+        {{"benchmark"}, "command of the script"},
         {{"--verson"}, "did you mean '--version'?"},
         {{"pairs"}, "pairs: SCENE is required"},
         {{"pairs", "--sotr", "std"}, "pairs: unknown option '--sotr'; did you mean '--sort'?"},

@@ -26,7 +26,7 @@ struct fitted {
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::uint32_t id = 0; id < boxes.size(); ++id)
                 lists[k].push_back({boxes[id].min[static_cast<int>(k)], id});
-            std::ranges::stable_sort(lists[k], precedes);
+            std::ranges::sort(lists[k], precedes);
         }
         membership objects;
         for (std::uint32_t id = 0; id < boxes.size(); ++id) objects.insert(id);

@@ -1,0 +1,41 @@
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <string_view>
+#include <vector>
+
+#include "stages.hpp"
+
+namespace {
+
+constexpr int bad_input = 2;
+
+/// Google Benchmark prints its help and ends with 0 on a value that an option does not take, too.
+void refuse_value() {
+    std::cerr << "aabblab: benchmark: an option does not take its value; see ./aabblab benchmark --help\n";
+    std::exit(bad_input);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Short by default, so that all of them take no longer than a minute; the caller's own time comes later and wins.
+    char min_time[] = "--benchmark_min_time=" AABBLAB_MIN_TIME;
+    std::vector<char*> arguments(argv, argv + argc);
+    arguments.insert(arguments.begin() + 1, min_time);
+    arguments.push_back(nullptr);
+    int count = argc + 1;
+    const bool wants_help = std::any_of(argv, argv + argc, [](std::string_view a) { return a == "--help"; });
+    benchmark::Initialize(&count, arguments.data(), wants_help ? benchmark::PrintDefaultHelp : refuse_value);
+    if (count > 1) {
+        std::cerr << "aabblab: benchmark: cannot use '" << arguments[1] << "'; see ./aabblab benchmark --help\n";
+        return bad_input;
+    }
+    aabblab::add_sort_benchmarks();
+    aabblab::add_partition_benchmarks();
+    aabblab::add_sweep_benchmarks();
+    // It says itself that nothing matches a filter.
+    return benchmark::RunSpecifiedBenchmarks() == 0 ? bad_input : EXIT_SUCCESS;
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+namespace aabblab {
+
+// The benchmarks of each stage of global search. A name is the stage, the strategy as the command line takes it, and
+// the case: "sort/shell:gaps=ciura/n:10000/displacement:0.1". Counters that end in "/n" are means for each object; they
+// are counted in a pass of their own, since what is timed counts nothing.
+
+/// A sort of a list that was sorted a frame ago; the copying of the list is not timed.
+void add_sort_benchmarks();
+
+/// All that a cutting partition does in a frame: it chooses axes, fits and distributes one list, which is what the
+/// sweep one_axis asks for.
+void add_partition_benchmarks();
+
+/// A sweep over the lists of a whole frame. One that keeps its pairs is brought from frame to frame instead, which
+/// includes the sorting of its lists.
+void add_sweep_benchmarks();
+
+}  // namespace aabblab

@@ -1,0 +1,97 @@
+// Runs the program of micro-benchmarks.
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../experiments/program.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.strategies;
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+template <class... Partitions>
+std::vector<std::string> cutting_partitions(aabb::type_list<Partitions...>) {
+    std::vector<std::string> names;
+    ((aabb::CuttingPartition<Partitions> ? names.emplace_back(Partitions::name) : names.emplace_back()), ...);
+    std::erase(names, "");
+    return names;
+}
+
+/// The strategy in the name of a benchmark, between its stage and its case.
+aabb::strategy_choice strategy_of(const std::string& benchmark) {
+    const std::size_t begin = benchmark.find('/') + 1;
+    return aabb::parse_strategy(benchmark.substr(begin, benchmark.find('/', begin) - begin));
+}
+
+}  // namespace
+
+TEST_CASE("Every strategy of a stage of global search has a benchmark, named as the command line takes it") {
+    const program_result result = run_program({"--benchmark_list_tests"});
+    REQUIRE(result.status == 0);
+    std::vector<std::string> listed = lines_of(result.out);
+    for (const aabb::strategy_kind kind :
+         {aabb::strategy_kind::sort, aabb::strategy_kind::partition, aabb::strategy_kind::sweep}) {
+        const std::string stage = std::string(name_of(kind)) + "/";
+        std::vector<std::string> measured;
+        for (const std::string& benchmark : listed) {
+            if (!benchmark.starts_with(stage)) continue;
+            INFO(benchmark);
+            REQUIRE_NOTHROW(require_known(kind, strategy_of(benchmark)));
+            measured.push_back(strategy_of(benchmark).name);
+        }
+        const bool cuts = kind == aabb::strategy_kind::partition;
+        for (const std::string& name : cuts ? cutting_partitions(aabb::partitions{}) : strategy_names(kind)) {
+            INFO(stage << name);
+            REQUIRE(std::ranges::find(measured, name) != measured.end());
+        }
+    }
+    for (const char* benchmark :
+         {"sort/shell:gaps=ciura/n:10000/displacement:0.1/manual_time", "partition/axial_cut:axes=3,limit=off/n:1000",
+          "sweep/incremental/n:1000/displacement:0.01"})
+        REQUIRE(std::ranges::find(listed, benchmark) != listed.end());
+    std::ranges::sort(listed);
+    REQUIRE(std::ranges::adjacent_find(listed) == listed.end());
+}
+
+TEST_CASE("Benchmarks report their counters") {
+    const program_result result =
+        run_program({"--benchmark_filter=(insertion|axial_cut:axes=2,limit=on|incremental|one_axis:axis=x)"
+                     "/n:1000(/displacement:0.1)?(/manual_time)?$",
+                     "--benchmark_min_time=0.001", "--benchmark_format=json"});
+    REQUIRE(result.status == 0);
+    const auto benchmarks = nlohmann::json::parse(result.out)["benchmarks"];
+    REQUIRE(benchmarks.size() == 4);
+    const auto counters = [&](std::size_t i, const std::vector<const char*>& names) {
+        INFO(benchmarks[i].dump());
+        for (const char* name : names) CHECK(benchmarks[i].value(name, 0.0) > 0);
+    };
+    counters(0, {"real_time", "inversions/n", "comparisons/n", "moves/n"});
+    counters(1, {"real_time", "copies/n", "subsets", "segments_wanted", "segments_got", "bytes"});
+    counters(2, {"real_time", "box_tests/n", "pairs/n"});
+    counters(3, {"real_time", "box_tests/n", "pairs/n"});
+}
+
+TEST_CASE("What benchmarks cannot use is refused with status 2") {
+    for (const char* argument : {"--benchmark_filter=sotr/", "--benchmrk", "--benchmark_format=xml"}) {
+        const program_result result = run_program({argument});
+        INFO(argument << ": " << result.err);
+        CHECK(result.status == 2);
+        CHECK(result.out.empty());
+        CHECK(lines_of(result.err).size() == 1);
+    }
+    REQUIRE(run_program({"--help"}).status == 0);
+}
