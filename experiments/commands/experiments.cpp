@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 
 #include "experiments.hpp"
 
+import aabb.validation;
 import aabblab.config;
 import aabblab.report;
 import aabblab.results;
@@ -41,6 +43,12 @@ private:
     }
 };
 
+void note_idle_engines(const experiment& e, const scene_choice& scene) {
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !contender_of(engine, has_meshes(scene)))
+            note(engine.name + " has no part in " + scene.kind + ": it searches no boxes");
+}
+
 }  // namespace
 
 experiment open_experiment(const std::string& config, bool quick) {
@@ -53,6 +61,7 @@ std::vector<std::string> play_experiment(const experiment& e, results_folder& re
     const interruption said(resume_with);
     std::vector<std::string> failures;
     for (const scene_choice& scene : e.scenes) {
+        note_idle_engines(e, scene);
         for (const std::string& failure : run_scene(e, scene, contenders_for(e, scene), results)) {
             note(failure);
             failures.push_back(failure);

@@ -28,6 +28,7 @@ struct reproduce_request {
 int reproduce(const reproduce_request& request) {
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/reproduce-quick" : "results/reproduce");
+    if (folder.empty()) throw aabb::input_error("--out has no name of a folder");
     std::vector<experiment> experiments;
     for (const char* config : {"first.toml", "traditional_improved.toml", "global_search.toml",
                                "grid_against_world.toml", "local_detection.toml"})

@@ -27,7 +27,9 @@ struct run_request {
 
 int run(const run_request& request) {
     const experiment e = open_experiment(request.config, request.quick);
-    results_folder results(request.out.value_or("results/" + e.name), e,
+    // A first look does not stand in the way of the whole.
+    const std::string folder = "results/" + e.name + (request.quick ? "-quick" : "");
+    results_folder results(request.out.value_or(folder), e,
                            request.resume ? existing_results::resume : existing_results::refuse);
     const std::vector<std::string> failures = play_experiment(e, results, "the same command with --resume");
     print("Every repeat is a row of " + (results.path() / "results.csv").string() + "\n");
@@ -40,7 +42,8 @@ void add_run(CLI::App& program, int& status) {
     auto* command = program.add_subcommand("run", "One experiment: scenes x compositions, validated, then timed");
     auto request = std::make_shared<run_request>();
     command->add_option("CONFIG", request->config, "Config of the experiment (.toml)")->required()->type_name("");
-    command->add_option("--out", request->out, "Folder of the results (default results/NAME)")->type_name("DIR");
+    command->add_option("--out", request->out, "Folder of the results (default results/NAME, or results/NAME-quick)")
+        ->type_name("DIR");
     command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
     command->add_flag("--resume", request->resume, "Skip what is finished in the folder already");
     command->callback([request, &status] { status = run(*request); });

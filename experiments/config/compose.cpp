@@ -25,7 +25,7 @@ void add_strategies(const document& doc, aabb::strategy_kind kind, const node& v
             doc.fail(value.line, key + " lists '" + to_text(choice) + "' twice");
         choices.push_back(choice);
     };
-    if (value.kind == node_kind::text) return add({value.text, {}});
+    if (value.kind == node_kind::text) return add(doc.at(value.line, [&] { return aabb::parse_strategy(value.text); }));
     if (value.kind != node_kind::table) doc.fail_type(key, value, "a name, a table with a name, or a list of them");
     const node* name = value.find("name");
     if (!name)
@@ -74,10 +74,10 @@ void add_compositions(const document& doc, const node& compose, std::vector<comp
         return strategies_of(doc, kind, compose.find(name_of(kind)), otherwise);
     };
     const auto add = [&](const composition& c) {
-        for (const std::string_view reason : {aabb::refusal_of(c.global), aabb::refusal_of(c.local)})
-            if (!reason.empty())
-                doc.fail(compose.line,
-                         to_text(c.global) + " + " + to_text(c.local) + " makes no sense: " + std::string(reason));
+        if (const std::string_view reason = aabb::refusal_of(c.global); !reason.empty())
+            doc.fail(compose.line, to_text(c.global) + ": " + std::string(reason));
+        if (const std::string_view reason = aabb::refusal_of(c.local); !reason.empty())
+            doc.fail(compose.line, to_text(c.local) + ": " + std::string(reason));
         if (std::ranges::find(all, c) != all.end())
             doc.fail(compose.line, "this composition is listed twice: " + to_text(c.global) + " + " + to_text(c.local));
         all.push_back(c);

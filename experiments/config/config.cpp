@@ -108,6 +108,8 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     e.compositions = compositions_of(doc, doc.root().find("compose"));
     read_measure(doc, size, e);
     read_scenes(doc, size, e);
+    // What stands under quick is checked now, not when somebody first asks for it.
+    if (size == experiment_size::full) (void)parse_experiment(text, file, experiment_size::quick);
     return e;
 }
 

@@ -46,6 +46,7 @@ std::string scene_key(const scene_choice& scene) {
 
 results_folder::results_folder(std::filesystem::path folder, const experiment& e, existing_results existing)
     : folder_(std::move(folder)), experiment_(e), date_(date_now()) {
+    if (folder_.empty()) throw aabb::input_error("the folder of the results has no name");
     const std::filesystem::path table = folder_ / "results.csv";
     std::error_code error;
     std::filesystem::create_directories(folder_, error);

@@ -118,7 +118,8 @@ split_large_stage::cut_interval split_large_stage::cut(float lower, float upper,
 }
 
 void split_large_stage::find_splits(std::span<const box> boxes, double longest) {
-    constexpr std::size_t most_in_all = std::size_t{1} << 26;
+    // More than that no search would gain by.
+    const std::size_t most_in_all = 65'536 + 16 * boxes.size();
     splits_now_.clear();
     std::size_t all = 0;
     for (std::uint32_t id = 0; id < boxes.size(); ++id) {
@@ -130,7 +131,8 @@ void split_large_stage::find_splits(std::span<const box> boxes, double longest) 
         if (found.further_pieces() == 0) continue;
         all += found.further_pieces() + 1;
         if (all > most_in_all)
-            throw input_error("split_large: this size makes more than 2^26 pieces; a greater one makes fewer");
+            throw input_error("split_large: this size makes more than " + std::to_string(most_in_all) + " pieces of " +
+                              std::to_string(boxes.size()) + " objects; a greater one makes fewer");
         splits_now_.push_back(found);
     }
 }

@@ -84,6 +84,12 @@ sweep = "incremental"
     REQUIRE(to_text(e.compositions[6].global) == "insertion + none + incremental");
 }
 
+TEST_CASE("A strategy may be written as the command line takes it, and what stands under quick is checked at once") {
+    const experiment e = parsed(minimal + "[compose]\npartition = \"axial_cut:axes=3\"\n");
+    REQUIRE(to_text(e.compositions[0].global) == "std + axial_cut:axes=3 + one_axis");
+    REQUIRE_THROWS(parsed(minimal + "quick = { objects = -1 }\n"));
+}
+
 TEST_CASE("The option --quick takes what the config says under quick") {
     const std::string text = minimal + "frames = 7\nquick = { objects = 5 }\n[measure]\nrepeats = 20\n";
     REQUIRE(parsed(text).repeats == 20);

@@ -97,10 +97,11 @@ TEST_CASE("pieces keep their places in sorted lists when other objects come and 
     CHECK(stage->counters()[work::comparisons] - before < 1000);
 }
 
-TEST_CASE("a size that would make more pieces than a machine can hold is refused") {
+TEST_CASE("a size that would make far more pieces than there are objects is refused") {
     const auto stage = splitting(1e-6, 20'000);
-    CHECK_THROWS_MATCHES(stage->update(std::vector<box>(20'000, cube(0, 1))), input_error,
-                         Message("split_large: this size makes more than 2^26 pieces; a greater one makes fewer"));
+    CHECK_THROWS_MATCHES(
+        stage->update(std::vector<box>(20'000, cube(0, 1))), input_error,
+        Message("split_large: this size makes more than 385536 pieces of 20000 objects; a greater one makes fewer"));
 }
 
 TEST_CASE("rounding of coordinates splits nothing") {
