@@ -3,6 +3,7 @@ module;
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <tuple>
 
 module aabblab.scenes:line;
 

@@ -4,6 +4,7 @@ module;
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 module aabblab.scenes:still;
