@@ -151,9 +151,8 @@ void write_report(const std::filesystem::path& folder, std::span<const report_pa
     out.paragraph(
         "Times are medians over interleaved repeats in one process; compare them within a table only. The "
         "ratio is the median, over the repeats, of the time to the first line's in the same repeat; \"95 %\" holds it "
-        "with that confidence (the whole range where there are fewer than six repeats). \"build\" is the time, in ms, "
-        "to "
-        "make the stages and trees.");
+        "with that confidence (the whole range where there are fewer than six repeats). \"build\" is the time to "
+        "make the stages and trees, in ms.");
     for (const report_part& part : parts) add_part(out, part);
     out.write();
 }

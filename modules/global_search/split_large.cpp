@@ -36,6 +36,17 @@ std::optional<double> parse_split_large(std::string_view text) {
     return size;
 }
 
+namespace {
+
+/// On any axis.
+bool is_longer(const box& b, double longest) {
+    for (int k = 0; k < 3; ++k)
+        if (double{b.max[k]} - double{b.min[k]} > longest) return true;
+    return false;
+}
+
+}  // namespace
+
 split_large_stage::split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
     : search_(std::move(search)), size_(size), counted_(counted) {}
 
@@ -60,12 +71,14 @@ void split_large_stage::update(std::span<const box> boxes) {
     if (first_slot_ != boxes.size()) drop_pieces();
     first_slot_ = static_cast<std::uint32_t>(boxes.size());
     assign_slots();
+    if (splits_.empty()) return search_->update(boxes);
     make_pieces(boxes, longest);
     if (counted_ == instrumentation::counters) pieces_counted_ += slots_.size() + splits_.size();
     search_->update(pieces_);
 }
 
 void split_large_stage::search(std::vector<index_pair>& pairs) {
+    if (splits_.empty()) return search_->search(pairs);
     found_.clear();
     search_->search(found_);
     for (const auto [a, b] : found_)
@@ -123,7 +136,7 @@ void split_large_stage::find_splits(std::span<const box> boxes, double longest) 
     splits_now_.clear();
     std::size_t all = 0;
     for (std::uint32_t id = 0; id < boxes.size(); ++id) {
-        if (!objects_.contains(id)) continue;
+        if (!objects_.contains(id) || !is_longer(boxes[id], longest)) continue;
         split found{id, {}};
         for (int k = 0; k < 3; ++k)
             found.pieces[static_cast<std::size_t>(k)] =

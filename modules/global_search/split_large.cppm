@@ -27,10 +27,10 @@ export namespace aabb {
 ///
 /// On each axis on which a box is longer than `size` times the mean extent of all boxes it is cut into equal pieces no
 /// longer than that (by more than a hundredth, so that rounding splits nothing), 16 at most. Pieces keep their ids from
-/// frame to frame, and with them their places in sorted lists. They are closed and
-/// share their faces, so boxes overlap exactly when some pieces do.
-/// Of those that do, one pair of pieces holds the corner of greater lower ends, half-open, and only that one counts: no
-/// set is needed to find duplicates.
+/// frame to frame, and with them their places in sorted lists. They are closed and share their faces, so boxes overlap
+/// exactly when some pieces do. Of those that do, one pair of pieces holds the corner of greater lower ends, half-open,
+/// and only that one counts: no set is needed to find duplicates. A frame in which nothing is split goes to the search
+/// as it is.
 class split_large_stage final : public global_stage {
 public:
     split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted);

@@ -102,7 +102,6 @@ private:
 
     void forget_departures(const membership& objects) {
         for (auto& list : ends_) std::erase_if(list, [&](const interval_end& e) { return objects.is_leaving(e.id); });
-
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
     }
 
@@ -121,8 +120,7 @@ private:
             if (passed.is_upper == mover.is_upper) return;
             const index_pair pair = ordered_pair(passed.id, mover.id);
             counters.add(work::box_tests);
-            // Of the pairs whose overlap ends on this axis few overlapped on the others: a test spares the look for
-            // them.
+            // Few of the pairs whose overlap ends on this axis overlapped on the others: a test spares the look-up.
             if (mover.is_upper) {
                 if (overlaps(before_[pair.a], before_[pair.b])) pairs_.erase(pair);
             } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
@@ -193,8 +191,7 @@ private:
 
     axis_set axes_ = 0;                              // with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
-
-    std::vector<box> before_;  // by id, of the frame before
+    std::vector<box> before_;                        // by id, of the frame before
     pair_set pairs_;
     // While arrivals are brought in:
     std::vector<interval_end> arriving_;
