@@ -61,6 +61,7 @@ int main_of(int argc, char** argv) {
         add_list(program, status);
         add_pairs(program, status);
         add_collide(program, status);
+        add_contacts(program, status);
         add_classify(program, status);
         add_scene(program, status);
         // Set last: commands added before do not inherit it.

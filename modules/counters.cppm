@@ -11,22 +11,23 @@ export namespace aabb {
 
 /// What the work of a run is counted in. The names are the CSV columns.
 enum class work : std::uint8_t {
-    comparisons,      ///< key comparisons of the sort, and of bringing what it sorted back into the list
-    moves,            ///< entries of lists moved by the same
-    inversions,       ///< pairs in the wrong order in the lists handed to the sort
-    box_tests,        ///< overlap tests of two boxes, full or on the axes left
-    subsets,          ///< subsets that the partition made, empty ones too
-    subset_copies,    ///< entries of boxes in subsets of the partition
-    segments_wanted,  ///< into which an axial cut was to cut its axes, summed over the axes
-    segments_got,     ///< and into which it did
-    pieces,           ///< boxes that split_large made of the objects it split
-    node_visits,      ///< pairs of tree nodes taken from the stack
-    triangle_tests,   ///< tests of two triangles
+    comparisons,         ///< key comparisons of the sort, and of bringing what it sorted back into the list
+    moves,               ///< entries of lists moved by the same
+    inversions,          ///< pairs in the wrong order in the lists handed to the sort
+    box_tests,           ///< overlap tests of two boxes, full or on the axes left
+    subsets,             ///< subsets that the partition made, empty ones too
+    subset_copies,       ///< entries of boxes in subsets of the partition
+    segments_wanted,     ///< into which an axial cut was to cut its axes, summed over the axes
+    segments_got,        ///< and into which it did
+    pieces,              ///< boxes that split_large made of the objects it split
+    node_visits,         ///< pairs of tree nodes taken from the stack
+    triangle_box_tests,  ///< tests of a leaf's triangle against a box
+    triangle_tests,      ///< tests of two triangles
 };
 
-inline constexpr std::array<std::string_view, 11> work_names = {
-    "comparisons",     "moves",        "inversions", "box_tests",   "subsets",       "subset_copies",
-    "segments_wanted", "segments_got", "pieces",     "node_visits", "triangle_tests"};
+inline constexpr std::array<std::string_view, 12> work_names = {
+    "comparisons",  "moves",  "inversions",  "box_tests",          "subsets",       "subset_copies", "segments_wanted",
+    "segments_got", "pieces", "node_visits", "triangle_box_tests", "triangle_tests"};
 
 /// Counts nothing and costs nothing: what timing runs are made with.
 struct no_counters {

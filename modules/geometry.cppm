@@ -65,6 +65,14 @@ struct triangle3 {
 using triangle3f = triangle3<float>;
 using triangle3d = triangle3<double>;
 
+/// Without rounding.
+[[nodiscard]] constexpr const triangle3d& in_double(const triangle3d& t) noexcept {
+    return t;
+}
+[[nodiscard]] constexpr triangle3d in_double(const triangle3f& t) noexcept {
+    return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
+}
+
 /// Axis-aligned bounding box: the closed set min[k] <= x[k] <= max[k].
 struct box {
     vec3f min;
@@ -105,6 +113,14 @@ static_assert(sizeof(box) == 24);
 
 [[nodiscard]] constexpr box bounds_of(const triangle3f& t) noexcept {
     return merged(merged(bounds_of(t[0]), bounds_of(t[1])), bounds_of(t[2]));
+}
+
+/// Of a box that holds something; in double, so that it cannot overflow.
+[[nodiscard]] constexpr double surface_area(const box& b) noexcept {
+    const double x = double{b.max[0]} - double{b.min[0]};
+    const double y = double{b.max[1]} - double{b.min[1]};
+    const double z = double{b.max[2]} - double{b.min[2]};
+    return 2 * (x * y + y * z + z * x);
 }
 
 /// The axis on which the box is longest; the lowest of equals.

@@ -32,6 +32,11 @@ void pipeline::update(std::span<const pose> poses) {
         throw input_error("the scene has " + std::to_string(boxes_.size()) + " objects, but the frame has " +
                           std::to_string(poses.size()) + " poses");
     poses_.assign(poses.begin(), poses.end());
+    if (scene_.deforms())
+        for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m) {
+            local_.refit(m);
+            mesh_bounds_[m] = bounds_of(scene_.meshes[m]);
+        }
     for (std::size_t object = 0; object < poses.size(); ++object) {
         try {
             require_rigid(poses[object]);

@@ -33,6 +33,7 @@ public:
     pipeline(const mesh_scene& scene, global_stage& global, local_stage& local);
 
     /// One frame, in three steps that can be timed apart.
+    /// Where the scene deforms, its meshes are those of the frame, and the trees are fitted to them.
     /// @param poses one an object; @throws input_error on one that is not rigid, by the object's number.
     void update(std::span<const pose> poses);
     void search();

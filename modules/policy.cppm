@@ -254,6 +254,15 @@ inline constexpr bool strategy_is_exact = [] {
         return true;
 }();
 
+/// The same, as configured: where exactness depends on a parameter the `config` has a member `is_exact()`.
+template <Strategy S>
+[[nodiscard]] constexpr bool is_exact_as(const config_of<S>& config) {
+    if constexpr (requires { config.is_exact(); })
+        return config.is_exact();
+    else
+        return strategy_is_exact<S>;
+}
+
 /// A strategy made from its configuration.
 template <Strategy S>
 [[nodiscard]] S make_strategy(const config_of<S>& config) {

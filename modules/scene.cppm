@@ -44,8 +44,10 @@ public:
     std::vector<std::uint32_t> mesh_of;  ///< by object
 
     [[nodiscard]] virtual std::size_t frames() const = 0;
-    /// The poses of the next frame, one an object; false after the last.
+    /// The poses of the next frame, one an object; false after the last. Where the scene `deforms`, vertices of meshes
+    /// move too.
     virtual bool next(std::vector<pose>& poses) = 0;
+    [[nodiscard]] virtual bool deforms() const { return false; }
 };
 
 }  // namespace aabb

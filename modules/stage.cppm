@@ -13,6 +13,7 @@ import :counters;
 import :geometry;
 import :mesh;
 import :pose;
+import :tree_survey;
 
 // The two stages as a program sees them. Each is composed statically behind one call a frame (global search) or one
 // call a pair of meshes (local detection); between them stands a buffer of candidate pairs.
@@ -20,7 +21,7 @@ export namespace aabb {
 
 /// What one part of a stage holds on the heap.
 struct part_bytes {
-    std::string part;  ///< "projections", "partition", "sweep", "tree", …
+    std::string part;  ///< "projections", "partition", "sweep", "nodes", …
     std::size_t bytes;
 };
 
@@ -69,6 +70,21 @@ public:
     /// Any one intersecting pair.
     [[nodiscard]] virtual std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a,
                                                                std::uint32_t model_b, const pose& pose_b) = 0;
+
+    /// How many intersecting pairs there are.
+    [[nodiscard]] virtual std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                                    const pose& pose_b) = 0;
+
+    /// Appends every pair of intersecting triangles a < b of one model, each once, in no particular order. Neighbours
+    /// are among them, since they meet in the vertices that they share.
+    virtual void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) = 0;
+
+    /// Takes note that vertices of the model's mesh have moved.
+    /// @throws input_error when the mesh is no longer valid or of as many triangles.
+    virtual void refit(std::uint32_t model) = 0;
+
+    /// Walks the model's whole tree and holds it against the mesh; nothing for a system that shows no tree.
+    [[nodiscard]] virtual std::optional<tree_survey> survey(std::uint32_t model) const = 0;
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;

@@ -20,24 +20,17 @@ namespace aabb {
 
 namespace {
 
-using fcl_model = fcl::BVHModel<fcl::OBBRSSd>;
+using fcl_tree = fcl::BVHModel<fcl::OBBRSSd>;
 
 /// FCL's trees of oriented boxes in double. It takes the raw poses, so that no vertex is rounded to float.
-class fcl_meshes final : public local_stage {
+class fcl_meshes final : public mesh_engine {
 public:
     std::uint32_t add_model(const mesh& m) override {
-        require_valid(m);
-        std::vector<fcl::Vector3d> vertices;
-        for (const vec3f& v : m.vertices) vertices.emplace_back(v[0], v[1], v[2]);
-        std::vector<fcl::Triangle> triangles;
-        for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-        auto model = std::make_unique<fcl_model>();
-        model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-        model->addSubModel(vertices, triangles);
-        model->endModel();
-        models_.push_back(std::move(model));
+        models_.push_back({&m, tree_of(m)});
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
+
+    void refit(std::uint32_t model) override { models_[model].tree = tree_of(*models_[model].triangles); }
 
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) override {
@@ -53,18 +46,34 @@ public:
         return pair_of(result.getContact(0));
     }
 
-    [[nodiscard]] work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t all = 0;
-        for (const auto& m : models_)
-            all += static_cast<std::size_t>(m->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSSd>) +
-                   static_cast<std::size_t>(m->num_tris) * sizeof(fcl::Triangle) +
-                   static_cast<std::size_t>(m->num_vertices) * sizeof(fcl::Vector3d);
+        for (const model& m : models_)
+            all += static_cast<std::size_t>(m.tree->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSSd>) +
+                   static_cast<std::size_t>(m.tree->num_tris) * sizeof(fcl::Triangle) +
+                   static_cast<std::size_t>(m.tree->num_vertices) * sizeof(fcl::Vector3d);
         return {{"engine", all}};
     }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
 
 private:
+    struct model {
+        const mesh* triangles;
+        std::unique_ptr<fcl_tree> tree;
+    };
+
+    [[nodiscard]] static std::unique_ptr<fcl_tree> tree_of(const mesh& m) {
+        require_valid(m);
+        std::vector<fcl::Vector3d> vertices;
+        for (const vec3f& v : m.vertices) vertices.emplace_back(v[0], v[1], v[2]);
+        std::vector<fcl::Triangle> triangles;
+        for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+        auto tree = std::make_unique<fcl_tree>();
+        tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+        tree->addSubModel(vertices, triangles);
+        tree->endModel();
+        return tree;
+    }
+
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
         fcl::Transform3d all = fcl::Transform3d::Identity();
         for (int i = 0; i < 3; ++i) {
@@ -85,12 +94,12 @@ private:
         request.num_max_contacts = most;
         request.enable_contact = false;
         fcl::CollisionResultd result;
-        fcl::collide(models_[model_a].get(), transform(pose_a), models_[model_b].get(), transform(pose_b), request,
-                     result);
+        fcl::collide(models_[model_a].tree.get(), transform(pose_a), models_[model_b].tree.get(), transform(pose_b),
+                     request, result);
         return result;
     }
 
-    std::vector<std::unique_ptr<fcl_model>> models_;
+    std::vector<model> models_;
 };
 
 }  // namespace

@@ -17,17 +17,16 @@ namespace aabb {
 
 namespace {
 
-class pairwise_engine final : public local_stage {
+class pairwise_engine final : public mesh_engine {
 public:
     pairwise_engine(candidate_search& search, triangle_decision& decide) : search_(search), decide_(decide) {}
 
     std::uint32_t add_model(const mesh& m) override {
-        require_valid(m);
-        model added{&m, bounds_of(m), {}};
-        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) added.boxes.push_back(bounds_of(m.triangle(t)));
-        models_.push_back(std::move(added));
+        models_.push_back(model_of(m));
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
+
+    void refit(std::uint32_t model) override { models_[model] = model_of(*models_[model].triangles); }
 
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) override {
@@ -47,13 +46,11 @@ public:
         return first;
     }
 
-    [[nodiscard]] work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t all = 0;
         for (const model& m : models_) all += bytes_of(m.boxes);
         return {{"engine", all}};
     }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
 
 private:
     struct model {
@@ -61,6 +58,13 @@ private:
         box bounds;
         std::vector<box> boxes;  // by triangle
     };
+
+    [[nodiscard]] static model model_of(const mesh& m) {
+        require_valid(m);
+        model made{&m, bounds_of(m), {}};
+        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) made.boxes.push_back(bounds_of(m.triangle(t)));
+        return made;
+    }
 
     /// `emit` takes an intersecting pair and says whether to stop.
     template <class Emit>

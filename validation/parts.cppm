@@ -1,6 +1,7 @@
 module;
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,17 @@ private:
     std::vector<bool> present_;  // by id
     std::vector<std::uint32_t> ids_;
     bool changed_ = false;
+};
+
+/// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.
+class mesh_engine : public local_stage {
+public:
+    [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                            const pose& pose_b) final;
+    void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final;
+    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const final { return std::nullopt; }
+    [[nodiscard]] work_counters counters() const final { return {}; }
+    [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
 };
 
 /// Finds pairs of triangles whose boxes overlap: triangle i of `a` and t of `b` as {i, t}, in any order.

@@ -28,10 +28,13 @@ namespace aabblab {
 namespace {
 
 struct collide_request {
-    std::array<std::string, 2> meshes;
+    std::string a;
+    std::optional<std::string> b;
     std::array<std::optional<std::string>, 2> poses;
     std::optional<std::string> tree, triangle, engine, out;
+    bool self = false;
     bool first = false;
+    bool count = false;
     bool json = false;
 };
 
@@ -41,12 +44,15 @@ struct detection_method {
 };
 
 struct detection_result {
-    std::array<std::uint32_t, 2> triangles{};
+    std::vector<std::uint32_t> triangles;  ///< of each mesh
     std::vector<aabb::index_pair> pairs;
-    std::string digest;
+    std::uint64_t count = 0;                  ///< of pairs, of a mesh with itself those that share no vertex
+    std::optional<std::uint64_t> neighbours;  ///< of a mesh with itself: pairs that share a vertex
+    std::optional<std::string> digest;        ///< of the pairs counted; none where they are counted only
     double build_ms = 0;
     double query_ms = 0;
-    std::optional<double> bytes_per_triangle;  ///< none for an engine that does not say
+    std::vector<aabb::part_bytes> bytes;
+    std::optional<double> bytes_per_triangle;  ///< of the trees; none for an engine that does not say
 };
 
 detection_method method_of(const collide_request& request) {
@@ -99,65 +105,135 @@ aabb::mesh read(const std::string& name) {
     return std::move(loaded.mesh);
 }
 
-detection_result detect(const detection_method& method, const std::array<aabb::mesh, 2>& meshes,
-                        const std::array<aabb::pose, 2>& poses, bool first) {
+void query(aabb::local_stage& stage, const collide_request& request, const std::array<aabb::pose, 2>& poses,
+           detection_result& result) {
+    if (request.self) {
+        stage.self_pairs(0, result.pairs);
+    } else if (request.count) {
+        result.count = stage.count_pairs(0, poses[0], 1, poses[1]);
+    } else if (request.first) {
+        if (const auto pair = stage.first_pair(0, poses[0], 1, poses[1])) result.pairs.push_back(*pair);
+    } else {
+        stage.all_pairs(0, poses[0], 1, poses[1], result.pairs);
+    }
+}
+
+/// How many corners of one triangle lie where a corner of the other does.
+std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
+    const aabb::triangle3f s = m.triangle(pair.a);
+    const aabb::triangle3f t = m.triangle(pair.b);
+    std::uint32_t shared = 0;
+    for (int i = 0; i < 3; ++i) shared += s[i] == t[0] || s[i] == t[1] || s[i] == t[2];
+    return shared;
+}
+
+void set_bytes(detection_result& result, const aabb::local_stage& stage, const std::vector<aabb::mesh>& meshes) {
+    result.bytes = stage.bytes();
+    std::optional<std::size_t> trees;
+    for (const aabb::part_bytes& part : result.bytes)
+        if (part.part == "nodes" || part.part == "indices") trees = trees.value_or(0) + part.bytes;
+    std::size_t triangles = 0;
+    for (const aabb::mesh& m : meshes) triangles += m.triangles.size();
+    if (trees) result.bytes_per_triangle = static_cast<double>(*trees) / static_cast<double>(triangles);
+    aabb::part_bytes of_triangles{"triangles", 0};
+    aabb::part_bytes of_vertices{"vertices", 0};
+    for (const aabb::mesh& m : meshes) {
+        of_triangles.bytes += aabb::bytes_of(m.triangles);
+        of_vertices.bytes += aabb::bytes_of(m.vertices);
+    }
+    result.bytes.push_back(of_triangles);
+    result.bytes.push_back(of_vertices);
+}
+
+/// @param table takes the pairs; null where they are not wanted.
+detection_result detect(const collide_request& request, const detection_method& method,
+                        const std::vector<aabb::mesh>& meshes, const std::array<aabb::pose, 2>& poses,
+                        number_table* table) {
     detection_result result;
-    std::array<std::uint32_t, 2> models{};
-    result.triangles = {meshes[0].triangle_count(), meshes[1].triangle_count()};
     result.build_ms = milliseconds_of([&] {
-        for (std::size_t i = 0; i < 2; ++i) models[i] = method.stage->add_model(meshes[i]);
+        for (const aabb::mesh& m : meshes) method.stage->add_model(m);
     });
-    result.query_ms = milliseconds_of([&] {
-        if (!first) return method.stage->all_pairs(models[0], poses[0], models[1], poses[1], result.pairs);
-        if (const auto pair = method.stage->first_pair(models[0], poses[0], models[1], poses[1]))
-            result.pairs.push_back(*pair);
-    });
+    result.query_ms = milliseconds_of([&] { query(*method.stage, request, poses, result); });
+    for (const aabb::mesh& m : meshes) result.triangles.push_back(m.triangle_count());
+    set_bytes(result, *method.stage, meshes);
+    if (request.count) return result;
     sort_each_once(result.pairs, method.name);
     aabb::digest digest;
-    digest.add(0, result.pairs);
+    for (const aabb::index_pair pair : result.pairs) {
+        const std::uint32_t shared = request.self ? shared_vertices(meshes[0], pair) : 0;
+        if (table) request.self ? table->add({pair.a, pair.b, shared}) : table->add({pair.a, pair.b});
+        if (shared > 0) continue;
+        digest.add(0, {&pair, 1});
+        ++result.count;
+    }
+    if (request.self) result.neighbours = result.pairs.size() - result.count;
     result.digest = digest.text();
-    for (const aabb::part_bytes& part : method.stage->bytes())
-        if (part.part == "tree")
-            result.bytes_per_triangle =
-                static_cast<double>(part.bytes) / (double{0} + result.triangles[0] + result.triangles[1]);
     return result;
 }
 
 void print_json(const detection_result& result) {
-    nlohmann::ordered_json summary = {{"triangles", result.triangles}, {"pairs", result.pairs.size()},
-                                      {"digest", result.digest},       {"build_ms", result.build_ms},
-                                      {"query_ms", result.query_ms},   {"bytes_per_triangle", nullptr}};
+    nlohmann::ordered_json summary = {
+        {"triangles", result.triangles}, {"pairs", result.count},       {"digest", nullptr},
+        {"build_ms", result.build_ms},   {"query_ms", result.query_ms}, {"bytes_per_triangle", nullptr}};
+    if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
+    if (result.neighbours) summary["neighbours"] = *result.neighbours;
+    for (const aabb::part_bytes& part : result.bytes) summary["bytes"][part.part] = part.bytes;
     print(summary.dump() + "\n");
 }
 
 void print_text(const collide_request& request, const detection_method& method, const detection_result& result) {
-    print(fmt::format("{} ({} triangles) against {} ({} triangles)\n", request.meshes[0], result.triangles[0],
-                      request.meshes[1], result.triangles[1]));
+    print(fmt::format("{} ({} triangles) against {}\n", request.a, result.triangles[0],
+                      request.self ? "itself" : fmt::format("{} ({} triangles)", *request.b, result.triangles[1])));
+    const std::string digest = result.digest ? ", digest " + *result.digest : "";
     if (request.first && !result.pairs.empty())
         print(fmt::format("triangles {} and {} intersect\n", result.pairs[0].a, result.pairs[0].b));
     else
-        print(fmt::format("{} intersecting pairs of triangles, digest {}\n", result.pairs.size(), result.digest));
+        print(fmt::format("{} intersecting pairs of triangles{}{}\n", result.count,
+                          request.self ? " that share no vertex" : "", digest));
+    if (result.neighbours) print(fmt::format("{} pairs of triangles that share a vertex\n", *result.neighbours));
     print(fmt::format("{}: built in {:.3f} ms, searched in {:.3f} ms", method.name, result.build_ms, result.query_ms));
     if (result.bytes_per_triangle) print(fmt::format(", {:.1f} bytes a triangle", *result.bytes_per_triangle));
+    print("\nbytes:");
+    const char* before = " ";
+    for (const aabb::part_bytes& part : result.bytes) {
+        if (part.bytes > 0) print(fmt::format("{}{} {}", before, part.part, part.bytes));
+        if (part.bytes > 0) before = ", ";
+    }
     print("\n");
 }
 
+/// What does not go together.
+void require_sense(const collide_request& request) {
+    if (request.self) {
+        if (request.b) throw aabb::input_error("--self holds one mesh against itself, so give no second one");
+        if (request.poses[0] || request.poses[1])
+            throw aabb::input_error("--self holds a mesh against itself, so poses change nothing; leave them away");
+        if (request.first || request.count)
+            throw aabb::input_error("--self lists every pair, so --first and --count do not go with it");
+    } else if (!request.b) {
+        throw aabb::input_error("collide: expected B, the other mesh, or --self");
+    }
+    if (request.first && request.count) throw aabb::input_error("--first and --count ask for different things");
+    if (request.count && request.out) throw aabb::input_error("--count keeps no pairs, so there is nothing for --out");
+}
+
 void collide(const collide_request& request) {
+    require_sense(request);
     const detection_method method = method_of(request);
     const std::array<aabb::pose, 2> poses = {pose_of(request.poses[0], "--pose-a"),
                                              pose_of(request.poses[1], "--pose-b")};
-    const std::array<aabb::mesh, 2> meshes = {read(request.meshes[0]), read(request.meshes[1])};
-    std::optional<pair_table> table;
+    std::vector<std::string> names{request.a};
+    if (request.b) names.push_back(*request.b);
+    std::vector<aabb::mesh> meshes;
+    for (const std::string& name : names) meshes.push_back(read(name));
+    std::optional<number_table> table;
     if (request.out) {
-        require_other_file(*request.out, request.meshes);
-        table.emplace(*request.out, pair_table::columns::a_b);
+        require_other_file(*request.out, names);
+        table.emplace(*request.out, request.self ? "a,b,shared_vertices" : "a,b");
     }
-    const detection_result result = detect(method, meshes, poses, request.first);
-    if (table) {
-        table->add(0, result.pairs);
-        table->commit();
-    }
+    const detection_result result = detect(request, method, meshes, poses, table ? &*table : nullptr);
+    if (table) table->commit();
     if (request.json)
         print_json(result);
     else
@@ -170,10 +246,10 @@ void add_collide(CLI::App& program, int&) {
     auto* command =
         program.add_subcommand("collide", "Local detection of two meshes: every pair of intersecting triangles");
     auto request = std::make_shared<collide_request>();
-    command->add_option("A", request->meshes[0], "Mesh file, or a shape as in torus_knot:triangles=20000")
+    command->add_option("A", request->a, "Mesh file, or a shape as in torus_knot:triangles=20000")
         ->required()
         ->type_name("");
-    command->add_option("B", request->meshes[1], "The other one")->required()->type_name("");
+    command->add_option("B", request->b, "The other one")->type_name("");
     command
         ->add_option("--pose-a", request->poses[0],
                      "Where A is: 12 numbers with commas between, the rows of [R t] (default: as it is)")
@@ -183,8 +259,13 @@ void add_collide(CLI::App& program, int&) {
     command->add_option("--triangle", request->triangle, "Triangle test (default exact)")->type_name("R");
     command->add_option("--engine", request->engine, "Reference system in place of tree and triangle test")
         ->type_name("E");
+    command->add_flag("--self", request->self, "Hold A against itself; pairs that share a vertex are counted apart");
     command->add_flag("--first", request->first, "Stop at the first pair found");
-    command->add_option("--out", request->out, "Write the pairs, rows a,b, to this CSV file")->type_name("FILE");
+    command->add_flag("--count", request->count, "Only count the pairs");
+    command
+        ->add_option("--out", request->out,
+                     "Write the pairs, rows a,b (with --self a,b,shared_vertices), to this CSV file")
+        ->type_name("FILE");
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->callback([request] { collide(*request); });
 }

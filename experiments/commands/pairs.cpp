@@ -58,7 +58,7 @@ search_method method_of(const pairs_request& request) {
     return {aabb::to_text(composition), aabb::compose(composition, aabb::instrumentation::none)};
 }
 
-search_result search_all(aabb::box_scene& scene, const search_method& method, std::optional<pair_table>& table) {
+search_result search_all(aabb::box_scene& scene, const search_method& method, std::optional<number_table>& table) {
     search_result result;
     result.objects = scene.objects();
     for (std::uint32_t id = 0; id < result.objects; ++id) method.stage->insert(id);
@@ -74,7 +74,8 @@ search_result search_all(aabb::box_scene& scene, const search_method& method, st
         }));
         sort_each_once(pairs, fmt::format("{}, frame {}", method.name, frame));
         digest.add(frame, pairs);
-        if (table) table->add(frame, pairs);
+        if (table)
+            for (const auto [a, b] : pairs) table->add({frame, a, b});
         result.pairs += pairs.size();
         shown.at(frame + 1);
     }
@@ -108,10 +109,10 @@ void print_text(const pairs_request& request, const search_method& method, const
 void find_pairs(const pairs_request& request) {
     const search_method method = method_of(request);
     const std::unique_ptr<aabb::box_scene> scene = open_recording(request.recording);
-    std::optional<pair_table> table;
+    std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.recording, 1});
-        table.emplace(*request.out, pair_table::columns::frame_a_b);
+        table.emplace(*request.out, "frame,a,b");
     }
     const search_result result = search_all(*scene, method, table);
     if (table) table->commit();

@@ -35,20 +35,25 @@ struct scene_request {
     std::vector<std::string> meshes;
     std::string seed = "1";
     std::optional<std::string> out;
+    std::optional<std::string> motion;
     std::optional<std::string> picture;
 };
 
-/// A scene of meshes as global search sees it: the world boxes of its objects.
+/// A scene of meshes as global search sees it: the world boxes of its objects. Writes their poses on the way.
 class world_boxes final : public aabb::box_scene {
 public:
-    explicit world_boxes(std::unique_ptr<aabb::mesh_scene> scene) : scene_(std::move(scene)) {
-        for (const aabb::mesh& m : scene_->meshes) bounds_.push_back(aabb::bounds_of(m));
+    /// @param motion null where poses are not to be written.
+    world_boxes(std::unique_ptr<aabb::mesh_scene> scene, motion_file* motion)
+        : scene_(std::move(scene)), motion_(motion) {
+        fit_bounds();
     }
 
     [[nodiscard]] std::size_t objects() const override { return scene_->mesh_of.size(); }
     [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_->next(poses_)) return false;
+        if (motion_) motion_->add(poses_);
+        if (scene_->deforms()) fit_bounds();
         boxes.clear();
         for (std::size_t object = 0; object < poses_.size(); ++object)
             boxes.push_back(aabb::world_bounds(bounds_[scene_->mesh_of[object]], poses_[object]));
@@ -57,7 +62,13 @@ public:
     }
 
 private:
+    void fit_bounds() {
+        bounds_.clear();
+        for (const aabb::mesh& m : scene_->meshes) bounds_.push_back(aabb::bounds_of(m));
+    }
+
     std::unique_ptr<aabb::mesh_scene> scene_;
+    motion_file* motion_;
     std::vector<aabb::box> bounds_;  // by mesh
     std::vector<aabb::pose> poses_;
 };
@@ -98,9 +109,14 @@ const scene_info& kind_named(const std::string& name) {
     return *kind;
 }
 
-std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice) {
-    if (kind.has_meshes) return std::make_unique<world_boxes>(make_mesh_scene(choice));
-    return make_box_scene(choice);
+std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice, motion_file* motion) {
+    if (!kind.has_meshes && motion)
+        throw aabb::input_error(kind.name + " is a scene of boxes, which have no poses to write with --motion");
+    if (!kind.has_meshes) return make_box_scene(choice);
+    std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
+    if (scene->deforms() && motion)
+        throw aabb::input_error(kind.name + " deforms its meshes, so poses alone, as --motion writes them, are not it");
+    return std::make_unique<world_boxes>(std::move(scene), motion);
 }
 
 /// Every parameter with its value, the defaults too.
@@ -114,14 +130,27 @@ std::string all_parameters(const scene_info& kind, const scene_choice& choice) {
     return parameters_text(whole);
 }
 
+/// Each output that was asked for, by its option.
+std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request& request) {
+    std::vector<std::pair<std::string, std::string>> outputs;
+    if (request.out) outputs.emplace_back("--out", *request.out);
+    if (request.motion) outputs.emplace_back("--motion", *request.motion);
+    if (request.picture) outputs.emplace_back("--picture", *request.picture);
+    return outputs;
+}
+
 void require_outputs(const scene_request& request) {
-    if (!request.out && !request.picture)
-        throw aabb::input_error("scene: expected --out or --picture, the file to write");
-    if (!request.out || !request.picture) return;
-    std::error_code ignored;  // a file that is not there is no other's
-    if (std::filesystem::equivalent(*request.out, *request.picture, ignored) ||
-        std::filesystem::weakly_canonical(*request.out) == std::filesystem::weakly_canonical(*request.picture))
-        throw aabb::input_error("--out and --picture are the same file, " + *request.out);
+    const auto outputs = outputs_of(request);
+    if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, the file to write");
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+        for (std::size_t j = i + 1; j < outputs.size(); ++j) {
+            std::error_code ignored;  // a file that is not there is no other's
+            if (std::filesystem::equivalent(outputs[i].second, outputs[j].second, ignored) ||
+                std::filesystem::weakly_canonical(outputs[i].second) ==
+                    std::filesystem::weakly_canonical(outputs[j].second))
+                throw aabb::input_error(outputs[i].first + " and " + outputs[j].first + " are the same file, " +
+                                        outputs[i].second);
+        }
 }
 
 void write_scene(const scene_request& request) {
@@ -130,8 +159,10 @@ void write_scene(const scene_request& request) {
     for (const auto& [name, value] : request.settings)
         if (value) choice.settings.push_back({name, *value});
     const scene_info& kind = kind_named(request.kind);
-    surveyed_scene scene(make_scene(kind, choice));
-    // Opened before anything is played, so that a picture that cannot be written costs no time and no recording.
+    // Opened before anything is played, so that a file that cannot be written costs no time and no recording.
+    std::optional<motion_file> motion;
+    if (request.motion) motion.emplace(*request.motion);
+    surveyed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
     std::optional<output_file> picture;
     if (request.picture) picture.emplace(*request.picture);
     {
@@ -146,6 +177,10 @@ void write_scene(const scene_request& request) {
     }
     const std::string size = fmt::format("{} objects, {} frames", scene.objects(), scene.frames());
     if (request.out) print(fmt::format("wrote {}: {}\n", *request.out, size));
+    if (motion) {
+        motion->commit();
+        print(fmt::format("wrote {}: {}\n", *request.motion, size));
+    }
     if (picture) {
         picture->write(picture_of(scene.seen(), {kind.name, kind.summary, all_parameters(kind, choice)}));
         picture->commit();
@@ -191,6 +226,8 @@ void add_scene(CLI::App& program, int&) {
     command->add_option("--seed", request->seed, "Whole number: the same seed gives the same scene (default 1)")
         ->type_name("S");
     command->add_option("--out", request->out, "The recording to write (.aabbs)")->type_name("FILE");
+    command->add_option("--motion", request->motion, "The motion file to write, for `contacts`: the poses of meshes")
+        ->type_name("FILE");
     command->add_option("--picture", request->picture, "The picture to write (.svg): the first and the last frame")
         ->type_name("FILE");
     command->callback([request] { write_scene(*request); });

@@ -4,6 +4,7 @@ module;
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,14 @@ void require_memory(const std::string& what, double bytes);
 
 /// Writes OFF with the shortest decimals that read back to the same floats.
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
+
+/// Opens a motion file for playing with these meshes: object i is mesh i modulo their number. A line is a frame, an
+/// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames are numbered from 0 and stand in
+/// order; frame 0 has every object, later ones those that have moved.
+/// @throws aabb::input_error, with file and line, on anything else, a pose that is not rigid, or more meshes than
+/// objects.
+[[nodiscard]] std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
+                                                            std::vector<aabb::mesh> meshes);
 
 /// Opens a recording (.aabbs) for playing; frames are read one by one.
 /// @throws aabb::input_error where the header is cut off, is not one, lies about the file's size, or announces a
@@ -62,6 +71,20 @@ public:
 private:
     struct state;
     std::unique_ptr<state> state_;
+};
+
+/// A motion file in the making: every object in every frame, with the shortest decimals that read back to the same
+/// doubles.
+class motion_file {
+public:
+    explicit motion_file(const std::filesystem::path& file) : out_(file) {}
+    /// The next frame.
+    void add(std::span<const aabb::pose> poses);
+    void commit() { out_.commit(); }
+
+private:
+    output_file out_;
+    std::size_t frames_ = 0;
 };
 
 }  // namespace aabblab

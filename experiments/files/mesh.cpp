@@ -28,18 +28,6 @@ struct format {
 constexpr format formats[] = {{".off", read_off}, {".obj", read_obj},   {".ply", read_ply},
                               {".stl", read_stl}, {".gltf", read_gltf}, {".glb", read_gltf}};
 
-file_text read_whole(const std::filesystem::path& file, std::size_t size) {
-    // A mesh takes about as much again as its text.
-    require_memory(file.string() + ": reading it", 2.0 * static_cast<double>(size));
-    const file_handle opened = open_to_read(file);
-    file_text whole{file.string(), std::string(size, '\0')};
-    const std::size_t read = std::fread(whole.text.data(), 1, size, opened.get());
-    if (read != size)
-        throw aabb::input_error(whole.name + ": cannot be read beyond byte " + std::to_string(read) + " of " +
-                                std::to_string(size));
-    return whole;
-}
-
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
     return std::to_string(count) + " " + std::string(count == 1 ? one : many);
 }

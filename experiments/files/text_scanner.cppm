@@ -82,6 +82,19 @@ public:
         return value;
     }
 
+    /// A finite number, correctly rounded to double.
+    [[nodiscard]] double number(const std::string& what) {
+        const std::string_view text = word();
+        const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-"));
+        double value = 0;
+        const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+        if (end != text.data() + text.size() || error == std::errc::invalid_argument) expected(what, text);
+        // Too small for a double is a rounded zero, too large is refused.
+        if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
+        if (!std::isfinite(value)) fail(quoted(text) + " is not a finite number");
+        return value;
+    }
+
     /// Three coordinates, each correctly rounded to float.
     [[nodiscard]] aabb::vec3f point() {
         aabb::vec3f p{};

@@ -5,8 +5,8 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <iterator>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,21 +25,26 @@ void sort_each_once(std::vector<aabb::index_pair>& pairs, std::string_view where
         throw defect(fmt::format("{}: the pair {},{} was reported more than once", where, twice->a, twice->b));
 }
 
-pair_table::pair_table(const std::filesystem::path& file, columns wanted)
-    : file_(file), columns_(wanted), text_(wanted == columns::frame_a_b ? "frame,a,b\n" : "a,b\n") {}
-
-void pair_table::add(std::uint32_t frame, std::span<const aabb::index_pair> sorted) {
-    constexpr std::size_t block = 1U << 16U;
-    for (const auto [a, b] : sorted) {
-        if (columns_ == columns::frame_a_b) fmt::format_to(std::back_inserter(text_), "{},", frame);
-        fmt::format_to(std::back_inserter(text_), "{},{}\n", a, b);
-        if (text_.size() < block) continue;
-        file_.write(text_);
-        text_.clear();
-    }
+void sort_each_once(std::vector<aabb::contact>& contacts, std::string_view where) {
+    std::ranges::sort(contacts);
+    const auto twice = std::ranges::adjacent_find(contacts);
+    if (twice != contacts.end())
+        throw defect(fmt::format("{}: the contact {},{},{},{} was reported more than once", where, twice->a, twice->b,
+                                 twice->triangle_a, twice->triangle_b));
 }
 
-void pair_table::commit() {
+number_table::number_table(const std::filesystem::path& file, std::string_view header)
+    : file_(file), text_(std::string(header) + "\n") {}
+
+void number_table::add(std::initializer_list<std::uint32_t> row) {
+    constexpr std::size_t block = 1U << 16U;
+    fmt::format_to(std::back_inserter(text_), "{}\n", fmt::join(row, ","));
+    if (text_.size() < block) return;
+    file_.write(text_);
+    text_.clear();
+}
+
+void number_table::commit() {
     file_.write(text_);
     file_.commit();
 }

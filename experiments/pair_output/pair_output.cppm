@@ -1,13 +1,13 @@
 module;
 #include <cstdint>
 #include <filesystem>
-#include <span>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// Pairs on their way out of the program.
+/// Pairs and contacts on their way out of the program.
 export module aabblab.pair_output;
 
 import aabb;
@@ -25,20 +25,20 @@ public:
 /// @param where what reported them, as the sentence begins: "std + none + one_axis, frame 3"
 /// @throws defect where a pair is there more than once.
 void sort_each_once(std::vector<aabb::index_pair>& pairs, std::string_view where);
+void sort_each_once(std::vector<aabb::contact>& contacts, std::string_view where);
 
-/// A CSV file of sorted pairs: rows `frame,a,b` or `a,b` below that header. There only once it is committed.
-class pair_table {
+/// A CSV file of whole numbers. There only once it is committed.
+class number_table {
 public:
-    enum class columns { frame_a_b, a_b };
-
+    /// @param header the names of the columns, "frame,a,b"
     /// @throws aabb::input_error when the file cannot be written, as do `add` and `commit`.
-    pair_table(const std::filesystem::path& file, columns wanted);
-    void add(std::uint32_t frame, std::span<const aabb::index_pair> sorted);
+    number_table(const std::filesystem::path& file, std::string_view header);
+    /// A row.
+    void add(std::initializer_list<std::uint32_t> row);
     void commit();
 
 private:
     output_file file_;
-    columns columns_;
     std::string text_;  // rows not yet written
 };
 

@@ -58,6 +58,12 @@ table counts_table_of(const scene_summary& scene, number_style style) {
         t.columns.push_back({(style == number_style::plain ? "bytes " : "KiB ") + spaced(byte_columns[i])});
     }
     if (works.empty() && parts.empty()) return {};
+    const bool trees =
+        std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.bytes_a_triangle.has_value(); });
+    const bool inflated =
+        std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
+    if (trees) t.columns.push_back({"tree bytes a triangle"});
+    if (inflated) t.columns.push_back({"box inflation %"});
     const double counted_frames = scene.frames > 1 ? static_cast<double>(scene.frames - 1) : 1;
     for (const summary_line& line : scene.lines) {
         if (!line.name.engine.empty()) continue;
@@ -71,6 +77,8 @@ table counts_table_of(const scene_summary& scene, number_style style) {
             const auto bytes = static_cast<double>(line.bytes_by_part[i].value_or(0));
             cells.push_back(style == number_style::plain ? fmt::format("{:.0f}", bytes) : cell(bytes / 1024, style));
         }
+        if (trees) cells.push_back(line.bytes_a_triangle ? fmt::format("{:.2f}", *line.bytes_a_triangle) : "-");
+        if (inflated) cells.push_back(line.box_inflation ? fmt::format("{:.3f}", 100 * *line.box_inflation) : "-");
     }
     return t;
 }

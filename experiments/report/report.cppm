@@ -66,6 +66,8 @@ struct summary_line {
     /// Empty where they were not asked for, or for an engine.
     std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes_by_part;
+    std::optional<double> bytes_a_triangle;  ///< of the trees; empty where there are none to be seen
+    std::optional<double> box_inflation;
 };
 
 /// One of the kinds of strategy, and where it stands in a name.

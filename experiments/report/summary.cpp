@@ -40,10 +40,19 @@ std::string answer_of(const row& r) {
     return fmt::format("-{} +{}", *r.missing, *r.invented);
 }
 
-std::optional<std::uint64_t> bytes_of(const row& r) {
+/// Of the parts whose columns are to be counted.
+template <class Counted>
+std::optional<std::uint64_t> bytes_of(const row& r, Counted counted) {
     std::uint64_t all = 0;
-    for (const std::optional<std::uint64_t>& part : r.bytes) all += part.value_or(0);
+    for (std::size_t i = 0; i < byte_columns.size(); ++i)
+        if (counted(byte_columns[i])) all += r.bytes[i].value_or(0);
     return all > 0 ? std::optional(all) : std::nullopt;
+}
+
+std::optional<double> bytes_a_triangle(const row& r) {
+    const auto trees = bytes_of(r, [](std::string_view part) { return part == "nodes" || part == "indices"; });
+    if (!trees || r.triangles.value_or(0) == 0) return std::nullopt;
+    return static_cast<double>(*trees) / static_cast<double>(*r.triangles);
 }
 
 summary_line line_of(std::span<const row* const> repeats) {
@@ -53,7 +62,9 @@ summary_line line_of(std::span<const row* const> repeats) {
     line.pairs = any.candidates;
     line.contacts = any.contacts;
     line.answer = answer_of(any);
-    line.bytes = bytes_of(any);
+    line.bytes = bytes_of(any, [](std::string_view part) { return part != "triangles" && part != "vertices"; });
+    line.bytes_a_triangle = bytes_a_triangle(any);
+    line.box_inflation = any.box_inflation;
     line.counts = any.counts;
     line.bytes_by_part = any.bytes;
     std::vector<double> times, builds;

@@ -28,9 +28,11 @@ struct contender_name {
     friend auto operator<=>(const contender_name&, const contender_name&) = default;
 };
 
-/// Parts of a stage that have a column; what an engine calls otherwise is under `engine`.
-inline constexpr std::array<std::string_view, 8> byte_columns = {"projections", "sort", "partition", "sweep",
-                                                                 "split_large", "tree", "stack",     "engine"};
+/// Parts of a stage that have a column; what an engine calls otherwise is under `engine`. `triangles` and `vertices`
+/// are the scene's meshes, which every composition reads and none of them holds.
+inline constexpr std::array<std::string_view, 12> byte_columns = {"projections", "sort",      "partition", "sweep",
+                                                                  "split_large", "nodes",     "indices",   "stack",
+                                                                  "refit",       "triangles", "vertices",  "engine"};
 
 /// One row: one scene played once from a fresh start. Metrics that were not asked for are empty.
 struct row {
@@ -41,9 +43,10 @@ struct row {
     std::uint64_t frames = 0;
     contender_name name;
     std::uint64_t repeat = 0;
-    std::optional<double> build_ms;   ///< making the stages, taking the objects, building the trees
-    std::optional<double> first_ms;   ///< frame 0, whole
-    std::optional<double> update_ms;  ///< sums over the frames after frame 0
+    std::optional<std::uint64_t> triangles;  ///< of the scene's meshes, each counted once; empty in scenes of boxes
+    std::optional<double> build_ms;          ///< making the stages, taking the objects, building the trees
+    std::optional<double> first_ms;          ///< frame 0, whole
+    std::optional<double> update_ms;         ///< sums over the frames after frame 0
     std::optional<double> search_ms;
     std::optional<double> detect_ms;
     std::uint64_t candidates = 0;           ///< pairs of boxes, over all frames
@@ -54,6 +57,7 @@ struct row {
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes;
     std::optional<std::uint64_t> missing;   ///< pairs or contacts of the exact answer that are not there
     std::optional<std::uint64_t> invented;  ///< those that are there but not in the exact answer
+    std::optional<double> box_inflation;    ///< area of the tree's boxes over that of the smallest ones, less 1
     std::string status;                     ///< "exact" or "inexact"
 
     /// Equal keys name the same measurement.

@@ -47,6 +47,7 @@ void for_each_key(Row& r, Field field) {
 template <class Row, class Field>
 void for_each_column(Row& r, Field field) {
     for_each_key(r, field);
+    field("triangles", r.triangles);
     field("build_ms", r.build_ms);
     field("first_ms", r.first_ms);
     field("update_ms", r.update_ms);
@@ -59,6 +60,7 @@ void for_each_column(Row& r, Field field) {
     for (std::size_t i = 0; i < r.bytes.size(); ++i) field("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
     field("missing", r.missing);
     field("invented", r.invented);
+    field("box_inflation", r.box_inflation);
     field("status", r.status);
 }
 

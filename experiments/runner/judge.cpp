@@ -50,6 +50,7 @@ void judge::play(std::span<const aabb::box> boxes) {
     boxes_->search(pairs_);
     std::ranges::sort(pairs_);
     if (!triangles_) return;
+    if (scene_.meshes()->deforms()) follow_meshes();
     const std::vector<std::uint32_t>& mesh_of = scene_.meshes()->mesh_of;
     std::vector<aabb::index_pair> found;
     for (const auto [a, b] : near_objects()) {
@@ -58,6 +59,14 @@ void judge::play(std::span<const aabb::box> boxes) {
         for (const auto [s, t] : found) contacts_.push_back({a, b, s, t});
     }
     std::ranges::sort(contacts_);
+}
+
+void judge::follow_meshes() {
+    const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
+    for (std::uint32_t m = 0; m < meshes.size(); ++m) {
+        triangles_->refit(m);
+        spheres_[m] = sphere_around(meshes[m]);
+    }
 }
 
 judge::sphere judge::sphere_around(const aabb::mesh& m) {

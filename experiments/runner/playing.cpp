@@ -97,7 +97,17 @@ aabb::work_counters player::counters() const {
 }
 
 std::vector<aabb::part_bytes> player::local_bytes() const {
-    return local_ ? local_->bytes() : std::vector<aabb::part_bytes>{};
+    if (!local_) return {};
+    std::vector<aabb::part_bytes> parts = local_->bytes();
+    std::size_t triangles = 0;
+    std::size_t vertices = 0;
+    for (const aabb::mesh& m : scene_.meshes()->meshes) {
+        triangles += aabb::bytes_of(m.triangles);
+        vertices += aabb::bytes_of(m.vertices);
+    }
+    parts.push_back({"triangles", triangles});
+    parts.push_back({"vertices", vertices});
+    return parts;
 }
 
 std::size_t player::buffer_bytes() const {
@@ -110,6 +120,18 @@ std::vector<std::string> player::left_out() const {
     for (std::string& sentence : local_ ? local_->left_out() : std::vector<std::string>{})
         if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
     return all;
+}
+
+std::optional<double> player::box_inflation() const {
+    if (!local_) return std::nullopt;
+    double sum = 0;
+    const std::size_t meshes = scene_.meshes()->meshes.size();
+    for (std::uint32_t m = 0; m < meshes; ++m) {
+        const std::optional<aabb::tree_survey> seen = local_->survey(m);
+        if (!seen) return std::nullopt;
+        sum += seen->area_inflation;
+    }
+    return sum / static_cast<double>(meshes);
 }
 
 void tally::add(const std::vector<aabb::index_pair>& pairs, const std::vector<aabb::contact>& contacts) {

@@ -76,6 +76,8 @@ public:
     [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
     [[nodiscard]] std::size_t buffer_bytes() const;
     [[nodiscard]] std::vector<std::string> left_out() const;
+    /// The mean over the scene's meshes of the tree's; empty where there is no tree to be seen.
+    [[nodiscard]] std::optional<double> box_inflation() const;
 
 private:
     const scene_play& scene_;
@@ -110,6 +112,7 @@ private:
         double radius;
     };
     [[nodiscard]] static sphere sphere_around(const aabb::mesh& m);
+    void follow_meshes();
     /// Every two objects that can meet, and some that cannot.
     [[nodiscard]] std::vector<aabb::index_pair> near_objects() const;
 

@@ -37,6 +37,7 @@ row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts&
     r.candidates = v.candidates;
     r.contacts = v.contacts;
     r.digest = v.digest;
+    r.triangles = v.triangles;
     // Engines count nothing.
     const bool counted = std::ranges::any_of(v.counts, [](std::uint64_t n) { return n > 0; });
     if (e.measured.counts && counted) std::ranges::copy(v.counts, r.counts.begin());
@@ -44,6 +45,7 @@ row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts&
     if (e.measured.error) {
         r.missing = v.missing;
         r.invented = v.invented;
+        r.box_inflation = v.box_inflation;
     }
     r.status = v.differences.empty() ? "exact" : "inexact";
     return r;

@@ -42,7 +42,9 @@ struct verdict {
     std::string digest;
     std::uint64_t missing = 0;
     std::uint64_t invented = 0;
-    std::vector<difference> differences;  ///< the same by class
+    std::optional<std::uint64_t> triangles;  ///< of the scene's meshes; empty in scenes of boxes
+    std::optional<double> box_inflation;     ///< empty where no tree is to be seen
+    std::vector<difference> differences;     ///< the same by class
     /// Over the frames after frame 0, as times are; of frame 0 where there is no other.
     std::array<std::uint64_t, aabb::work_names.size()> counts{};
     std::array<std::uint64_t, byte_columns.size()> bytes{};

@@ -92,6 +92,11 @@ public:
         v.invented = scene_.meshes() ? contacts_invented_ : boxes_invented_;
         add_differences(v.differences, "missing", boxes_missing_, classes_.missing);
         add_differences(v.differences, "invented", boxes_invented_, classes_.invented);
+        if (scene_.meshes()) {
+            v.triangles = 0;
+            for (const aabb::mesh& m : scene_.meshes()->meshes) *v.triangles += m.triangles.size();
+            v.box_inflation = player_.box_inflation();
+        }
         v.counts = player_.counters().counts;
         if (scene_.frames() > 1)
             for (std::size_t i = 0; i < v.counts.size(); ++i) v.counts[i] -= first_frame_.counts[i];
@@ -157,8 +162,9 @@ private:
 };
 
 /// In the world, as the pipeline makes them.
-std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::span<const aabb::box> mesh_bounds,
-                                std::span<const aabb::pose> poses) {
+std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::span<const aabb::pose> poses) {
+    std::vector<aabb::box> mesh_bounds;
+    for (const aabb::mesh& m : scene.meshes) mesh_bounds.push_back(aabb::bounds_of(m));
     std::vector<aabb::box> boxes;
     for (std::size_t object = 0; object < poses.size(); ++object)
         boxes.push_back(aabb::world_bounds(mesh_bounds[scene.mesh_of[object]], poses[object]));
@@ -173,14 +179,11 @@ scene_verdicts validate_scene(const scene_choice& choice, std::span<const conten
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<comparison> comparisons;
     for (const contender& who : contenders) comparisons.emplace_back(who, choice, scene);
-    std::vector<aabb::box> mesh_bounds;
-    if (scene.meshes())
-        for (const aabb::mesh& m : scene.meshes()->meshes) mesh_bounds.push_back(aabb::bounds_of(m));
     progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (scene.meshes())
-            exact.play(boxes_of(*scene.meshes(), mesh_bounds, scene.poses()));
+            exact.play(boxes_of(*scene.meshes(), scene.poses()));
         else
             exact.play(scene.boxes());
         exact_tally.add(exact.pairs(), exact.contacts());

@@ -96,12 +96,29 @@ public:
                                                        const pose& pose_b) override {
         return detection_.first_pair(models_[model_a], pose_a, models_[model_b], pose_b);
     }
+    [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                            const pose& pose_b) override {
+        return detection_.count_pairs(models_[model_a], pose_a, models_[model_b], pose_b);
+    }
+    void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) override {
+        detection_.self_pairs(models_[model], pairs);
+    }
+    void refit(std::uint32_t model) override { models_[model].refit(refitted_); }
+    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t model) const override {
+        return survey_of(models_[model].tree(), models_[model].triangles());
+    }
     [[nodiscard]] work_counters counters() const override { return counted(detection_.counters()); }
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t trees = 0;
-        for (const model<Tree>& m : models_) trees += m.tree().bytes();
-        return {{"tree", trees}, {"stack", detection_.bytes()}};
+        tree_bytes trees{};
+        for (const model<Tree>& m : models_) {
+            trees.nodes += m.tree().bytes().nodes;
+            trees.indices += m.tree().bytes().indices;
+        }
+        return {{"nodes", trees.nodes},
+                {"indices", trees.indices},
+                {"stack", detection_.bytes()},
+                {"refit", bytes_of(refitted_)}};
     }
 
     [[nodiscard]] std::vector<std::string> left_out() const override {
@@ -115,6 +132,7 @@ private:
     config_of<Tree> tree_;
     std::deque<model<Tree>> models_;
     local_detection<Tree, Triangle, Counters> detection_;
+    std::vector<box> refitted_;  // scratch of the largest tree
 };
 
 template <TrianglePolicy Triangle>

@@ -23,6 +23,7 @@ std::vector<composed::global_row> all_global_rows();
 std::vector<composed::local_row> all_local_rows();
 std::vector<strategy_info> catalog(strategy_kind kind);
 void check_settings(strategy_kind kind, const strategy_choice& choice);
+bool is_exact(strategy_kind kind, const strategy_choice& choice);
 std::unique_ptr<triangle_test> triangle_test_named(const strategy_choice& choice);
 }  // namespace registry
 
@@ -93,7 +94,7 @@ const composed::local_row& row_for(const local_composition& c) {
 
 bool is_exact(strategy_kind kind, const strategy_choice& choice) {
     require_known(kind, choice);
-    return std::ranges::find(strategies(kind), choice.name, &strategy_info::name)->exact;
+    return registry::is_exact(kind, choice);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ inline constexpr strategy_kind strategy_kinds[] = {strategy_kind::sort, strategy
 struct strategy_info {
     std::string name;
     std::string summary;
-    bool exact;  ///< false for one that approximates: its results are compared, not refused
+    bool exact;  ///< false for one that approximates, whatever its parameters: its results are compared, not refused
     std::vector<parameter_info> parameters;
 };
 
@@ -68,7 +68,7 @@ struct local_composition {
 [[nodiscard]] std::string_view refusal_of(const global_composition& composition);
 [[nodiscard]] std::string_view refusal_of(const local_composition& composition);
 
-/// Whether every strategy in the composition is exact.
+/// Whether every strategy in the composition is exact with the parameters that it has there.
 [[nodiscard]] bool is_exact(const global_composition& composition);
 [[nodiscard]] bool is_exact(const local_composition& composition);
 

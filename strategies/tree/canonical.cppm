@@ -1,7 +1,9 @@
 module;
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 export module aabb.tree.canonical;
@@ -11,11 +13,20 @@ import aabb;
 export namespace aabb {
 
 /// The paper's canonical storage (section 3.2): internal nodes of a box and two child indices, 32 bytes; leaves of a
-/// box and a triangle index, 28 bytes. About 60 bytes a triangle. When to use: as the baseline of every other layout.
+/// box and a triangle index, 28 bytes. 60 bytes a triangle. When to use: as the baseline of every other layout.
 class canonical_tree {
 public:
     static constexpr std::string_view name = "canonical";
     static constexpr std::string_view summary = "internal nodes of 32 bytes, leaves of 28: a box in every node";
+    static constexpr bool has_leaf_boxes = true;
+
+    struct config {
+        build_method build = build_method::median;
+    };
+    static constexpr std::tuple parameters{build_parameter(&config::build)};
+
+    canonical_tree() = default;
+    explicit canonical_tree(const config& c) : config_(c) {}
 
     /// Index of an internal node, or of a leaf with the top bit set.
     using cursor = std::uint32_t;
@@ -25,7 +36,7 @@ public:
         leaves_.clear();
         internals_.reserve(m.triangles.size() - 1);
         leaves_.reserve(m.triangles.size());
-        const std::vector<build_node> nodes = build_balanced(m);
+        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
         std::vector<cursor> packed(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const bool is_leaf = nodes[i].is_leaf();
@@ -36,28 +47,36 @@ public:
                 internals_.push_back({nodes[i].bounds, {}});
         }
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            if (!nodes[i].is_leaf()) {
-                internals_[packed[i]].child[0] = packed[i + 1];
-                internals_[packed[i]].child[1] = packed[nodes[i].right];
-            }
+            if (!nodes[i].is_leaf()) internals_[packed[i]].child = {packed[i + 1], packed[nodes[i].right]};
+    }
+
+    void refit(const mesh& m, std::vector<box>&) {
+        for (leaf& l : leaves_) l.bounds = bounds_of(m.triangle(l.triangle));
+        // Children stand behind their parents.
+        for (std::size_t i = internals_.size(); i-- > 0;) {
+            internal_node& node = internals_[i];
+            node.bounds = merged(bounds(node.child[0]), bounds(node.child[1]));
+        }
     }
 
     [[nodiscard]] cursor root(const mesh&) const noexcept { return internals_.empty() ? leaf_bit : 0; }
     [[nodiscard]] static bool is_leaf(cursor at) noexcept { return at & leaf_bit; }
-    [[nodiscard]] cursor child(cursor at, int side, const mesh&) const noexcept { return internals_[at].child[side]; }
+    [[nodiscard]] std::array<cursor, 2> children(cursor at, const mesh&) const noexcept { return internals_[at].child; }
     [[nodiscard]] const box& bounds(cursor at) const noexcept {
         return is_leaf(at) ? leaves_[at & ~leaf_bit].bounds : internals_[at].bounds;
     }
-    [[nodiscard]] static bool has_own_bounds(cursor) noexcept { return true; }
     [[nodiscard]] std::uint32_t triangle(cursor at) const noexcept { return leaves_[at & ~leaf_bit].triangle; }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(internals_) + bytes_of(leaves_); }
+    [[nodiscard]] tree_bytes bytes() const noexcept {
+        return {sizeof(box) * (internals_.capacity() + leaves_.capacity()),
+                sizeof(internal_node::child) * internals_.capacity() + sizeof(leaf::triangle) * leaves_.capacity()};
+    }
 
 private:
     static constexpr std::uint32_t leaf_bit = 0x80000000;
 
     struct internal_node {
         box bounds;
-        cursor child[2];
+        std::array<cursor, 2> child;
     };
     static_assert(sizeof(internal_node) == 32);
 
@@ -67,7 +86,8 @@ private:
     };
     static_assert(sizeof(leaf) == 28);
 
-    std::vector<internal_node> internals_;
+    config config_;
+    std::vector<internal_node> internals_;  // depth first
     std::vector<leaf> leaves_;
 };
 

@@ -3,7 +3,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 export module aabb.tree.leafless;
@@ -13,78 +12,76 @@ import aabb;
 export namespace aabb {
 
 /// The canonical internal node without leaves: a leaf's triangle index stands in its parent where the node index stood
-/// (paper, section 3.2, one half of the compression). About 32 bytes a triangle. When to use: as the half-step between
+/// (paper, section 3.2, one half of the compression). 32 bytes a triangle. When to use: as the half-step between
 /// `canonical` and `compressed`.
 class leafless_tree {
 public:
     static constexpr std::string_view name = "leafless";
     static constexpr std::string_view summary =
         "internal nodes of 32 bytes, no leaves: triangle indices stand in the parent";
-
     static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr bool has_leaf_boxes = false;
 
-    enum class leaf_test_choice : std::uint8_t { none, triangle_aabb };
-    struct config {
-        /// What is tested in place of the removed leaf box. none: nothing, the triangles are tested at once, as the
-        /// paper says. triangle_aabb: the triangle's own box, made on the fly.
-        leaf_test_choice leaf_test = leaf_test_choice::none;
-    };
-    static constexpr std::tuple parameters{choice_parameter{"leaf_test", &config::leaf_test,
-                                                            std::array<std::string_view, 2>{"none", "triangle_aabb"},
-                                                            "what is tested in place of a leaf's box"}};
+    using config = leafless_config;
+    static constexpr auto parameters = leafless_parameters;
 
     leafless_tree() = default;
     explicit leafless_tree(const config& c) : config_(c) {}
 
-    /// A node and the box to test for it. `index` is a triangle when the top bit is set, else an internal node.
-    struct cursor {
-        box bounds;
-        std::uint32_t index;
-    };
+    using cursor = box_cursor;
 
     void build(const mesh& m) {
         nodes_.clear();
         nodes_.reserve(m.triangles.size() - 1);
-        const std::vector<build_node> nodes = build_balanced(m);
+        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
         std::vector<std::uint32_t> packed(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-            packed[i] = nodes[i].is_leaf() ? nodes[i].triangle | leaf_bit : static_cast<std::uint32_t>(nodes_.size());
+            packed[i] =
+                nodes[i].is_leaf() ? nodes[i].triangle | cursor::leaf_bit : static_cast<std::uint32_t>(nodes_.size());
             if (!nodes[i].is_leaf()) nodes_.push_back({nodes[i].bounds, {}});
         }
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            if (!nodes[i].is_leaf()) {
-                nodes_[packed[i]].child[0] = packed[i + 1];
-                nodes_[packed[i]].child[1] = packed[nodes[i].right];
-            }
+            if (!nodes[i].is_leaf()) nodes_[packed[i]].child = {packed[i + 1], packed[nodes[i].right]};
+    }
+
+    void refit(const mesh& m, std::vector<box>&) {
+        const auto bounds_at = [&](std::uint32_t child) {
+            return child & cursor::leaf_bit ? bounds_of(m.triangle(child & ~cursor::leaf_bit)) : nodes_[child].bounds;
+        };
+        // Children stand behind their parents.
+        for (std::size_t i = nodes_.size(); i-- > 0;)
+            nodes_[i].bounds = merged(bounds_at(nodes_[i].child[0]), bounds_at(nodes_[i].child[1]));
     }
 
     [[nodiscard]] cursor root(const mesh& m) const noexcept {
-        return nodes_.empty() ? cursor{bounds_of(m.triangle(0)), leaf_bit} : cursor{nodes_[0].bounds, 0};
+        return nodes_.empty() ? leaf_cursor(0, bounds_of(m.triangle(0)), config_.leaf_test, m)
+                              : cursor{nodes_[0].bounds, 0};
     }
-    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.index & leaf_bit; }
-    [[nodiscard]] cursor child(const cursor& at, int side, const mesh& m) const noexcept {
-        const std::uint32_t index = nodes_[at.index].child[side];
-        if (!(index & leaf_bit)) return {nodes_[index].bounds, index};
-        return {has_leaf_test() ? bounds_of(m.triangle(index & ~leaf_bit)) : at.bounds, index};
+    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+        const auto child = [&](std::uint32_t index) {
+            if (!(index & cursor::leaf_bit)) return cursor{nodes_[index].bounds, index};
+            return leaf_cursor(index & ~cursor::leaf_bit, at.bounds, config_.leaf_test, m);
+        };
+        const node& parent = nodes_[at.index];
+        return {child(parent.child[0]), child(parent.child[1])};
     }
     [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] bool has_own_bounds(const cursor& at) const noexcept { return !is_leaf(at) || has_leaf_test(); }
-    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.index & ~leaf_bit; }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(nodes_); }
+    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
+    [[nodiscard]] tree_bytes bytes() const noexcept {
+        return {sizeof(box) * nodes_.capacity(), sizeof(node::child) * nodes_.capacity()};
+    }
 
 private:
-    static constexpr std::uint32_t leaf_bit = 0x80000000;
-
-    [[nodiscard]] bool has_leaf_test() const noexcept { return config_.leaf_test == leaf_test_choice::triangle_aabb; }
-
     struct node {
         box bounds;
-        std::uint32_t child[2];
+        std::array<std::uint32_t, 2> child;  // triangles with the top bit set
     };
     static_assert(sizeof(node) == 32);
 
     config config_;
-    std::vector<node> nodes_;
+    std::vector<node> nodes_;  // depth first
 };
 
 static_assert(TreePolicy<leafless_tree>);

@@ -55,11 +55,6 @@ private:
     }
 
     template <class Real>
-    [[nodiscard]] static triangle3d in_double(const triangle3<Real>& t) noexcept {
-        return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
-    }
-
-    template <class Real>
     [[nodiscard]] static std::pair<Real, Real> range(const triangle3<Real>& t, int axis) noexcept {
         return {std::min(std::min(t[0][axis], t[1][axis]), t[2][axis]),
                 std::max(std::max(t[0][axis], t[1][axis]), t[2][axis])};

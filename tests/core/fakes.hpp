@@ -2,6 +2,7 @@
 
 // The least that each kind of strategy must be. What compiles here is all that the concepts and the stages ask for.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -93,20 +94,21 @@ struct fake_tree {
         std::uint32_t triangle;
         bool leaf;
     };
+    static constexpr bool has_leaf_boxes = false;
     void build(const aabb::mesh& m) {
         all = bounds_of(m);
         triangles = m.triangle_count();
     }
+    void refit(const aabb::mesh& m, std::vector<aabb::box>&) { build(m); }
     [[nodiscard]] cursor root(const aabb::mesh&) const { return {0, triangles == 1}; }
     [[nodiscard]] static bool is_leaf(cursor at) { return at.leaf; }
-    [[nodiscard]] cursor child(cursor at, int side, const aabb::mesh&) const {
-        if (side == 0) return {at.triangle, true};
-        return {at.triangle + 1, at.triangle + 2 == triangles};
+    [[nodiscard]] std::array<cursor, 2> children(cursor at, const aabb::mesh&) const {
+        return {cursor{at.triangle, true}, cursor{at.triangle + 1, at.triangle + 2 == triangles}};
     }
     [[nodiscard]] aabb::box bounds(cursor) const { return all; }
-    [[nodiscard]] static bool has_own_bounds(cursor) { return false; }
     [[nodiscard]] static std::uint32_t triangle(cursor at) { return at.triangle; }
-    [[nodiscard]] static std::size_t bytes() { return 0; }
+    [[nodiscard]] static aabb::leaf_test_choice leaf_test() { return aabb::leaf_test_choice::none; }
+    [[nodiscard]] static aabb::tree_bytes bytes() { return {}; }
 
     aabb::box all{};
     std::uint32_t triangles = 0;

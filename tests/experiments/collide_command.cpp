@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -28,7 +30,8 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     const std::vector<std::string> base = {"collide", a, b, "--json", "--pose-b", "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
     const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
     REQUIRE(reference["pairs"] > 0);
-    const auto tree = GENERATE("canonical", "leafless");
+    const auto tree = GENERATE("canonical", "leafless", "shared_planes", "compressed", "compressed_literal:build=sah",
+                               "compressed:leaf_test=triangle_box");
     const program_result result = run_program(joined(base, {"--tree", tree, "--out", folder / "pairs.csv"}));
     REQUIRE(result.status == 0);
     REQUIRE(result.err.find("b.off: ") != std::string::npos);  // a polygon was fanned
@@ -43,10 +46,66 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     REQUIRE(rows.starts_with("a,b\n"));
     REQUIRE(static_cast<std::size_t>(std::ranges::count(rows, '\n')) == 1 + summary["pairs"].get<std::size_t>());
 
+    std::size_t trees = summary["bytes"]["nodes"].get<std::size_t>() + summary["bytes"]["indices"].get<std::size_t>();
+    REQUIRE(summary["bytes_per_triangle"] == static_cast<double>(trees) / 10);
+    REQUIRE(summary["bytes"]["triangles"] >= 120);
+    REQUIRE(summary["bytes"]["vertices"] >= 108);
+
+    const auto counted = nlohmann::json::parse(run_program(joined(base, {"--tree", tree, "--count"})).out);
+    REQUIRE(counted["pairs"] == summary["pairs"]);
+    REQUIRE(counted["digest"].is_null());
+
     const program_result first = run_program(joined(base, {"--tree", tree, "--first", "--out", folder / "first.csv"}));
     REQUIRE(nlohmann::json::parse(first.out)["pairs"] == 1);
     const std::string row = bytes_of_file(folder / "first.csv").substr(4);
     REQUIRE(rows.find("\n" + row) != std::string::npos);
+}
+
+TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
+    const temporary_folder folder;
+    // Two tetrahedra through each other, and a triangle that shares a corner with the first by position only.
+    const std::string mesh =
+        folder.write("two.off",
+                     "OFF\n11 9 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+                     "0.2 0.2 -0.5\n1.2 0.2 -0.5\n0.2 1.2 -0.5\n0.2 0.2 0.5\n"
+                     "0 0 0\n-1 0 0\n0 -1 0\n"
+                     "3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n3 4 5 6\n3 4 5 7\n3 4 6 7\n3 5 6 7\n3 8 9 10\n");
+    const std::vector<std::string> base = {"collide", mesh, "--self", "--json", "--out", folder / "self.csv"};
+    const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "brute_force"})).out);
+    const std::string rows = bytes_of_file(folder / "self.csv");
+    REQUIRE(rows.starts_with("a,b,shared_vertices\n0,1,2\n"));
+    REQUIRE(rows.find("\n0,8,1\n") != std::string::npos);
+    REQUIRE(reference["neighbours"] == 6 + 6 + 3);
+    REQUIRE(reference["pairs"] > 0);
+    REQUIRE(reference["triangles"] == std::vector{9});
+    const auto tree = GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal");
+    const auto summary = nlohmann::json::parse(run_program(joined(base, {"--tree", tree})).out);
+    REQUIRE(summary["pairs"] == reference["pairs"]);
+    REQUIRE(summary["neighbours"] == reference["neighbours"]);
+    REQUIRE(summary["digest"] == reference["digest"]);
+    REQUIRE(bytes_of_file(folder / "self.csv") == rows);
+    REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 pairs of triangles that share a vertex") !=
+            std::string::npos);
+}
+
+TEST_CASE("collide refuses questions that do not go together") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+        {{a}, "collide: expected B, the other mesh, or --self"},
+        {{a, a, "--self"}, "--self holds one mesh against itself, so give no second one"},
+        {{a, "--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "poses change nothing"},
+        {{a, "--self", "--first"}, "--self lists every pair"},
+        {{a, a, "--first", "--count"}, "--first and --count ask for different things"},
+        {{a, a, "--count", "--out", folder / "x.csv"}, "--count keeps no pairs"},
+    };
+    for (const auto& [options, said] : refused) {
+        const program_result result = run_program(joined({"collide"}, options));
+        INFO(result.err);
+        REQUIRE(result.status == 2);
+        REQUIRE(result.err.find(said) != std::string::npos);
+        REQUIRE(folder.files() == 1);
+    }
 }
 
 TEST_CASE("collide takes both poses") {

@@ -1,5 +1,6 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,33 @@ TEST_CASE("every composition is exact on every scene of boxes") {
             INFO(info.name << ": " << v.failure);
             REQUIRE(v.failure.empty());
             REQUIRE(v.digest == all.digest);
+        }
+    }
+}
+
+TEST_CASE("every exact local composition is exact on every scene of meshes, and others on none worse than they say") {
+    std::vector<aabblab::contender> contenders;
+    for (const aabb::local_composition& c : all_local_compositions())
+        contenders.push_back(aabblab::contender_of(aabblab::composition{{}, c}, true));
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (const auto contender = aabblab::contender_of(engine, true)) contenders.push_back(*contender);
+    REQUIRE(contenders.size() > 100);
+    for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
+        if (!info.has_meshes) continue;
+        aabblab::scene_choice scene{
+            info.name, {{"frames", "3"}}, {"icosphere:triangles=320", "torus_knot:triangles=600"}, 3};
+        if (info.name == "mesh_swarm") scene.settings.push_back({"objects", "12"});
+        const aabblab::scene_verdicts all = aabblab::validate_scene(scene, contenders);
+        REQUIRE(all.verdicts.size() == contenders.size());
+        REQUIRE(all.verdicts[0].contacts.value() > 100);
+        for (std::size_t i = 0; i < contenders.size(); ++i) {
+            const aabblab::verdict& v = all.verdicts[i];
+            INFO(info.name << ": " << v.failure);
+            REQUIRE(v.failure.empty());
+            if (contenders[i].exact) REQUIRE(v.digest == all.digest);
+            REQUIRE(v.triangles == 320 + 600);
+            REQUIRE(v.box_inflation.has_value() == v.name.engine.empty());
+            if (v.name.tree.starts_with("compressed_literal")) REQUIRE(*v.box_inflation > 0);
         }
     }
 }

@@ -17,17 +17,24 @@ TEST_CASE("A pair that a stage reports twice is a defect") {
                            Catch::Matchers::Message("a stage, frame 3: the pair 0,7 was reported more than once"));
 }
 
-TEST_CASE("A table of pairs is there only once it is committed") {
+TEST_CASE("A contact that a stage reports twice is a defect") {
+    std::vector<aabb::contact> contacts = {{0, 1, 7, 3}, {0, 1, 2, 3}, {0, 1, 7, 3}};
+    REQUIRE_THROWS_MATCHES(aabblab::sort_each_once(contacts, "a stage"), aabblab::defect,
+                           Catch::Matchers::Message("a stage: the contact 0,1,7,3 was reported more than once"));
+    contacts.pop_back();
+    REQUIRE_NOTHROW(aabblab::sort_each_once(contacts, "a stage"));
+}
+
+TEST_CASE("A table of numbers is there only once it is committed") {
     const temporary_folder folder;
-    const std::vector<aabb::index_pair> pairs = {{0, 1}, {0, 4294967295}};
     {
-        aabblab::pair_table left(folder / "left.csv", aabblab::pair_table::columns::a_b);
-        left.add(0, pairs);
+        aabblab::number_table left(folder / "left.csv", "a,b");
+        left.add({0, 1});
     }
     REQUIRE(folder.files() == 0);
-    aabblab::pair_table table(folder / "pairs.csv", aabblab::pair_table::columns::frame_a_b);
-    table.add(0, pairs);
-    table.add(2, pairs);
+    aabblab::number_table table(folder / "pairs.csv", "frame,a,b");
+    table.add({0, 0, 1});
+    table.add({2, 0, 4294967295});
     table.commit();
-    REQUIRE(bytes_of_file(folder / "pairs.csv") == "frame,a,b\n0,0,1\n0,0,4294967295\n2,0,1\n2,0,4294967295\n");
+    REQUIRE(bytes_of_file(folder / "pairs.csv") == "frame,a,b\n0,0,1\n2,0,4294967295\n");
 }

@@ -181,7 +181,7 @@ TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind
         REQUIRE(holds(result.err, said));
         REQUIRE(folder.files() == 1);
     };
-    refused({}, "expected --out or --picture");
+    refused({}, "expected --out, --motion or --picture");
     refused({"--out", file, "--picture", file}, "--out and --picture are the same file");
     refused({"--out", file, "--picture", same}, "--out and --picture are the same file");
     refused({"--out", file, "--picture", nowhere}, "scene.svg: cannot be written");

@@ -14,7 +14,8 @@ TEST_CASE("The program prints its version and its help") {
     REQUIRE(run_program({"--version"}).out.starts_with("aabblab "));
     const program_result help = run_program({"--help"});
     REQUIRE(help.status == 0);
-    for (const char* command : {"pairs", "collide", "classify", "scene", "list", "run", "test", "data", "benchmark"})
+    for (const char* command :
+         {"pairs", "collide", "contacts", "classify", "scene", "list", "run", "test", "data", "benchmark"})
         REQUIRE(help.out.find(std::string("\n  ") + command + " ") != std::string::npos);
     REQUIRE(run_program({"pairs", "--help"}).out.find("--sweep") != std::string::npos);
 }
@@ -33,8 +34,8 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         {{"pairs", "x", "y"}, "pairs: unexpected argument 'y'"},
         {{"pairs", "x", "--out"}, "pairs: --out takes one value"},
         {{"pairs", "x", "--sort", "std", "--sort", "std"}, "pairs: --sort takes one value"},
-        {{"collide", "icosphere"}, "collide: B is required"},
-        {{"scene", "brownian"}, "scene: expected --out or --picture"},
+        {{"collide", "icosphere"}, "collide: expected B, the other mesh, or --self"},
+        {{"scene", "brownian"}, "scene: expected --out, --motion or --picture"},
         {{"list", "--jsn"}, "did you mean '--json'?"},
     }));
     const program_result result = run_program(arguments);

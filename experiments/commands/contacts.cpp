@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "output.hpp"
+#include "stopwatch.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.validation;
+import aabblab.files;
+import aabblab.pair_output;
+import aabblab.progress;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+struct contacts_request {
+    std::string motion;
+    std::vector<std::string> meshes;
+    std::optional<std::string> sort, partition, sweep, split_large, tree, triangle, engine, out;
+    bool json = false;
+};
+
+struct both_stages {
+    std::string name;
+    std::unique_ptr<aabb::global_stage> global;
+    std::unique_ptr<aabb::local_stage> local;
+};
+
+struct contacts_result {
+    std::size_t objects = 0;
+    std::size_t candidates = 0;
+    std::size_t object_pairs = 0;  ///< in contact, summed over the frames
+    std::size_t contacts = 0;
+    std::string digest;
+    double build_ms = 0;
+    std::vector<double> milliseconds;  ///< by frame
+};
+
+aabb::global_composition global_of(const contacts_request& request) {
+    aabb::global_composition composition;
+    if (request.sort) composition.sort = aabb::parse_strategy(*request.sort);
+    if (request.partition) composition.partition = aabb::parse_strategy(*request.partition);
+    if (request.sweep) composition.sweep = aabb::parse_strategy(*request.sweep);
+    if (request.split_large) composition.split_large = aabb::parse_split_large(*request.split_large);
+    return composition;
+}
+
+both_stages stages_of(const contacts_request& request) {
+    const aabb::global_composition global = global_of(request);
+    if (request.engine) {
+        if (request.tree || request.triangle)
+            throw aabb::input_error("--engine stands in for --tree and --triangle, so give it without them");
+        return {to_text(global) + ", " + *request.engine, aabb::compose(global, aabb::instrumentation::none),
+                aabb::make_mesh_engine(*request.engine)};
+    }
+    aabb::local_composition local;
+    if (request.tree) local.tree = aabb::parse_strategy(*request.tree);
+    if (request.triangle) local.triangle = aabb::parse_strategy(*request.triangle);
+    return {to_text(global) + ", " + to_text(local), aabb::compose(global, aabb::instrumentation::none),
+            aabb::compose(local, aabb::instrumentation::none)};
+}
+
+std::vector<aabb::mesh> read_all(const std::vector<std::string>& names) {
+    std::vector<aabb::mesh> meshes;
+    for (const std::string& name : names) {
+        loaded_mesh loaded = make_mesh(name);
+        if (const std::string report = loaded.report.text(); !report.empty()) note(name + ": " + report);
+        meshes.push_back(std::move(loaded.mesh));
+    }
+    return meshes;
+}
+
+std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {
+    std::size_t pairs = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+        pairs += i == 0 || sorted[i].a != sorted[i - 1].a || sorted[i].b != sorted[i - 1].b;
+    return pairs;
+}
+
+contacts_result detect_all(aabb::mesh_scene& scene, const both_stages& stages, std::optional<number_table>& table) {
+    contacts_result result;
+    result.objects = scene.mesh_of.size();
+    std::optional<aabb::pipeline> both;
+    result.build_ms = milliseconds_of([&] { both.emplace(scene, *stages.global, *stages.local); });
+    progress shown("frames searched", scene.frames());
+    aabb::digest digest;
+    std::vector<aabb::pose> poses;
+    std::vector<aabb::contact> contacts;
+    for (std::uint32_t frame = 0; scene.next(poses); ++frame) {
+        result.milliseconds.push_back(milliseconds_of([&] {
+            both->update(poses);
+            both->search();
+            both->detect();
+        }));
+        contacts.assign(both->contacts().begin(), both->contacts().end());
+        sort_each_once(contacts, fmt::format("{}, frame {}", stages.name, frame));
+        for (const aabb::contact& c : contacts) {
+            digest.add(std::array{frame, c.a, c.b, c.triangle_a, c.triangle_b});
+            if (table) table->add({frame, c.a, c.b, c.triangle_a, c.triangle_b});
+        }
+        result.candidates += both->candidates().size();
+        result.object_pairs += count_object_pairs(contacts);
+        result.contacts += contacts.size();
+        shown.at(frame + 1);
+    }
+    result.digest = digest.text();
+    return result;
+}
+
+void print_json(const contacts_result& result) {
+    const nlohmann::ordered_json summary = {{"objects", result.objects},       {"frames", result.milliseconds.size()},
+                                            {"candidates", result.candidates}, {"object_pairs", result.object_pairs},
+                                            {"contacts", result.contacts},     {"digest", result.digest},
+                                            {"build_ms", result.build_ms},     {"ms", result.milliseconds}};
+    print(summary.dump() + "\n");
+}
+
+void print_text(const contacts_request& request, const both_stages& stages, const contacts_result& result) {
+    double all = 0;
+    for (const double ms : result.milliseconds) all += ms;
+    print(fmt::format("{}: {} objects, {} frames\n", request.motion, result.objects, result.milliseconds.size()));
+    print(fmt::format("{} contacts of triangles in {} contacts of objects ({} pairs of boxes), digest {}\n",
+                      result.contacts, result.object_pairs, result.candidates, result.digest));
+    print(fmt::format("{}: built in {:.3f} ms, {:.3f} ms a frame (mean)\n", stages.name, result.build_ms,
+                      all / static_cast<double>(result.milliseconds.size())));
+}
+
+void find_contacts(const contacts_request& request) {
+    const both_stages stages = stages_of(request);
+    const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_all(request.meshes));
+    std::optional<number_table> table;
+    if (request.out) {
+        std::vector<std::string> inputs = request.meshes;
+        inputs.push_back(request.motion);
+        require_other_file(*request.out, inputs);
+        table.emplace(*request.out, "frame,object_a,object_b,triangle_a,triangle_b");
+    }
+    const contacts_result result = detect_all(*scene, stages, table);
+    if (table) table->commit();
+    if (request.json)
+        print_json(result);
+    else
+        print_text(request, stages, result);
+}
+
+}  // namespace
+
+void add_contacts(CLI::App& program, int&) {
+    auto* command = program.add_subcommand(
+        "contacts", "Both stages on meshes that a file moves: the triangles in contact, by frame and pair of objects");
+    auto request = std::make_shared<contacts_request>();
+    command
+        ->add_option("MOTION", request->motion,
+                     "Text file; a line is a frame, an object and 12 numbers, the rows of its pose [R t]")
+        ->required()
+        ->type_name("");
+    command
+        ->add_option("MESH", request->meshes,
+                     "Mesh files or shapes; object i is mesh i, from the first again when they run out")
+        ->required()
+        ->type_name("");
+    command->add_option("--sort", request->sort, "Sort (default std)")->type_name("S");
+    command->add_option("--partition", request->partition, "Partition (default none)")->type_name("P");
+    command->add_option("--sweep", request->sweep, "Sweep (default one_axis)")->type_name("W");
+    command
+        ->add_option("--split-large,--split_large", request->split_large,
+                     "Split boxes longer than this many mean extents first (default off)")
+        ->type_name("SIZE");
+    command->add_option("--tree", request->tree, "Tree (default canonical)")->type_name("T");
+    command->add_option("--triangle", request->triangle, "Triangle test (default exact)")->type_name("R");
+    command->add_option("--engine", request->engine, "Reference system in place of tree and triangle test")
+        ->type_name("E");
+    command
+        ->add_option("--out", request->out,
+                     "Write the contacts, rows frame,object_a,object_b,triangle_a,triangle_b, to this CSV file")
+        ->type_name("FILE");
+    command->add_flag("--json", request->json, "Print the summary as JSON");
+    command->callback([request] { find_contacts(*request); });
+}
+
+}  // namespace aabblab

@@ -1,0 +1,160 @@
+module;
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.files;
+
+import aabb;
+import :file_text;
+import :text_scanner;
+
+namespace aabblab {
+
+namespace {
+
+/// A line of the file.
+struct step {
+    std::uint32_t frame;
+    std::uint32_t object;
+    aabb::pose pose;
+};
+
+aabb::pose read_pose(text_scanner& in) {
+    aabb::pose p;
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column)
+            p.rotation[3 * row + column] = in.number("twelve numbers, the rows of [R t]");
+        p.translation[static_cast<int>(row)] = in.number("twelve numbers, the rows of [R t]");
+    }
+    if (in.more()) in.expected("the end of the line after frame, object and twelve numbers", in.word());
+    try {
+        aabb::require_rigid(p);
+    } catch (const aabb::input_error& error) {
+        in.fail(error.what());
+    }
+    return p;
+}
+
+/// What holds from line to line.
+class motion_reader {
+public:
+    explicit motion_reader(const file_text& file) : in_(file, '#') {}
+
+    [[nodiscard]] std::vector<step> read() {
+        while (in_.next_line()) {
+            const auto frame = in_.whole<std::uint32_t>("the number of a frame");
+            const auto object = in_.whole<std::uint32_t>("the number of an object");
+            begin(frame);
+            place(object);
+            steps_.push_back({frame, object, read_pose(in_)});
+        }
+        if (steps_.empty()) in_.ends("before the first pose");
+        if (frame_ == 0) require_all_objects();
+        return std::move(steps_);
+    }
+
+    /// Of frame 0.
+    [[nodiscard]] std::size_t objects() const { return objects_; }
+
+private:
+    void begin(std::uint32_t frame) {
+        if (frame == frame_) return;
+        if (frame != frame_ + 1)
+            in_.fail("frame " + std::to_string(frame) + " follows frame " + std::to_string(frame_) +
+                     "; frames are numbered from 0 and stand in order");
+        if (frame_ == 0) require_all_objects();
+        frame_ = frame;
+    }
+
+    /// The objects of frame 0 are all there are.
+    void require_all_objects() {
+        for (std::size_t object = 0; object < placed_.size(); ++object)
+            if (placed_[object] == 0) in_.fail("frame 0 has no pose of object " + std::to_string(object));
+        objects_ = placed_.size();
+    }
+
+    void place(std::uint32_t object) {
+        constexpr std::uint32_t most = 10'000'000;
+        if (object >= most)
+            in_.fail("an object is a number below " + std::to_string(most) + ", not " + std::to_string(object));
+        if (frame_ == 0 && object >= placed_.size()) placed_.resize(object + 1, 0);
+        if (object >= placed_.size()) in_.fail("frame 0 has no pose of object " + std::to_string(object));
+        if (placed_[object] == frame_ + 1)
+            in_.fail("object " + std::to_string(object) + " has two poses in frame " + std::to_string(frame_));
+        placed_[object] = frame_ + 1;
+    }
+
+    text_scanner in_;
+    std::vector<step> steps_;
+    std::uint32_t frame_ = 0;
+    std::vector<std::uint32_t> placed_;  // by object, the last frame that has a pose of it plus 1
+    std::size_t objects_ = 0;
+};
+
+class motion_scene final : public aabb::mesh_scene {
+public:
+    motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> given) {
+        const file_text text = read_whole(file, require_file(file));
+        motion_reader reader(text);
+        steps_ = reader.read();
+        meshes = std::move(given);
+        if (meshes.size() > reader.objects())
+            throw aabb::input_error(file.string() + ": moves " + std::to_string(reader.objects()) +
+                                    " objects, but there are " + std::to_string(meshes.size()) + " meshes");
+        poses_.resize(reader.objects());
+        for (std::size_t object = 0; object < poses_.size(); ++object)
+            mesh_of.push_back(static_cast<std::uint32_t>(object % meshes.size()));
+    }
+
+    [[nodiscard]] std::size_t frames() const override { return std::size_t{steps_.back().frame} + 1; }
+
+    bool next(std::vector<aabb::pose>& poses) override {
+        if (at_ == steps_.size()) return false;
+        for (const std::uint32_t frame = steps_[at_].frame; at_ < steps_.size() && steps_[at_].frame == frame; ++at_)
+            poses_[steps_[at_].object] = steps_[at_].pose;
+        poses = poses_;
+        return true;
+    }
+
+private:
+    std::vector<step> steps_;
+    std::size_t at_ = 0;
+    std::vector<aabb::pose> poses_;  // by object
+};
+
+}  // namespace
+
+std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file, std::vector<aabb::mesh> meshes) {
+    return std::make_unique<motion_scene>(file, std::move(meshes));
+}
+
+void motion_file::add(std::span<const aabb::pose> poses) {
+    std::string text;
+    const auto append = [&](double number) {
+        std::array<char, 32> digits{};
+        text += ' ';
+        text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+    };
+    if (frames_ == 0) text = "# frame object r00 r01 r02 tx r10 r11 r12 ty r20 r21 r22 tz\n";
+    for (std::size_t object = 0; object < poses.size(); ++object) {
+        text += std::to_string(frames_) + ' ' + std::to_string(object);
+        for (std::size_t row = 0; row < 3; ++row) {
+            for (std::size_t column = 0; column < 3; ++column) append(poses[object].rotation[3 * row + column]);
+            append(poses[object].translation[static_cast<int>(row)]);
+        }
+        text += '\n';
+    }
+    out_.write(text);
+    ++frames_;
+}
+
+}  // namespace aabblab

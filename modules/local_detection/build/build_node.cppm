@@ -1,0 +1,35 @@
+module;
+#include <cstddef>
+#include <cstdint>
+
+export module aabb:build_node;
+
+import :geometry;
+
+export namespace aabb {
+
+/// Node of a binary tree before a layout packs it. Nodes stand in depth-first order: the left child of an internal node
+/// is the next node.
+struct build_node {
+    box bounds;
+    std::uint32_t right;     ///< index of the right child; 0 in a leaf
+    std::uint32_t triangle;  ///< index of the triangle in a leaf
+
+    [[nodiscard]] bool is_leaf() const noexcept { return right == 0; }
+};
+
+/// A triangle on its way into a tree.
+struct build_element {
+    box bounds;
+    vec3f centroid;
+    std::uint32_t triangle;
+};
+
+/// How a node's triangles are split: in the order of their centroids along an axis (and of their indices where those
+/// are equal), the first `left` go to the left.
+struct split_choice {
+    int axis;
+    std::size_t left;
+};
+
+}  // namespace aabb

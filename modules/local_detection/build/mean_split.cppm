@@ -1,0 +1,26 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+export module aabb:mean_split;
+
+import :build_node;
+import :geometry;
+import :median_split;
+
+export namespace aabb {
+
+/// The unbalanced split that the balanced one is held against: at the mean of the centroids along the longest axis of
+/// the box; at the median where no centroid lies below the mean (all are equal).
+[[nodiscard]] inline split_choice mean_split(std::span<const build_element> range, const box& bounds) noexcept {
+    const int axis = longest_axis(bounds);
+    double sum = 0;
+    for (const build_element& e : range) sum += e.centroid[axis];
+    const double mean = sum / static_cast<double>(range.size());
+    const auto below = std::ranges::count_if(range, [&](const build_element& e) { return e.centroid[axis] < mean; });
+    const auto left = static_cast<std::size_t>(below);
+    return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
+}
+
+}  // namespace aabb

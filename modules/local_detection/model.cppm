@@ -1,0 +1,48 @@
+module;
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+export module aabb:model;
+
+import :error;
+import :geometry;
+import :mesh;
+import :tree_policy;
+
+export namespace aabb {
+
+/// A mesh with its tree, built in the mesh's own frame. The mesh must outlive it.
+template <TreePolicy Tree>
+class model {
+public:
+    /// @throws input_error on a mesh that `require_valid` refuses.
+    explicit model(const mesh& m, Tree tree = {}) : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
+        require_valid(m);
+        tree_.build(m);
+    }
+
+    /// After vertices of the mesh have moved.
+    /// @param boxes scratch, one box an internal node
+    /// @throws input_error when the mesh is no longer valid or of as many triangles.
+    void refit(std::vector<box>& boxes) {
+        require_valid(*mesh_);
+        if (mesh_->triangles.size() != triangles_)
+            throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles_) +
+                              ", now there are " + std::to_string(mesh_->triangles.size()));
+        tree_.refit(*mesh_, boxes);
+    }
+
+    [[nodiscard]] const mesh& triangles() const noexcept { return *mesh_; }
+    [[nodiscard]] const Tree& tree() const noexcept { return tree_; }
+    [[nodiscard]] typename Tree::cursor root() const { return tree_.root(*mesh_); }
+    [[nodiscard]] box bounds() const { return tree_.bounds(root()); }
+
+private:
+    const mesh* mesh_;
+    std::size_t triangles_;
+    Tree tree_;
+};
+
+}  // namespace aabb

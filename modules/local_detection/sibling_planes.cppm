@@ -1,0 +1,58 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+export module aabb:sibling_planes;
+
+import :geometry;
+
+export namespace aabb {
+
+/// The boxes of two siblings without loss, in six floats and six bits (paper, section 3.2, read for both children of a
+/// node at once). Each plane of the parent's box is that of at least one child; the record holds the other child's.
+/// Planes in the order of `box`: three lower ones, three upper ones.
+struct sibling_planes {
+    std::array<float, 6> own;
+};
+static_assert(sizeof(sibling_planes) == 24);
+
+/// Bit k of the symbol: the right child inherits the parent's plane k, the left one has its own; else the reverse.
+inline constexpr std::uint8_t plane_bits = 0b11'1111;
+
+struct encoded_siblings {
+    sibling_planes planes;
+    std::uint8_t symbol;
+};
+
+/// @param left,right boxes whose union is the parent's.
+[[nodiscard]] constexpr encoded_siblings encode_siblings(const box& left, const box& right) noexcept {
+    encoded_siblings all{};
+    for (int k = 0; k < 3; ++k) {
+        const auto low = static_cast<std::size_t>(k);
+        if (left.min[k] > right.min[k]) all.symbol |= static_cast<std::uint8_t>(1U << low);
+        if (left.max[k] < right.max[k]) all.symbol |= static_cast<std::uint8_t>(8U << low);
+        all.planes.own[low] = std::max(left.min[k], right.min[k]);
+        all.planes.own[low + 3] = std::min(left.max[k], right.max[k]);
+    }
+    return all;
+}
+
+/// The boxes of the left and the right child.
+[[nodiscard]] constexpr std::array<box, 2> decode_siblings(const box& parent, const sibling_planes& planes,
+                                                           unsigned symbol) noexcept {
+    std::array<box, 2> boxes{};
+    for (int k = 0; k < 3; ++k) {
+        const auto low = static_cast<std::size_t>(k);
+        const bool right_below = symbol >> low & 1;
+        const bool right_above = symbol >> (low + 3) & 1;
+        boxes[0].min[k] = right_below ? planes.own[low] : parent.min[k];
+        boxes[1].min[k] = right_below ? parent.min[k] : planes.own[low];
+        boxes[0].max[k] = right_above ? planes.own[low + 3] : parent.max[k];
+        boxes[1].max[k] = right_above ? parent.max[k] : planes.own[low + 3];
+    }
+    return boxes;
+}
+
+}  // namespace aabb

@@ -1,0 +1,46 @@
+module;
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+export module aabb:tree_policy;
+
+import :geometry;
+import :leaf_test;
+import :mesh;
+import :policy;
+
+export namespace aabb {
+
+/// Heap bytes of a tree, as allocated.
+struct tree_bytes {
+    std::size_t nodes;    ///< boxes, planes and symbols
+    std::size_t indices;  ///< of children and triangles
+
+    [[nodiscard]] constexpr std::size_t all() const noexcept { return nodes + indices; }
+};
+
+/// A bounding-volume tree over the triangles of a mesh, one triangle a leaf. A cursor stands at a node; what it carries
+/// is the layout's own business. `bounds(cursor)` is a box that holds the node's triangles; that of a leaf in a layout
+/// without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit` takes a mesh of the same triangles whose
+/// vertices have moved; it uses the boxes as scratch.
+template <class T>
+concept TreePolicy =
+    Strategy<T> &&
+    requires(T tree, const T built, const mesh& m, const typename T::cursor at, std::vector<box>& boxes) {
+        tree.build(m);
+        tree.refit(m, boxes);
+        { built.root(m) } -> std::same_as<typename T::cursor>;
+        { built.is_leaf(at) } -> std::same_as<bool>;
+        { built.children(at, m) } -> std::same_as<std::array<typename T::cursor, 2>>;
+        { built.bounds(at) } -> std::convertible_to<box>;
+        { built.triangle(at) } -> std::same_as<std::uint32_t>;
+        { built.bytes() } -> std::same_as<tree_bytes>;
+        { T::has_leaf_boxes } -> std::convertible_to<bool>;
+    } && (T::has_leaf_boxes || requires(const T built) {
+        { built.leaf_test() } -> std::same_as<leaf_test_choice>;
+    });
+
+}  // namespace aabb

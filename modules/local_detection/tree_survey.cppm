@@ -1,0 +1,103 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+export module aabb:tree_survey;
+
+import :geometry;
+import :mesh;
+import :tree_policy;
+
+export namespace aabb {
+
+/// What a walk over a whole tree finds.
+struct tree_survey {
+    std::string fault;          ///< the first thing that is wrong; empty where the tree is right
+    std::size_t depth = 0;      ///< edges from the root to the deepest leaf
+    bool tight = true;          ///< every box is the smallest that holds its triangles
+    double area_inflation = 0;  ///< sum of the boxes' areas over that of the smallest ones, less 1
+};
+
+namespace detail {
+
+template <TreePolicy Tree>
+class tree_surveyor {
+public:
+    tree_surveyor(const Tree& tree, const mesh& m) : tree_(tree), mesh_(m), seen_(m.triangles.size()) {}
+
+    [[nodiscard]] tree_survey survey() {
+        open_.push_back({tree_.root(mesh_), empty_box(), 0});
+        // Deep trees must not cost stack.
+        while (!open_.empty() && result_.fault.empty()) {
+            node& at = open_.back();
+            if (tree_.is_leaf(at.cursor))
+                visit_leaf(at);
+            else if (at.opened < 2) {
+                const auto child = tree_.children(at.cursor, mesh_)[at.opened++];
+                open_.push_back({child, empty_box(), 0});
+                continue;
+            }
+            close(at);
+        }
+        if (result_.fault.empty())
+            if (const auto absent = std::ranges::find(seen_, 0); absent != seen_.end())
+                result_.fault = "triangle " + std::to_string(absent - seen_.begin()) + " is in no leaf";
+        result_.area_inflation = smallest_ > 0 ? area_ / smallest_ - 1 : 0;
+        return result_;
+    }
+
+private:
+    /// A node on the way from the root.
+    struct node {
+        typename Tree::cursor cursor;
+        box below;  // of the triangles seen under it
+        unsigned opened;
+    };
+
+    void visit_leaf(node& leaf) {
+        const std::uint32_t triangle = tree_.triangle(leaf.cursor);
+        if (triangle >= seen_.size())
+            result_.fault = "a leaf holds triangle " + std::to_string(triangle) + ", which the mesh has not";
+        else if (seen_[triangle]++ != 0)
+            result_.fault = "triangle " + std::to_string(triangle) + " is in two leaves";
+        else
+            leaf.below = bounds_of(mesh_.triangle(triangle));
+    }
+
+    void close(const node& at) {
+        result_.depth = std::max(result_.depth, open_.size() - 1);
+        if (!result_.fault.empty()) return;
+        const box below = at.below;
+        const box bounds = tree_.bounds(at.cursor);
+        if (!contains(bounds, below)) result_.fault = "a box does not hold the triangles below it";
+        if (Tree::has_leaf_boxes || !tree_.is_leaf(at.cursor)) {
+            result_.tight &= bounds == below;
+            area_ += surface_area(bounds);
+            smallest_ += surface_area(below);
+        }
+        open_.pop_back();
+        if (!open_.empty()) open_.back().below = merged(open_.back().below, below);
+    }
+
+    const Tree& tree_;
+    const mesh& mesh_;
+    std::vector<std::uint8_t> seen_;  // by triangle
+    std::vector<node> open_;
+    tree_survey result_;
+    double area_ = 0;
+    double smallest_ = 0;
+};
+
+}  // namespace detail
+
+/// Walks the tree of a mesh: every triangle in one leaf, every box around what is below it.
+template <TreePolicy Tree>
+[[nodiscard]] tree_survey survey_of(const Tree& tree, const mesh& m) {
+    return detail::tree_surveyor<Tree>(tree, m).survey();
+}
+
+}  // namespace aabb

@@ -1,0 +1,23 @@
+module;
+#include <concepts>
+
+export module aabb:triangle_policy;
+
+import :geometry;
+import :policy;
+
+export namespace aabb {
+
+/// Decides whether two closed triangles share a point.
+template <class R>
+concept TrianglePolicy = Strategy<R> && requires(const R policy, const triangle3f& s, const triangle3f& t) {
+    { policy.intersects(s, t) } -> std::same_as<bool>;
+};
+
+/// A triangle test that also takes doubles as they are.
+template <class R>
+concept DoubleTrianglePolicy = TrianglePolicy<R> && requires(const R policy, const triangle3d& s, const triangle3d& t) {
+    { policy.intersects(s, t) } -> std::same_as<bool>;
+};
+
+}  // namespace aabb

@@ -1,0 +1,138 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+export module aabb.tree.compressed;
+
+import aabb;
+
+export namespace aabb {
+
+/// The paper's compressed storage (section 3.2, table 1) without loss: no leaves, and two siblings share one record of
+/// six planes, 12 bytes a node. Where both children are leaves there is nothing to describe: such nodes stand behind
+/// the others, as two triangle indices without planes or symbol. That takes 20.5 bytes a triangle, where table 1 comes
+/// to
+/// 21. Leaves come in pairs (`leaf_pairing::even`), since one beside an internal node would waste half a record.
+/// When to use: for the least memory with exact boxes.
+class compressed_tree {
+public:
+    static constexpr std::string_view name = "compressed";
+    static constexpr std::string_view summary =
+        "the paper's compressed nodes without loss: no leaves, six planes and a symbol for two siblings";
+    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr bool has_leaf_boxes = false;
+
+    using config = leafless_config;
+    static constexpr auto parameters = leafless_parameters;
+
+    compressed_tree() = default;
+    explicit compressed_tree(const config& c) : config_(c) {}
+
+    using cursor = box_cursor;
+
+    void build(const mesh& m) {
+        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::even);
+        const auto holds_leaves_only = [&](std::size_t i) {
+            return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
+        };
+        std::size_t with_planes = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) with_planes += !nodes[i].is_leaf() && !holds_leaves_only(i);
+        nodes_.assign(with_planes, {});
+        symbols_.assign(with_planes, 0);
+        leaf_pairs_.assign(m.triangles.size() - 1 - with_planes, {});
+        std::vector<std::uint32_t> packed(nodes.size());
+        for (std::size_t i = 0, next = 0, next_pair = with_planes; i < nodes.size(); ++i)
+            packed[i] = nodes[i].is_leaf() ? nodes[i].triangle
+                                           : static_cast<std::uint32_t>(holds_leaves_only(i) ? next_pair++ : next++);
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (nodes[i].is_leaf()) continue;
+            const std::size_t right = nodes[i].right;
+            child_pair& child = packed[i] < with_planes ? nodes_[packed[i]].child : pair_at(packed[i]);
+            child = {packed[i + 1], packed[right]};
+            if (packed[i] >= with_planes) continue;
+            encode(packed[i], nodes[i + 1].bounds, nodes[right].bounds);
+            if (nodes[i + 1].is_leaf()) symbols_[packed[i]] |= leaf_flag(0);
+            if (nodes[right].is_leaf()) symbols_[packed[i]] |= leaf_flag(1);
+        }
+        root_ = nodes[0].bounds;
+    }
+
+    void refit(const mesh& m, std::vector<box>& boxes) {
+        boxes.resize(nodes_.size() + leaf_pairs_.size());
+        const auto bounds_at = [&](std::size_t parent, std::size_t side) {
+            const std::uint32_t child = nodes_[parent].child[side];
+            return symbols_[parent] & leaf_flag(side) ? bounds_of(m.triangle(child)) : boxes[child];
+        };
+        for (std::size_t i = 0; i < leaf_pairs_.size(); ++i)
+            boxes[nodes_.size() + i] =
+                merged(bounds_of(m.triangle(leaf_pairs_[i][0])), bounds_of(m.triangle(leaf_pairs_[i][1])));
+        // Children stand behind their parents.
+        for (std::size_t i = nodes_.size(); i-- > 0;) {
+            const box left = bounds_at(i, 0);
+            const box right = bounds_at(i, 1);
+            boxes[i] = merged(left, right);
+            encode(i, left, right);
+        }
+        root_ = boxes.empty() ? bounds_of(m.triangle(0)) : boxes[0];
+    }
+
+    [[nodiscard]] cursor root(const mesh& m) const noexcept {
+        return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, config_.leaf_test, m) : cursor{root_, 0};
+    }
+    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+        const auto leaf = [&](std::uint32_t triangle) {
+            return leaf_cursor(triangle, at.bounds, config_.leaf_test, m);
+        };
+        if (at.index >= nodes_.size()) {
+            const child_pair& pair = leaf_pairs_[at.index - nodes_.size()];
+            return {leaf(pair[0]), leaf(pair[1])};
+        }
+        const node& parent = nodes_[at.index];
+        const std::uint8_t symbol = symbols_[at.index];
+        const auto [left, right] = decode_siblings(at.bounds, parent.planes, symbol);
+        return {symbol & leaf_flag(0) ? leaf(parent.child[0]) : cursor{left, parent.child[0]},
+                symbol & leaf_flag(1) ? leaf(parent.child[1]) : cursor{right, parent.child[1]}};
+    }
+    [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
+    [[nodiscard]] tree_bytes bytes() const noexcept {
+        return {sizeof(root_) + sizeof(sibling_planes) * nodes_.capacity() + symbols_.capacity(),
+                sizeof(child_pair) * (nodes_.capacity() + leaf_pairs_.capacity())};
+    }
+
+private:
+    using child_pair = std::array<std::uint32_t, 2>;
+
+    struct node {
+        sibling_planes planes;
+        child_pair child;
+    };
+    static_assert(sizeof(node) == 32);
+
+    [[nodiscard]] static constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
+        return static_cast<std::uint8_t>(64U << side);
+    }
+
+    [[nodiscard]] child_pair& pair_at(std::size_t index) noexcept { return leaf_pairs_[index - nodes_.size()]; }
+
+    void encode(std::size_t at, const box& left, const box& right) noexcept {
+        const auto [planes, symbol] = encode_siblings(left, right);
+        nodes_[at].planes = planes;
+        symbols_[at] = static_cast<std::uint8_t>((symbols_[at] & ~plane_bits) | symbol);
+    }
+
+    config config_;
+    box root_{};
+    std::vector<node> nodes_;  // depth first
+    std::vector<std::uint8_t> symbols_;
+    std::vector<child_pair> leaf_pairs_;  // of the nodes behind those; triangles
+};
+
+static_assert(TreePolicy<compressed_tree>);
+
+}  // namespace aabb

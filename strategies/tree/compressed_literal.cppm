@@ -1,0 +1,161 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+export module aabb.tree.compressed_literal;
+
+import aabb;
+
+export namespace aabb {
+
+/// The paper's table 1 to the letter: every internal node holds three planes of its own and two child indices, and a
+/// symbol byte; the other three planes are its parent's. A node that differs from its parent in more than three keeps
+/// the three that make its box smallest: boxes still hold what is below them, but some are larger than `canonical`'s.
+/// No leaves; 21 bytes a triangle. When to use: to see what table 1 costs when it is taken at its word.
+class compressed_literal_tree {
+public:
+    static constexpr std::string_view name = "compressed_literal";
+    static constexpr std::string_view summary =
+        "table 1 of the paper to the letter: three planes a node, the rest from its parent, some boxes larger";
+    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr bool has_leaf_boxes = false;
+
+    using config = leafless_config;
+    static constexpr auto parameters = leafless_parameters;
+
+    compressed_literal_tree() = default;
+    explicit compressed_literal_tree(const config& c) : config_(c) {}
+
+    using cursor = box_cursor;
+
+    void build(const mesh& m) {
+        nodes_.assign(m.triangles.size() - 1, {});
+        symbols_.assign(nodes_.size(), 0);
+        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
+        // The internal children of a node stand side by side, behind it.
+        std::vector<std::uint32_t> packed(nodes.size());
+        std::uint32_t next = 1;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (nodes[i].is_leaf()) continue;
+            const std::array children{i + 1, std::size_t{nodes[i].right}};
+            for (std::size_t side = 0; side < 2; ++side) {
+                const build_node& child = nodes[children[side]];
+                packed[children[side]] = child.is_leaf() ? child.triangle : next++;
+                nodes_[packed[i]].child[side] = packed[children[side]];
+                if (child.is_leaf()) symbols_[packed[i]] |= leaf_flag(side);
+            }
+        }
+        root_ = nodes[0].bounds;
+        std::vector<box> boxes(nodes_.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (!nodes[i].is_leaf()) boxes[packed[i]] = nodes[i].bounds;
+        encode(boxes);
+    }
+
+    void refit(const mesh& m, std::vector<box>& boxes) {
+        boxes.resize(nodes_.size());
+        const auto bounds_at = [&](std::size_t parent, std::size_t side) {
+            const std::uint32_t child = nodes_[parent].child[side];
+            return is_leaf(parent, side) ? bounds_of(m.triangle(child)) : boxes[child];
+        };
+        for (std::size_t i = nodes_.size(); i-- > 0;) boxes[i] = merged(bounds_at(i, 0), bounds_at(i, 1));
+        root_ = boxes.empty() ? bounds_of(m.triangle(0)) : boxes[0];
+        encode(boxes);
+    }
+
+    [[nodiscard]] cursor root(const mesh& m) const noexcept {
+        return nodes_.empty() ? leaf_cursor(0, root_, config_.leaf_test, m) : cursor{root_, 0};
+    }
+    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+        const auto child = [&](std::size_t side) {
+            const std::uint32_t index = nodes_[at.index].child[side];
+            if (is_leaf(at.index, side)) return leaf_cursor(index, at.bounds, config_.leaf_test, m);
+            return cursor{decoded(at.bounds, nodes_[index].planes, symbols_[index]), index};
+        };
+        return {child(0), child(1)};
+    }
+    [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
+    [[nodiscard]] tree_bytes bytes() const noexcept {
+        return {sizeof(root_) + sizeof(node::planes) * nodes_.capacity() + symbols_.capacity(),
+                sizeof(node::child) * nodes_.capacity()};
+    }
+
+private:
+    using three_planes = std::array<float, 3>;
+
+    struct node {
+        three_planes planes;
+        std::array<std::uint32_t, 2> child;
+    };
+    static_assert(sizeof(node) == 20);
+
+    [[nodiscard]] static constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
+        return static_cast<std::uint8_t>(64U << side);
+    }
+    [[nodiscard]] bool is_leaf(std::size_t parent, std::size_t side) const noexcept {
+        return symbols_[parent] & leaf_flag(side);
+    }
+
+    /// Planes of a box in the order of the symbol's bits: three lower ones, three upper ones.
+    [[nodiscard]] static constexpr float& plane(box& b, unsigned k) noexcept {
+        return k < 3 ? b.min[static_cast<int>(k)] : b.max[static_cast<int>(k) - 3];
+    }
+
+    /// The parent's box with the planes whose bits are set replaced, in order.
+    [[nodiscard]] static constexpr box decoded(const box& parent, const three_planes& planes,
+                                               unsigned symbol) noexcept {
+        box all = parent;
+        std::size_t used = 0;
+        for (unsigned k = 0; k < 6; ++k)
+            if (symbol >> k & 1) plane(all, k) = planes[used++];
+        return all;
+    }
+
+    /// @param exact by internal node; becomes the boxes as they are decoded.
+    void encode(std::vector<box>& exact) noexcept {
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+            for (std::size_t side = 0; side < 2; ++side)
+                if (!is_leaf(i, side)) encode_child(nodes_[i].child[side], exact[i], exact[nodes_[i].child[side]]);
+    }
+
+    /// Picks the planes that make the smallest box.
+    void encode_child(std::size_t at, const box& parent, box& bounds) noexcept {
+        double least = std::numeric_limits<double>::infinity();
+        box best = parent;
+        for (unsigned bits = 0; bits <= plane_bits; ++bits) {
+            if (std::popcount(bits) != 3) continue;
+            three_planes planes{};
+            std::size_t used = 0;
+            for (unsigned k = 0; k < 6; ++k)
+                if (bits >> k & 1) planes[used++] = plane(bounds, k);
+            const box candidate = decoded(parent, planes, bits);
+            // Flat boxes may have the area of the smallest without being it.
+            const double area = candidate == bounds ? -1 : surface_area(candidate);
+            if (area < least) {
+                least = area;
+                best = candidate;
+                nodes_[at].planes = planes;
+                symbols_[at] = static_cast<std::uint8_t>((symbols_[at] & ~plane_bits) | bits);
+            }
+        }
+        bounds = best;
+    }
+
+    config config_;
+    box root_{};
+    std::vector<node> nodes_;
+    std::vector<std::uint8_t> symbols_;
+};
+
+static_assert(TreePolicy<compressed_literal_tree>);
+
+}  // namespace aabb

@@ -1,0 +1,106 @@
+module;
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+export module aabb.triangle.devillers_guigue;
+
+import aabb;
+
+export namespace aabb {
+
+/// Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with orientations in plain
+/// double, as it is commonly used. Inexact: signs near zero are those of rounding, and triangles of zero area are not
+/// told from others. When to use: as the fastest well-known test, to hold `exact` against.
+struct devillers_guigue_triangle {
+    static constexpr std::string_view name = "devillers_guigue";
+    static constexpr std::string_view summary =
+        "Devillers and Guigue's orientation signs in plain double: inexact, the fast baseline";
+    static constexpr bool exact = false;
+
+    [[nodiscard]] static bool intersects(const triangle3f& s, const triangle3f& t) noexcept {
+        return intersects(in_double(s), in_double(t));
+    }
+
+    [[nodiscard]] static bool intersects(const triangle3d& s, const triangle3d& t) noexcept {
+        const std::array<double, 3> s_to_t = heights(s, t);
+        if (on_one_side(s_to_t)) return false;
+        const std::array<double, 3> t_to_s = heights(t, s);
+        if (on_one_side(t_to_s)) return false;
+        if (s_to_t == std::array<double, 3>{}) return coplanar_intersects(s, t);
+        triangle3d u = s;
+        triangle3d v = t;
+        const bool t_turns = turn_to_apex(u, s_to_t);
+        const bool s_turns = turn_to_apex(v, t_to_s);
+        // Each apex lies above the other triangle, so that the intervals in which they cut the common line begin at the
+        // edge to corner 1 of one and end at that to corner 2 of the other.
+        if (t_turns) v = {v[0], v[2], v[1]};
+        if (s_turns) u = {u[0], u[2], u[1]};
+        return side(u[0], u[1], v[0], v[1]) <= 0 && side(u[0], u[2], v[2], v[0]) <= 0;
+    }
+
+private:
+    [[nodiscard]] static double side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+        return dot(cross(b - a, c - a), d - a);
+    }
+
+    /// Of the corners of `s` over the plane of `t`, times the length of its normal.
+    [[nodiscard]] static std::array<double, 3> heights(const triangle3d& s, const triangle3d& t) noexcept {
+        const vec3d normal = cross(t[0] - t[2], t[1] - t[2]);
+        return {dot(normal, s[0] - t[2]), dot(normal, s[1] - t[2]), dot(normal, s[2] - t[2])};
+    }
+
+    [[nodiscard]] static bool on_one_side(const std::array<double, 3>& d) noexcept {
+        return d[0] * d[1] > 0 && d[0] * d[2] > 0;
+    }
+
+    /// Rotates the triangle until corner 0 is alone on its side of the other plane, or on the plane with both others
+    /// off it on one side.
+    /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be turned
+    static bool turn_to_apex(triangle3d& s, const std::array<double, 3>& d) noexcept {
+        const auto apex = [&](int i, double up) {
+            const double own = up * d[static_cast<std::size_t>(i)];
+            const double p = up * d[static_cast<std::size_t>((i + 1) % 3)];
+            const double q = up * d[static_cast<std::size_t>((i + 2) % 3)];
+            return (own > 0 && p <= 0 && q <= 0) || (own == 0 && p < 0 && q < 0);
+        };
+        for (int i = 0; i < 3; ++i)
+            for (const double up : {1.0, -1.0})
+                if (apex(i, up)) {
+                    s = {s[i], s[(i + 1) % 3], s[(i + 2) % 3]};
+                    return up < 0;
+                }
+        return false;
+    }
+
+    /// On the axis plane in which the area of `s` is largest: apart when the line of an edge has the other triangle
+    /// strictly beyond it.
+    [[nodiscard]] static bool coplanar_intersects(const triangle3d& s, const triangle3d& t) noexcept {
+        const vec3d normal = cross(s[1] - s[0], s[2] - s[0]);
+        int dropped = std::abs(normal[1]) > std::abs(normal[0]) ? 1 : 0;
+        if (std::abs(normal[2]) > std::abs(normal[dropped])) dropped = 2;
+        return !an_edge_separates(s, t, dropped) && !an_edge_separates(t, s, dropped);
+    }
+
+    [[nodiscard]] static bool an_edge_separates(const triangle3d& s, const triangle3d& t, int dropped) noexcept {
+        const int x = (dropped + 1) % 3;
+        const int y = (dropped + 2) % 3;
+        const auto turn = [&](const vec3d& a, const vec3d& b, const vec3d& c) {
+            return (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
+        };
+        const double inside = turn(s[0], s[1], s[2]);
+        for (int i = 0; i < 3; ++i) {
+            const vec3d& from = s[i];
+            const vec3d& to = s[(i + 1) % 3];
+            if (turn(from, to, t[0]) * inside < 0 && turn(from, to, t[1]) * inside < 0 &&
+                turn(from, to, t[2]) * inside < 0)
+                return true;
+        }
+        return false;
+    }
+};
+
+static_assert(DoubleTrianglePolicy<devillers_guigue_triangle>);
+
+}  // namespace aabb

@@ -1,0 +1,115 @@
+#include <rapidcheck.h>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+import aabb;
+import aabb.triangle.exact;
+
+using namespace aabb;
+
+namespace {
+
+double uniform(double low, double high) {
+    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
+}
+
+float any_number(float size) {
+    return static_cast<float>(uniform(-1, 1)) * size;
+}
+
+box any_box(float size, float offset) {
+    box b = empty_box();
+    for (int i = 0; i < 2; ++i)
+        b = merged(b, bounds_of(vec3f{offset + any_number(size), any_number(size), offset - any_number(size)}));
+    return b;
+}
+
+vec3f corner(const box& b, unsigned which) {
+    return {which & 1 ? b.max[0] : b.min[0], which & 2 ? b.max[1] : b.min[1], which & 4 ? b.max[2] : b.min[2]};
+}
+
+/// Exactly: a corner of the triangle lies in the box, or the triangle meets one of the box's faces.
+bool truly_meets(const triangle3f& t, const box& b) {
+    for (int i = 0; i < 3; ++i)
+        if (contains(b, bounds_of(t[i]))) return true;
+    constexpr std::array<std::array<unsigned, 4>, 6> faces = {
+        {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+    for (const auto& f : faces)
+        for (const std::size_t second : {1U, 2U})
+            if (exact_triangle::intersects(t, {{corner(b, f[0]), corner(b, f[second]), corner(b, f[second + 1])}}))
+                return true;
+    return false;
+}
+
+/// Through a corner of the box or a point of its edge, so that it touches, as far as floats can tell.
+triangle3f touching(const box& b, float size) {
+    const vec3f on = corner(b, *rc::gen::inRange(0U, 8U));
+    vec3f along = on;
+    along[*rc::gen::inRange(0, 3)] = any_number(size);
+    triangle3f t{{{any_number(size), any_number(size), any_number(size)}, {}, {}}};
+    // The corner halves the way, or lies on the triangle's own corner or edge.
+    for (int k = 0; k < 3; ++k) {
+        t[1][k] = *rc::gen::element(2 * on[k] - t[0][k], on[k]);
+        t[2][k] = *rc::gen::element(along[k], 2 * along[k] - t[0][k], any_number(size));
+    }
+    return t;
+}
+
+}  // namespace
+
+TEST_CASE("the triangle-box test never parts what meets; without its margin it would") {
+    int lost_by_the_original = 0;
+    int meeting = 0;
+    int culled = 0;
+    REQUIRE(rc::check([&] {
+        for (int i = 0; i < 100; ++i) {
+            const auto size = std::ldexp(1.0F, *rc::gen::element(-140, -60, -8, 0, 0, 4, 38, 60));
+            const float offset = *rc::gen::element(0.0F, 0.0F, 7.0F, 1000.0F) * size;
+            const box b = any_box(size, offset);
+            const triangle3f t = touching(b, size);
+            if (truly_meets(t, b)) {
+                ++meeting;
+                lost_by_the_original += !moller_triangle_meets_box(t, b);
+                RC_ASSERT(triangle_meets_box(t, b));
+            } else {
+                culled += !triangle_meets_box(t, b);
+            }
+        }
+    }));
+    CHECK(meeting > 1000);
+    CHECK(culled > 1000);
+    CHECK(lost_by_the_original > 0);
+}
+
+TEST_CASE("the triangle-box test parts what is apart by more than rounding, on each of its axes") {
+    int apart = 0;
+    int told = 0;
+    REQUIRE(rc::check([&] {
+        const box b = any_box(1, 0);
+        box near = b;
+        for (int k = 0; k < 3; ++k) {
+            near.min[k] -= 1e-4F;
+            near.max[k] += 1e-4F;
+        }
+        triangle3f t;
+        for (int i = 0; i < 3; ++i) t[i] = {any_number(2), any_number(2), any_number(2)};
+        if (!truly_meets(t, near)) {
+            ++apart;
+            told += !triangle_meets_box(t, b);
+            RC_ASSERT(!triangle_meets_box(t, b));
+            RC_ASSERT(!moller_triangle_meets_box(t, b));
+        } else if (truly_meets(t, b)) {
+            RC_ASSERT(triangle_meets_box(t, b));
+        }
+    }));
+    CHECK(apart > 10);
+    CHECK(told == apart);
+    // Past an edge of the cube, slanted: no axis of the box and not the normal, but a product of edges tells.
+    const box cube{{-1, -1, -1}, {1, 1, 1}};
+    CHECK_FALSE(triangle_meets_box({{{2.1F, 0.5F, 0}, {0.5F, 2.1F, 0}, {2, 2, 1}}}, cube));
+    CHECK_FALSE(moller_triangle_meets_box({{{2.1F, 0.5F, 0}, {0.5F, 2.1F, 0}, {2, 2, 1}}}, cube));
+    CHECK(triangle_meets_box({{{1.4F, 0.5F, 0}, {0.5F, 1.4F, 0}, {2, 2, 1}}}, cube));
+}

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace {
+
+constexpr const char* tetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+
+/// The second of two objects comes, stays and goes; the third stands far away.
+constexpr const char* coming =
+    "# a comment\n"
+    "0 0  1 0 0 0  0 1 0 0  0 0 1 0\n"
+    "0 2  1 0 0 90 0 1 0 0  0 0 1 0\n"
+    "0 1  1 0 0 9  0 1 0 0  0 0 1 0\n"
+    "\n"
+    "1 1  1 0 0 +0.25 0 1 0 0.25  0 0 1 0  # here\n"
+    "2 2  1 0 0 80 0 1 0 0  0 0 1 0\n"
+    "3 1  0 -1 0 -9  1 0 0 0  0 0 1 0\n";
+
+std::vector<std::string> joined(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+}  // namespace
+
+TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever finds them") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string motion = folder.write("m.txt", coming);
+    const std::vector<std::string> base = {"contacts", motion, mesh, "--json", "--out", folder / "c.csv"};
+    const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
+    CHECK(reference["objects"] == 3);
+    CHECK(reference["frames"] == 4);
+    CHECK(reference["contacts"] > 0);
+    CHECK(reference["contacts"].get<int>() % 2 == 0);  // frames 1 and 2 are alike
+    CHECK(reference["object_pairs"] == 2);
+    CHECK(reference["candidates"] == 2);
+    CHECK(reference["ms"].size() == 4);
+    const std::string rows = bytes_of_file(folder / "c.csv");
+    CHECK(rows.starts_with("frame,object_a,object_b,triangle_a,triangle_b\n1,0,1,"));
+    CHECK(rows.find("\n2,0,1,") != std::string::npos);
+    CHECK(rows.find("\n3,") == std::string::npos);
+    const auto options = GENERATE(values<std::vector<std::string>>(
+        {{},
+         {"--tree", "compressed:leaf_test=triangle_box", "--sort", "shell", "--partition", "axial_cut"},
+         {"--tree", "shared_planes:build=sah", "--sweep", "all_axes", "--split-large", "2"}}));
+    const program_result result = run_program(joined(base, options));
+    REQUIRE(result.status == 0);
+    const auto summary = nlohmann::json::parse(result.out);
+    CHECK(summary["digest"] == reference["digest"]);
+    CHECK(bytes_of_file(folder / "c.csv") == rows);
+    CHECK(run_program({"contacts", motion, mesh}).out.find("3 objects, 4 frames") != std::string::npos);
+}
+
+TEST_CASE("contacts plays the motion that a scene has written, and finds what the scene holds") {
+    const temporary_folder folder;
+    const std::string motion = folder / "swarm.txt";
+    const std::vector<std::string> shapes = {"icosphere:triangles=80", "torus_knot:triangles=300"};
+    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "12", "--frames", "5", "--density", "3", "--mesh", shapes[0],
+                         "--mesh", shapes[1], "--motion", motion, "--normalise", "no"})
+                .status == 0);
+    const std::string config = folder.write("c.toml",
+                                            "name = \"c\"\n[[scene]]\nkind = \"mesh_swarm\"\nobjects = 12\nframes = 5\n"
+                                            "density = 3\nnormalise = \"no\"\n"
+                                            "meshes = [\"icosphere:triangles=80\", \"torus_knot:triangles=300\"]\n");
+    const std::string validated = run_program({"validate", config}).out;
+    const auto summary = nlohmann::json::parse(run_program({"contacts", motion, shapes[0], shapes[1], "--json"}).out);
+    CHECK(summary["contacts"] > 20);
+    CHECK(validated.find("digest " + summary["digest"].get<std::string>()) != std::string::npos);
+}
+
+TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves no file behind") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string one = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
+    const auto [text, said] = GENERATE_COPY(table<std::string, std::string>({
+        {"", ": is empty"},
+        {"# nothing\n", ": ends before the first pose"},
+        {"a 0\n", ":1: expected the number of a frame, found 'a'"},
+        {"0\n", ":1: expected the number of an object, found the end of the line"},
+        {"0 0 1 0 0 0 0 1 0 0 0 0 1\n", ":1: expected twelve numbers, the rows of [R t], found the end of the line"},
+        {"0 0 1 0 0 x 0 1 0 0 0 0 1 0\n", ":1: expected twelve numbers, the rows of [R t], found 'x'"},
+        {"0 0 1 0 0 nan 0 1 0 0 0 0 1 0\n", ":1: 'nan' is not a finite number"},
+        {"0 0 1 0 0 1e999 0 1 0 0 0 0 1 0\n", ":1: '1e999' is not a finite number"},
+        {"0 0 2 0 0 0 0 1 0 0 0 0 1 0\n", ":1: the pose is not rigid"},
+        {"0 0 1 0 0 0 0 1 0 0 0 0 1 0 7\n", ":1: expected the end of the line after frame, object and twelve numbers"},
+        {"1 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
+        {one + "2 0 1 0 0 0 0 1 0 0 0 0 1 0\n",
+         ":2: frame 2 follows frame 0; frames are numbered from 0 and stand in order"},
+        {one + one, ":2: object 0 has two poses in frame 0"},
+        {one + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
+        {"0 2 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
+        {"0 4000000000 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: an object is a number below 10000000"},
+    }));
+    const std::string motion = folder.write("m.txt", text);
+    const program_result result = run_program({"contacts", motion, mesh, "--out", folder / "c.csv"});
+    INFO(result.err);
+    CHECK(result.status == 2);
+    CHECK(result.err.find("m.txt" + said) != std::string::npos);
+    CHECK(std::ranges::count(result.err, '\n') == 1);
+    CHECK(folder.files() == 2);
+}
+
+TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+        {{"contacts", motion, mesh, mesh}, "moves 1 objects, but there are 2 meshes"},
+        {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --tree"},
+        {{"contacts", motion, mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
+        {{"contacts", motion, mesh, "--out", motion}, "m.txt"},
+        {{"contacts", motion}, "MESH"},
+        {{"scene", "brownian", "--motion", folder / "x.txt"}, "brownian is a scene of boxes, which have no poses"},
+        {{"scene", "deforming", "--motion", folder / "x.txt"}, "deforming deforms its meshes, so poses alone"},
+        {{"scene", "mesh_pair", "--motion", folder / "x", "--out", folder / "x"}, "--out and --motion are the same"},
+    };
+    for (const auto& [arguments, said] : refused) {
+        const program_result result = run_program(arguments);
+        INFO(result.err);
+        CHECK(result.status == 2);
+        CHECK(result.err.find(said) != std::string::npos);
+        CHECK(folder.files() == 2);
+    }
+}

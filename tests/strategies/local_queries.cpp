@@ -1,0 +1,189 @@
+#include <rapidcheck.h>
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../compositions.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.triangle.exact;
+
+using namespace aabb;
+
+namespace {
+
+double uniform(double low, double high) {
+    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
+}
+
+/// Vertices on a coarse lattice, so that many triangles touch, repeat, are coplanar or have no area; sometimes small,
+/// sometimes thin.
+mesh any_mesh() {
+    mesh m;
+    const auto vertices = *rc::gen::inRange<std::uint32_t>(1, 25);
+    const vec3f size{*rc::gen::element(1e-4F, 0.1F, 1.0F), *rc::gen::element(0.0F, 1.0F),
+                     *rc::gen::element(1e-3F, 1.0F)};
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        vec3f p;
+        for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(*rc::gen::inRange(-3, 4)) * size[k];
+        m.vertices.push_back(p);
+    }
+    const auto triangles = *rc::gen::inRange<std::size_t>(1, 30);
+    for (std::size_t t = 0; t < triangles; ++t)
+        m.triangles.push_back(
+            {*rc::gen::inRange(0U, vertices), *rc::gen::inRange(0U, vertices), *rc::gen::inRange(0U, vertices)});
+    return m;
+}
+
+/// Turns by multiples of a right angle keep lattices touching; any others do not.
+pose any_pose() {
+    std::array<double, 4> q{1, 0, 0, 0};
+    if (*rc::gen::arbitrary<bool>()) {
+        for (double& x : q) x = uniform(-1, 1);
+        q[0] += 1.01;
+    } else if (*rc::gen::arbitrary<bool>()) {
+        q = {0, 0, 0, 0};
+        q[0] = 1;
+        q[*rc::gen::inRange<std::size_t>(1, 4)] = 1;
+    }
+    double length = 0;
+    for (const double x : q) length += x * x;
+    for (double& x : q) x /= std::sqrt(length);
+    const auto [w, x, y, z] = q;
+    pose p;
+    p.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                  2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                  2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    const double far = *rc::gen::element(0.0, 0.0, 1e3, 1e9);
+    for (int k = 0; k < 3; ++k) p.translation[k] = far + *rc::gen::inRange(-2, 3) * *rc::gen::element(0.1, 1.0);
+    return p;
+}
+
+std::vector<index_pair> expected(const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
+    const relative_pose to_a(pose_a, pose_b, bounds_of(b));
+    std::vector<index_pair> pairs;
+    for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
+        for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
+            if (exact_triangle::intersects(a.triangle(s), to_a(b.triangle(t)))) pairs.push_back({s, t});
+    return pairs;
+}
+
+std::vector<index_pair> sorted(std::vector<index_pair> pairs) {
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+std::vector<local_composition> exact_compositions() {
+    std::vector<local_composition> all;
+    for (const local_composition& c : all_local_compositions())
+        if (is_exact(c)) all.push_back(c);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "every exact composition finds exactly the intersecting triangles of two meshes, however they are asked for") {
+    const std::vector<local_composition> compositions = exact_compositions();
+    REQUIRE(compositions.size() >= 33);
+    REQUIRE(rc::check([&] {
+        mesh a = any_mesh();
+        const mesh b = any_mesh();
+        std::vector<std::unique_ptr<local_stage>> stages;
+        for (const local_composition& c : compositions) {
+            stages.push_back(compose(c, instrumentation::none));
+            stages.back()->add_model(a);
+            stages.back()->add_model(b);
+        }
+        for (int query = 0; query < 3; ++query) {
+            // The last query is of a mesh that has changed.
+            if (query == 2) a.vertices[0] = {1, 2, 0};
+            const pose pose_a = any_pose();
+            pose pose_b = any_pose();
+            for (int k = 0; k < 3; ++k)
+                if (std::abs(pose_a.translation[k]) > 100) pose_b.translation[k] = pose_a.translation[k];
+            const std::vector<index_pair> truth = expected(a, pose_a, b, pose_b);
+            for (std::size_t i = 0; i < stages.size(); ++i) {
+                RC_LOG(to_text(compositions[i]));
+                if (query == 2) stages[i]->refit(0);
+                std::vector<index_pair> found;
+                stages[i]->all_pairs(0, pose_a, 1, pose_b, found);
+                RC_ASSERT(sorted(found) == truth);
+                RC_ASSERT(stages[i]->count_pairs(0, pose_a, 1, pose_b) == truth.size());
+                const std::optional<index_pair> first = stages[i]->first_pair(0, pose_a, 1, pose_b);
+                RC_ASSERT(first.has_value() == !truth.empty());
+                if (first) RC_ASSERT(std::ranges::binary_search(truth, *first));
+            }
+        }
+    }));
+}
+
+TEST_CASE("every exact composition finds exactly the intersecting triangles of a mesh with itself") {
+    const std::vector<local_composition> compositions = exact_compositions();
+    REQUIRE(rc::check([&] {
+        const mesh m = any_mesh();
+        std::vector<index_pair> truth;
+        for (const index_pair p : expected(m, {}, m, {}))
+            if (p.a < p.b) truth.push_back(p);
+        for (const local_composition& c : compositions) {
+            RC_LOG(to_text(c));
+            const auto stage = compose(c, instrumentation::none);
+            stage->add_model(m);
+            std::vector<index_pair> found;
+            stage->self_pairs(0, found);
+            RC_ASSERT(sorted(found) == truth);
+        }
+    }));
+}
+
+TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
+    mesh m;
+    for (std::uint32_t i = 0; i <= 30; ++i)
+        for (std::uint32_t j = 0; j <= 30; ++j)
+            m.vertices.push_back(
+                {static_cast<float>(i), static_cast<float>(j), std::sin(static_cast<float>(i + 2 * j))});
+    for (std::uint32_t i = 0; i < 30; ++i)
+        for (std::uint32_t j = 0; j < 30; ++j) {
+            const std::uint32_t v = i * 31 + j;
+            m.triangles.push_back({v, v + 1, v + 31});
+            m.triangles.push_back({v + 1, v + 32, v + 31});
+        }
+    pose moved;
+    moved.translation = {0.3, 0.2, 0.4};
+    const auto work_of = [&](const strategy_choice& tree) {
+        const auto stage = compose(local_composition{tree, {"exact", {}}}, instrumentation::counters);
+        const auto model = stage->add_model(m);
+        CHECK(stage->count_pairs(model, {}, model, moved) > 100);
+        return stage->counters();
+    };
+    for (const char* layout : {"leafless", "compressed", "compressed_literal"}) {
+        INFO(layout);
+        const work_counters none = work_of({layout, {}});
+        const work_counters box = work_of({layout, {{"leaf_test", "triangle_box"}}});
+        const work_counters own = work_of({layout, {{"leaf_test", "triangle_aabb"}}});
+        CHECK(none[work::triangle_box_tests] == 0);
+        CHECK(own[work::triangle_box_tests] == 0);
+        CHECK(box[work::triangle_box_tests] > 0);
+        CHECK(box[work::triangle_tests] < none[work::triangle_tests]);
+        CHECK(own[work::triangle_tests] < none[work::triangle_tests]);
+    }
+    // The tree, tested box by box, is the same.
+    CHECK(work_of({"canonical", {}})[work::box_tests] == work_of({"shared_planes", {}})[work::box_tests]);
+    CHECK(work_of({"canonical", {}})[work::triangle_tests] == work_of({"shared_planes", {}})[work::triangle_tests]);
+}
+
+TEST_CASE("only Möller's original makes a leafless tree inexact") {
+    for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
+        const bool original =
+            std::ranges::find(tree.settings, "moller_triangle_box", &setting::value) != tree.settings.end();
+        CHECK(is_exact(local_composition{tree, {"exact", {}}}) == !original);
+    }
+}

@@ -1,0 +1,26 @@
+module;
+#include <cstdint>
+#include <vector>
+
+module aabb.validation;
+
+import aabb;
+import :parts;
+
+namespace aabb {
+
+std::uint64_t mesh_engine::count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                       const pose& pose_b) {
+    std::vector<index_pair> pairs;
+    all_pairs(model_a, pose_a, model_b, pose_b, pairs);
+    return pairs.size();
+}
+
+void mesh_engine::self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) {
+    std::vector<index_pair> both_ways;
+    all_pairs(model, {}, model, {}, both_ways);
+    for (const index_pair pair : both_ways)
+        if (pair.a < pair.b) pairs.push_back(pair);
+}
+
+}  // namespace aabb
