@@ -18,9 +18,11 @@ struct mesh {
     std::vector<vec3f> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 
-    [[nodiscard]] std::uint32_t triangle_count() const noexcept { return static_cast<std::uint32_t>(triangles.size()); }
+    [[nodiscard]] inline std::uint32_t triangle_count() const noexcept {
+        return static_cast<std::uint32_t>(triangles.size());
+    }
 
-    [[nodiscard]] triangle3f triangle(std::uint32_t index) const noexcept {
+    [[nodiscard]] inline triangle3f triangle(std::uint32_t index) const noexcept {
         const auto& t = triangles[index];
         return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
     }

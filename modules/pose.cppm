@@ -57,11 +57,14 @@ class relative_pose {
 public:
     /// @param reach box of the vertices of B in B's frame; only boxes and vertices inside it may be taken over.
     /// @throws input_error when they may lie beyond the range of float in A's frame.
-    relative_pose(const pose& a, const pose& b, const box& reach) : a_(a), b_(b) {
+    relative_pose(const pose& a, const pose& b, const box& reach) {
         for (int i = 0; i < 3; ++i) {
-            shift_[i] = 0;
+            translation_a_[i] = a.translation[i];
+            translation_b_[i] = b.translation[i];
             double magnitude = 0;
             for (int k = 0; k < 3; ++k) {
+                columns_b_[k][i] = b.rotation[3 * i + k];
+                rows_a_[k][i] = a.rotation[3 * k + i];
                 const double r = a.rotation[3 * k + i];
                 double row = std::abs(b.translation[k]) + std::abs(a.translation[k]);
                 for (int j = 0; j < 3; ++j)
@@ -73,11 +76,13 @@ public:
             for (int j = 0; j < 3; ++j) {
                 double sum = 0;
                 for (int k = 0; k < 3; ++k) sum += a.rotation[3 * k + i] * b.rotation[3 * k + j];
-                turn_[3 * i + j] = sum;
+                turn_[j][i] = sum;
+                absolute_turn_[j][i] = std::abs(sum);
             }
-            // The vertex formula rounds at most 8 times on the way of any term, the box formula at most 11 times
-            // (3 in the product matrix or shift, 4 in the interval sum, and the margin's own sum): each within
-            // γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and the growing.
+            // The vertex formula rounds at most 8 times on the way of any term, the box formula at most 12 times (3 in
+            // the product matrix or shift, 4 to the centre, 4 to the radius with the margin in it, and their sum): each
+            // within γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and the
+            // growing.
             margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude +
                          std::numeric_limits<double>::denorm_min();
         }
@@ -86,48 +91,45 @@ public:
     }
 
     /// Image of a vertex of B, as defined above.
-    [[nodiscard]] vec3f operator()(const vec3f& x) const noexcept {
-        vec3d world;
-        for (int i = 0; i < 3; ++i) {
-            const double* r = &b_.rotation[3 * i];
-            world[i] = (((r[0] * x[0] + r[1] * x[1]) + r[2] * x[2]) + b_.translation[i]) - a_.translation[i];
-        }
-        vec3f image;
-        for (int i = 0; i < 3; ++i)
-            image[i] = static_cast<float>((a_.rotation[i] * world[0] + a_.rotation[3 + i] * world[1]) +
-                                          a_.rotation[6 + i] * world[2]);
-        return image;
+    [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {
+        const lanes turned =
+            (columns_b_[0] * double{x[0]} + columns_b_[1] * double{x[1]}) + columns_b_[2] * double{x[2]};
+        const lanes world = (turned + translation_b_) - translation_a_;
+        return in_float((rows_a_[0] * world[0] + rows_a_[1] * world[1]) + rows_a_[2] * world[2]);
     }
 
-    [[nodiscard]] triangle3f operator()(const triangle3f& t) const noexcept {
+    [[nodiscard]] inline triangle3f operator()(const triangle3f& t) const noexcept {
         return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
     }
 
     /// A box in A's frame that holds the image of every vertex in the box. The bounds are taken in double, grown by the
     /// margin derived above and rounded to nearest like the images: rounding is monotone, so none can leave the box.
-    [[nodiscard]] box operator()(const box& b) const noexcept {
-        box image;
-        for (int i = 0; i < 3; ++i) {
-            double low = shift_[i];
-            double high = shift_[i];
-            for (int j = 0; j < 3; ++j) {
-                const double p = turn_[3 * i + j] * b.min[j];
-                const double q = turn_[3 * i + j] * b.max[j];
-                low += std::min(p, q);
-                high += std::max(p, q);
-            }
-            image.min[i] = static_cast<float>(low - margin_[i]);
-            image.max[i] = static_cast<float>(high + margin_[i]);
+    [[nodiscard]] inline box operator()(const box& b) const noexcept {
+        lanes centre = shift_;
+        lanes radius = margin_;
+        for (int j = 0; j < 3; ++j) {
+            centre += turn_[j] * ((double{b.min[j]} + double{b.max[j]}) / 2);
+            radius += absolute_turn_[j] * ((double{b.max[j]} - double{b.min[j]}) / 2);
         }
-        return image;
+        return {in_float(centre - radius), in_float(centre + radius)};
     }
 
 private:
-    pose a_;
-    pose b_;
-    std::array<double, 9> turn_{};  // RᴬᵀRᴮ
-    vec3d shift_{};                 // Rᴬᵀ(tᴮ - tᴬ)
-    vec3d margin_{};
+    /// x, y, z and nothing.
+    using lanes = double __attribute__((vector_size(32)));
+
+    [[nodiscard]] static inline vec3f in_float(lanes v) noexcept {
+        return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+    }
+
+    std::array<lanes, 3> columns_b_{};
+    std::array<lanes, 3> rows_a_{};
+    lanes translation_a_{};
+    lanes translation_b_{};
+    std::array<lanes, 3> turn_{};  // columns of RᴬᵀRᴮ
+    std::array<lanes, 3> absolute_turn_{};
+    lanes shift_{};  // Rᴬᵀ(tᴮ - tᴬ)
+    lanes margin_{};
 };
 
 /// The box, in the world, of a mesh at a pose, for global search: grown so that two meshes whose triangles meet in A's

@@ -41,13 +41,13 @@ public:
     }
 
     /// As `exact_side`.
-    [[nodiscard]] int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) const noexcept {
+    [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) const noexcept {
         const int sign = certain_sign(dot(cross(b - a, c - a), d - a), side_error_);
         return sign != 0 || side_error_ == 0 ? sign : exact_side(a, b, c, d);
     }
 
     /// The sides of the plane of `t` on which the corners of `s` lie.
-    [[nodiscard]] std::array<int, 3> sides(const triangle3d& s, const triangle3d& t) const noexcept {
+    [[nodiscard]] inline std::array<int, 3> sides(const triangle3d& s, const triangle3d& t) const noexcept {
         const vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
         const int first = certain_sign(dot(normal, s[0] - t[0]), side_error_);
         const int second = certain_sign(dot(normal, s[1] - t[0]), side_error_);
@@ -59,7 +59,7 @@ public:
     }
 
     /// As `exact_turn`.
-    [[nodiscard]] int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) const noexcept {
+    [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) const noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;
         const double computed = (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
@@ -72,7 +72,7 @@ private:
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
     /// Zero where the error may be larger. Without branches: signs cannot be predicted.
-    [[nodiscard]] static int certain_sign(double computed, double error) noexcept {
+    [[nodiscard]] static inline int certain_sign(double computed, double error) noexcept {
         return static_cast<int>(computed > error) - static_cast<int>(computed < -error);
     }
 

@@ -59,13 +59,15 @@ public:
         }
     }
 
-    [[nodiscard]] cursor root(const mesh&) const noexcept { return internals_.empty() ? leaf_bit : 0; }
-    [[nodiscard]] static bool is_leaf(cursor at) noexcept { return at & leaf_bit; }
-    [[nodiscard]] std::array<cursor, 2> children(cursor at, const mesh&) const noexcept { return internals_[at].child; }
-    [[nodiscard]] const box& bounds(cursor at) const noexcept {
+    [[nodiscard]] inline cursor root(const mesh&) const noexcept { return internals_.empty() ? leaf_bit : 0; }
+    [[nodiscard]] static inline bool is_leaf(cursor at) noexcept { return at & leaf_bit; }
+    [[nodiscard]] inline std::array<cursor, 2> children(cursor at, const mesh&) const noexcept {
+        return internals_[at].child;
+    }
+    [[nodiscard]] inline const box& bounds(cursor at) const noexcept {
         return is_leaf(at) ? leaves_[at & ~leaf_bit].bounds : internals_[at].bounds;
     }
-    [[nodiscard]] std::uint32_t triangle(cursor at) const noexcept { return leaves_[at & ~leaf_bit].triangle; }
+    [[nodiscard]] inline std::uint32_t triangle(cursor at) const noexcept { return leaves_[at & ~leaf_bit].triangle; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(box) * (internals_.capacity() + leaves_.capacity()),
                 sizeof(internal_node::child) * internals_.capacity() + sizeof(leaf::triangle) * leaves_.capacity()};

@@ -79,11 +79,11 @@ public:
         root_ = boxes.empty() ? bounds_of(m.triangle(0)) : boxes[0];
     }
 
-    [[nodiscard]] cursor root(const mesh& m) const noexcept {
+    [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, config_.leaf_test, m) : cursor{root_, 0};
     }
-    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
-    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto leaf = [&](std::uint32_t triangle) {
             return leaf_cursor(triangle, at.bounds, config_.leaf_test, m);
         };
@@ -97,9 +97,9 @@ public:
         return {symbol & leaf_flag(0) ? leaf(parent.child[0]) : cursor{left, parent.child[0]},
                 symbol & leaf_flag(1) ? leaf(parent.child[1]) : cursor{right, parent.child[1]}};
     }
-    [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
+    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(root_) + sizeof(sibling_planes) * nodes_.capacity() + symbols_.capacity(),
                 sizeof(child_pair) * (nodes_.capacity() + leaf_pairs_.capacity())};

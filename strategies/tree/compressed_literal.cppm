@@ -69,11 +69,11 @@ public:
         encode(boxes);
     }
 
-    [[nodiscard]] cursor root(const mesh& m) const noexcept {
+    [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() ? leaf_cursor(0, root_, config_.leaf_test, m) : cursor{root_, 0};
     }
-    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
-    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::size_t side) {
             const std::uint32_t index = nodes_[at.index].child[side];
             if (is_leaf(at.index, side)) return leaf_cursor(index, at.bounds, config_.leaf_test, m);
@@ -81,9 +81,9 @@ public:
         };
         return {child(0), child(1)};
     }
-    [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
+    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(root_) + sizeof(node::planes) * nodes_.capacity() + symbols_.capacity(),
                 sizeof(node::child) * nodes_.capacity()};
@@ -101,7 +101,7 @@ private:
     [[nodiscard]] static constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
         return static_cast<std::uint8_t>(64U << side);
     }
-    [[nodiscard]] bool is_leaf(std::size_t parent, std::size_t side) const noexcept {
+    [[nodiscard]] inline bool is_leaf(std::size_t parent, std::size_t side) const noexcept {
         return symbols_[parent] & leaf_flag(side);
     }
 

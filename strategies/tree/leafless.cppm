@@ -53,12 +53,12 @@ public:
             nodes_[i].bounds = merged(bounds_at(nodes_[i].child[0]), bounds_at(nodes_[i].child[1]));
     }
 
-    [[nodiscard]] cursor root(const mesh& m) const noexcept {
+    [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() ? leaf_cursor(0, bounds_of(m.triangle(0)), config_.leaf_test, m)
                               : cursor{nodes_[0].bounds, 0};
     }
-    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
-    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::uint32_t index) {
             if (!(index & cursor::leaf_bit)) return cursor{nodes_[index].bounds, index};
             return leaf_cursor(index & ~cursor::leaf_bit, at.bounds, config_.leaf_test, m);
@@ -66,9 +66,9 @@ public:
         const node& parent = nodes_[at.index];
         return {child(parent.child[0]), child(parent.child[1])};
     }
-    [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
+    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(box) * nodes_.capacity(), sizeof(node::child) * nodes_.capacity()};
     }

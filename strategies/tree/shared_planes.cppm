@@ -73,9 +73,11 @@ public:
         root_ = nodes_.empty() ? bounds_of(m.triangle(0)) : boxes[0];
     }
 
-    [[nodiscard]] cursor root(const mesh&) const noexcept { return {root_, nodes_.empty() ? cursor::leaf_bit : 0}; }
-    [[nodiscard]] static bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
-    [[nodiscard]] std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
+    [[nodiscard]] inline cursor root(const mesh&) const noexcept {
+        return {root_, nodes_.empty() ? cursor::leaf_bit : 0};
+    }
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
         const node& parent = nodes_[at.index];
         const std::uint32_t symbol = symbols_[at.index];
         const auto [left, right] = decode_siblings(at.bounds, parent.planes, symbol);
@@ -83,8 +85,8 @@ public:
         return {cursor{left, parent.child[0] | (symbol << 25 & cursor::leaf_bit)},
                 cursor{right, parent.child[1] | (symbol << 24 & cursor::leaf_bit)}};
     }
-    [[nodiscard]] static const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] std::uint32_t triangle(const cursor& at) const noexcept { return leaves_[at.leaf()]; }
+    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] inline std::uint32_t triangle(const cursor& at) const noexcept { return leaves_[at.leaf()]; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(root_) + sizeof(sibling_planes) * nodes_.capacity() + symbols_.capacity(),
                 sizeof(node::child) * nodes_.capacity() + sizeof(std::uint32_t) * leaves_.capacity()};

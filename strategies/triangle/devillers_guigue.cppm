@@ -19,11 +19,11 @@ struct devillers_guigue_triangle {
         "Devillers and Guigue's orientation signs in plain double: inexact, the fast baseline";
     static constexpr bool exact = false;
 
-    [[nodiscard]] static bool intersects(const triangle3f& s, const triangle3f& t) noexcept {
+    [[nodiscard]] static inline bool intersects(const triangle3f& s, const triangle3f& t) noexcept {
         return intersects(in_double(s), in_double(t));
     }
 
-    [[nodiscard]] static bool intersects(const triangle3d& s, const triangle3d& t) noexcept {
+    [[nodiscard]] static inline bool intersects(const triangle3d& s, const triangle3d& t) noexcept {
         const std::array<double, 3> s_to_t = heights(s, t);
         if (on_one_side(s_to_t)) return false;
         const std::array<double, 3> t_to_s = heights(t, s);
@@ -41,24 +41,24 @@ struct devillers_guigue_triangle {
     }
 
 private:
-    [[nodiscard]] static double side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+    [[nodiscard]] static inline double side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
         return dot(cross(b - a, c - a), d - a);
     }
 
     /// Of the corners of `s` over the plane of `t`, times the length of its normal.
-    [[nodiscard]] static std::array<double, 3> heights(const triangle3d& s, const triangle3d& t) noexcept {
+    [[nodiscard]] static inline std::array<double, 3> heights(const triangle3d& s, const triangle3d& t) noexcept {
         const vec3d normal = cross(t[0] - t[2], t[1] - t[2]);
         return {dot(normal, s[0] - t[2]), dot(normal, s[1] - t[2]), dot(normal, s[2] - t[2])};
     }
 
-    [[nodiscard]] static bool on_one_side(const std::array<double, 3>& d) noexcept {
+    [[nodiscard]] static inline bool on_one_side(const std::array<double, 3>& d) noexcept {
         return d[0] * d[1] > 0 && d[0] * d[2] > 0;
     }
 
     /// Rotates the triangle until corner 0 is alone on its side of the other plane, or on the plane with both others
     /// off it on one side.
     /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be turned
-    static bool turn_to_apex(triangle3d& s, const std::array<double, 3>& d) noexcept {
+    static inline bool turn_to_apex(triangle3d& s, const std::array<double, 3>& d) noexcept {
         const auto apex = [&](int i, double up) {
             const double own = up * d[static_cast<std::size_t>(i)];
             const double p = up * d[static_cast<std::size_t>((i + 1) % 3)];
@@ -76,14 +76,14 @@ private:
 
     /// On the axis plane in which the area of `s` is largest: apart when the line of an edge has the other triangle
     /// strictly beyond it.
-    [[nodiscard]] static bool coplanar_intersects(const triangle3d& s, const triangle3d& t) noexcept {
+    [[nodiscard]] static inline bool coplanar_intersects(const triangle3d& s, const triangle3d& t) noexcept {
         const vec3d normal = cross(s[1] - s[0], s[2] - s[0]);
         int dropped = std::abs(normal[1]) > std::abs(normal[0]) ? 1 : 0;
         if (std::abs(normal[2]) > std::abs(normal[dropped])) dropped = 2;
         return !an_edge_separates(s, t, dropped) && !an_edge_separates(t, s, dropped);
     }
 
-    [[nodiscard]] static bool an_edge_separates(const triangle3d& s, const triangle3d& t, int dropped) noexcept {
+    [[nodiscard]] static inline bool an_edge_separates(const triangle3d& s, const triangle3d& t, int dropped) noexcept {
         const int x = (dropped + 1) % 3;
         const int y = (dropped + 2) % 3;
         const auto turn = [&](const vec3d& a, const vec3d& b, const vec3d& c) {

@@ -21,7 +21,7 @@ struct exact_triangle {
         "exact for any finite triangles, zero-area ones included: orientation signs, filtered in double";
 
     template <class Real>
-    [[nodiscard]] static bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
+    [[nodiscard]] static inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         vec3d low;
         vec3d high;
         for (int k = 0; k < 3; ++k) {
@@ -38,8 +38,8 @@ private:
     using sides = std::array<int, 3>;
 
     /// The boxes of `s` and `t` overlap.
-    [[nodiscard]] static bool near_intersects(const triangle3d& s, const triangle3d& t,
-                                              const orientations& signs) noexcept {
+    [[nodiscard]] static inline bool near_intersects(const triangle3d& s, const triangle3d& t,
+                                                     const orientations& signs) noexcept {
         const sides s_to_t = signs.sides(s, t);
         if (on_one_side(s_to_t)) return false;
         const sides t_to_s = signs.sides(t, s);
@@ -61,14 +61,14 @@ private:
     }
 
     template <class Real>
-    [[nodiscard]] static bool share_a_corner(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
+    [[nodiscard]] static inline bool share_a_corner(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
                 if (s[i] == t[j]) return true;
         return false;
     }
 
-    [[nodiscard]] static bool on_one_side(const sides& d) noexcept {
+    [[nodiscard]] static inline bool on_one_side(const sides& d) noexcept {
         return (d[0] > 0 && d[1] > 0 && d[2] > 0) || (d[0] < 0 && d[1] < 0 && d[2] < 0);
     }
 
@@ -97,15 +97,15 @@ private:
         return rows;
     }();
 
-    [[nodiscard]] static apex apex_of(const sides& d) noexcept {
+    [[nodiscard]] static inline apex apex_of(const sides& d) noexcept {
         return apices[static_cast<std::size_t>(9 * d[0] + 3 * d[1] + d[2] + 13)];
     }
 
     /// Both triangles cut the line in which their planes meet, each in an interval between the edges at its apex. With
     /// each triangle turned so that the other's apex lies above it, the intervals run against each other, and two
     /// orientations compare their ends.
-    [[nodiscard]] static bool intervals_meet(const orientations& signs, const triangle3d& s, const sides& s_to_t,
-                                             const triangle3d& t, const sides& t_to_s) noexcept {
+    [[nodiscard]] static inline bool intervals_meet(const orientations& signs, const triangle3d& s, const sides& s_to_t,
+                                                    const triangle3d& t, const sides& t_to_s) noexcept {
         const apex of_s = apex_of(s_to_t);
         const apex of_t = apex_of(t_to_s);
         const auto ends = [](const triangle3d& of, int from, bool turned) {
@@ -121,8 +121,8 @@ private:
     }
 
     /// `s` has zero area and reaches the plane of `t`, which it crosses in one point: is that point in `t`?
-    [[nodiscard]] static bool line_meets(const orientations& signs, const triangle3d& s, const sides& s_to_t,
-                                         const triangle3d& t) noexcept {
+    [[nodiscard]] static inline bool line_meets(const orientations& signs, const triangle3d& s, const sides& s_to_t,
+                                                const triangle3d& t) noexcept {
         const int other = s_to_t[0] != s_to_t[1] ? 1 : 2;
         bool left = false;
         bool right = false;
@@ -137,8 +137,8 @@ private:
     /// Both lie in one plane, or both have zero area. Seen along an axis, two convex sets that are apart are separated
     /// by the line of an edge, or lie on one line, where their boxes would be apart. Apart in a view is apart; what
     /// meets in a view in which the common plane is not seen edge-on meets.
-    [[nodiscard]] static bool flat_intersects(const orientations& signs, const triangle3d& s,
-                                              const triangle3d& t) noexcept {
+    [[nodiscard]] static inline bool flat_intersects(const orientations& signs, const triangle3d& s,
+                                                     const triangle3d& t) noexcept {
         for (int axis = 0; axis < 3; ++axis) {
             const int s_turn = signs.turn(s[0], s[1], s[2], axis);
             const int t_turn = signs.turn(t[0], t[1], t[2], axis);
@@ -151,8 +151,8 @@ private:
     }
 
     /// Does the line of an edge of `s` have `s` on one side and `t` strictly on the other? `turn` is that of `s`.
-    [[nodiscard]] static bool edge_separates(const orientations& signs, const triangle3d& s, int turn,
-                                             const triangle3d& t, int axis) noexcept {
+    [[nodiscard]] static inline bool edge_separates(const orientations& signs, const triangle3d& s, int turn,
+                                                    const triangle3d& t, int axis) noexcept {
         for (int i = 0; i < 3; ++i) {
             const auto side = [&](int j) { return signs.turn(s[i], s[(i + 1) % 3], t[j], axis); };
             const int first = side(0);

@@ -24,7 +24,7 @@ public:
     moller_triangle() = default;
     explicit moller_triangle(const config& c) : test_(c.epsilon) {}
 
-    [[nodiscard]] bool intersects(const triangle3f& s, const triangle3f& t) const noexcept {
+    [[nodiscard]] inline bool intersects(const triangle3f& s, const triangle3f& t) const noexcept {
         return test_.intersects(s, t);
     }
 

@@ -23,10 +23,10 @@ public:
     moller_double_triangle() = default;
     explicit moller_double_triangle(const config& c) : test_(c.epsilon) {}
 
-    [[nodiscard]] bool intersects(const triangle3f& s, const triangle3f& t) const noexcept {
+    [[nodiscard]] inline bool intersects(const triangle3f& s, const triangle3f& t) const noexcept {
         return test_.intersects(in_double(s), in_double(t));
     }
-    [[nodiscard]] bool intersects(const triangle3d& s, const triangle3d& t) const noexcept {
+    [[nodiscard]] inline bool intersects(const triangle3d& s, const triangle3d& t) const noexcept {
         return test_.intersects(s, t);
     }
 
