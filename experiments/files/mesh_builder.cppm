@@ -55,6 +55,8 @@ public:
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(file_ + ": " + error.what());
         }
+        m.vertices.shrink_to_fit();
+        m.triangles.shrink_to_fit();
         loaded_.report.rounded = rounded;
         for (std::uint32_t t = 0; t < m.triangle_count(); ++t) loaded_.report.zero_area += has_zero_area(m.triangle(t));
         return std::move(loaded_);

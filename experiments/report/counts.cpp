@@ -53,6 +53,8 @@ table counts_table_of(const scene_summary& scene, number_style style) {
         if (i == copies) t.columns.push_back({"copies an object"});
     }
     for (std::size_t i = 0; i < byte_columns.size(); ++i) {
+        // The meshes are the same for all.
+        if (byte_columns[i] == "triangles" || byte_columns[i] == "vertices") continue;
         if (!is_used(scene, &summary_line::bytes_by_part, i)) continue;
         parts.push_back(i);
         t.columns.push_back({(style == number_style::plain ? "bytes " : "KiB ") + spaced(byte_columns[i])});

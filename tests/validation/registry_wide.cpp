@@ -4,6 +4,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../compositions.hpp"
@@ -85,5 +86,69 @@ TEST_CASE("every composed local detection with an exact triangle test equals CGA
             REQUIRE(pairs_of(*stage, c.a, c.pose_a, c.b, c.pose_b) ==
                     pairs_of(*make_mesh_engine("cgal"), c.a, c.pose_a, c.b, c.pose_b));
         }
+    }
+}
+
+TEST_CASE("two meshes moved together keep their pairs, up to 10^7 times their size") {
+    const mesh ball = sphere(12);
+    const pose still = turned({1, 2, 3}, 0.4, {0, 0, 0});
+    const pose near = turned({3, -1, 1}, 1.3, {0.6, 0.3, -0.2});
+    for (const local_composition& composition : all_local_compositions()) {
+        if (!is_exact(composition)) continue;
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::none);
+        const std::vector<index_pair> pairs = pairs_of(*stage, ball, still, ball, near);
+        REQUIRE(pairs.size() > 50);
+        for (const double far : {1e3, 1e5, 1e7}) {
+            pose a = still;
+            pose b = near;
+            for (pose* p : {&a, &b})
+                for (int k = 0; k < 3; ++k) p->translation[k] += far * (k + 1);
+            REQUIRE(pairs_of(*stage, ball, a, ball, b) == pairs);
+        }
+    }
+}
+
+TEST_CASE("every composition and engine holds a mesh against itself alike, and again when it has deformed") {
+    mesh ball = sphere(6);
+    const auto self_pairs = [](local_stage& stage) {
+        std::vector<index_pair> pairs;
+        stage.self_pairs(0, pairs);
+        return sorted(pairs);
+    };
+    std::vector<std::pair<std::string, std::unique_ptr<local_stage>>> stages;
+    for (const engine_info& engine : engines())
+        if (engine.exact) stages.emplace_back(engine.name, make_mesh_engine(engine.name));
+    for (const local_composition& composition : all_local_compositions())
+        if (is_exact(composition))
+            stages.emplace_back(to_text(composition), compose(composition, instrumentation::none));
+    for (auto& [name, stage] : stages) stage->add_model(ball);
+    for (const bool deformed : {false, true}) {
+        if (deformed)
+            for (std::size_t v = 0; v < ball.vertices.size(); v += 3) ball.vertices[v][1] = -ball.vertices[v][1];
+        std::vector<index_pair> truth;
+        for (auto& [name, stage] : stages) {
+            INFO(name << (deformed ? ", deformed" : ""));
+            if (deformed) stage->refit(0);
+            const std::vector<index_pair> pairs = self_pairs(*stage);
+            if (truth.empty()) truth = pairs;
+            REQUIRE(pairs == truth);
+        }
+        REQUIRE(truth.size() > 100);
+    }
+}
+
+TEST_CASE("an inexact engine follows a mesh that deforms") {
+    for (const engine_info& engine : engines()) {
+        INFO(engine.name);
+        mesh m = one_triangle({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}});
+        const mesh needle = one_triangle({{{0.5F, 0.5F, 9}, {0.6F, 0.5F, 11}, {0.5F, 0.7F, 11}}});
+        const auto stage = make_mesh_engine(engine.name);
+        stage->add_model(m);
+        stage->add_model(needle);
+        REQUIRE(stage->count_pairs(0, {}, 1, {}) == 0);
+        for (vec3f& v : m.vertices) v[2] = 10;
+        stage->refit(0);
+        REQUIRE(stage->count_pairs(0, {}, 1, {}) == 1);
     }
 }
