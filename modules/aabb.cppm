@@ -12,6 +12,7 @@ export import :global_search;
 export import :interval_test;
 export import :inversions;
 export import :leaf_test;
+export import :leafless_config;
 export import :local_detection;
 export import :mean_split;
 export import :median_split;

@@ -32,8 +32,8 @@ void pipeline::update(std::span<const pose> poses) {
         throw input_error("the scene has " + std::to_string(boxes_.size()) + " objects, but the frame has " +
                           std::to_string(poses.size()) + " poses");
     poses_.assign(poses.begin(), poses.end());
-    if (scene_.deforms())
-        for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m) {
+    for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
+        if (scene_.deforms(m)) {
             local_.refit(m);
             mesh_bounds_[m] = bounds_of(scene_.meshes[m]);
         }
@@ -44,6 +44,8 @@ void pipeline::update(std::span<const pose> poses) {
             throw input_error("object " + std::to_string(object) + ": " + error.what());
         }
         boxes_[object] = world_bounds(mesh_bounds_[scene_.mesh_of[object]], poses[object]);
+        if (!is_valid(boxes_[object]))
+            throw input_error("object " + std::to_string(object) + " lies beyond the range of float");
     }
     global_.update(boxes_);
 }

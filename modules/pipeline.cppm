@@ -32,9 +32,9 @@ public:
     /// Takes the objects and builds the models of the scene. Scene and stages must outlive the pipeline.
     pipeline(const mesh_scene& scene, global_stage& global, local_stage& local);
 
-    /// One frame, in three steps that can be timed apart.
-    /// Where the scene deforms, its meshes are those of the frame, and the trees are fitted to them.
-    /// @param poses one an object; @throws input_error on one that is not rigid, by the object's number.
+    /// One frame, in three steps that can be timed apart. The first takes the poses, one an object, and fits the trees
+    /// of meshes that have deformed.
+    /// @throws input_error on a pose that is not rigid or takes an object beyond the range of float, by its number.
     void update(std::span<const pose> poses);
     void search();
     void detect();

@@ -51,27 +51,31 @@ inline void require_rigid(const pose& p) {
 
 /// Takes vertices and boxes of mesh B into the frame of mesh A.
 ///
-/// The image of a vertex defines the truth for every triangle test: z = Rᴬᵀ((Rᴮ x + tᴮ) - tᴬ) in double, each sum left
-/// to right, no fused multiply-add, rounded to float once. Two meshes moved together keep their answer.
+/// The image of a vertex defines the truth for every triangle test: z = Rᴬᵀ(Rᴮ x + (tᴮ - tᴬ)) in double, each sum left
+/// to right, no fused multiply-add, rounded to float once. The translations are subtracted first, so that two meshes
+/// moved together keep their vertices, bit by bit, however far: as long as tᴮ - tᴬ does not change.
 class relative_pose {
 public:
     /// @param reach box of the vertices of B in B's frame; only boxes and vertices inside it may be taken over.
     /// @throws input_error when they may lie beyond the range of float in A's frame.
     relative_pose(const pose& a, const pose& b, const box& reach) {
         for (int i = 0; i < 3; ++i) {
-            translation_a_[i] = a.translation[i];
-            translation_b_[i] = b.translation[i];
-            double magnitude = 0;
+            between_[i] = b.translation[i] - a.translation[i];
             for (int k = 0; k < 3; ++k) {
                 columns_b_[k][i] = b.rotation[3 * i + k];
                 rows_a_[k][i] = a.rotation[3 * k + i];
+            }
+        }
+        for (int i = 0; i < 3; ++i) {
+            double magnitude = 0;
+            for (int k = 0; k < 3; ++k) {
                 const double r = a.rotation[3 * k + i];
-                double row = std::abs(b.translation[k]) + std::abs(a.translation[k]);
+                double row = std::abs(between_[k]);
                 for (int j = 0; j < 3; ++j)
                     row += std::abs(b.rotation[3 * k + j]) *
                            std::max(std::abs(double{reach.min[j]}), std::abs(double{reach.max[j]}));
                 magnitude += std::abs(r) * row;
-                shift_[i] += r * (b.translation[k] - a.translation[k]);
+                shift_[i] += r * between_[k];
             }
             for (int j = 0; j < 3; ++j) {
                 double sum = 0;
@@ -79,10 +83,10 @@ public:
                 turn_[j][i] = sum;
                 absolute_turn_[j][i] = std::abs(sum);
             }
-            // The vertex formula rounds at most 8 times on the way of any term, the box formula at most 12 times (3 in
-            // the product matrix or shift, 4 to the centre, 4 to the radius with the margin in it, and their sum): each
-            // within γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and the
-            // growing.
+            // The vertex formula rounds at most 7 times on the way of any term, the box formula at most 10 times (3 in
+            // the product matrix or shift, 5 to the centre or 6 to the radius with the margin in it, and their sum):
+            // each within γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and
+            // the growing.
             margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude +
                          std::numeric_limits<double>::denorm_min();
         }
@@ -94,7 +98,7 @@ public:
     [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {
         const lanes turned =
             (columns_b_[0] * double{x[0]} + columns_b_[1] * double{x[1]}) + columns_b_[2] * double{x[2]};
-        const lanes world = (turned + translation_b_) - translation_a_;
+        const lanes world = turned + between_;
         return in_float((rows_a_[0] * world[0] + rows_a_[1] * world[1]) + rows_a_[2] * world[2]);
     }
 
@@ -118,14 +122,13 @@ private:
     /// x, y, z and nothing.
     using lanes = double __attribute__((vector_size(32)));
 
-    [[nodiscard]] static inline vec3f in_float(lanes v) noexcept {
+    [[nodiscard]] static inline vec3f in_float(const lanes& v) noexcept {
         return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     }
 
     std::array<lanes, 3> columns_b_{};
     std::array<lanes, 3> rows_a_{};
-    lanes translation_a_{};
-    lanes translation_b_{};
+    lanes between_{};              // tᴮ - tᴬ
     std::array<lanes, 3> turn_{};  // columns of RᴬᵀRᴮ
     std::array<lanes, 3> absolute_turn_{};
     lanes shift_{};  // Rᴬᵀ(tᴮ - tᴬ)

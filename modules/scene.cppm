@@ -44,10 +44,10 @@ public:
     std::vector<std::uint32_t> mesh_of;  ///< by object
 
     [[nodiscard]] virtual std::size_t frames() const = 0;
-    /// The poses of the next frame, one an object; false after the last. Where the scene `deforms`, vertices of meshes
-    /// move too.
+    /// The poses of the next frame, one an object; false after the last. Vertices of meshes that
+    /// deform move too.
     virtual bool next(std::vector<pose>& poses) = 0;
-    [[nodiscard]] virtual bool deforms() const { return false; }
+    [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
 };
 
 }  // namespace aabb

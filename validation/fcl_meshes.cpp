@@ -30,7 +30,14 @@ public:
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
-    void refit(std::uint32_t model) override { models_[model].tree = tree_of(*models_[model].triangles); }
+    void refit(std::uint32_t model) override {
+        const mesh& m = *models_[model].triangles;
+        require_valid(m);
+        fcl_tree& tree = *models_[model].tree;
+        tree.beginReplaceModel();
+        tree.replaceSubModel(vertices_of(m));
+        tree.endReplaceModel(true, true);
+    }
 
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) override {
@@ -61,10 +68,15 @@ private:
         std::unique_ptr<fcl_tree> tree;
     };
 
-    [[nodiscard]] static std::unique_ptr<fcl_tree> tree_of(const mesh& m) {
-        require_valid(m);
+    [[nodiscard]] static std::vector<fcl::Vector3d> vertices_of(const mesh& m) {
         std::vector<fcl::Vector3d> vertices;
         for (const vec3f& v : m.vertices) vertices.emplace_back(v[0], v[1], v[2]);
+        return vertices;
+    }
+
+    [[nodiscard]] static std::unique_ptr<fcl_tree> tree_of(const mesh& m) {
+        require_valid(m);
+        const std::vector<fcl::Vector3d> vertices = vertices_of(m);
         std::vector<fcl::Triangle> triangles;
         for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
         auto tree = std::make_unique<fcl_tree>();

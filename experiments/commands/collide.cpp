@@ -16,6 +16,9 @@
 #include "output.hpp"
 #include "stopwatch.hpp"
 
+// Imports, so it comes last.
+#include "composing.hpp"
+
 import aabb;
 import aabb.registry;
 import aabb.validation;
@@ -31,7 +34,8 @@ struct collide_request {
     std::string a;
     std::optional<std::string> b;
     std::array<std::optional<std::string>, 2> poses;
-    std::optional<std::string> tree, triangle, engine, out;
+    local_options local;
+    std::optional<std::string> engine, out;
     bool self = false;
     bool first = false;
     bool count = false;
@@ -57,13 +61,11 @@ struct detection_result {
 
 detection_method method_of(const collide_request& request) {
     if (request.engine) {
-        if (request.tree || request.triangle)
+        if (request.local.any())
             throw aabb::input_error("--engine stands in for --tree and --triangle, so give it alone");
         return {*request.engine, aabb::make_mesh_engine(*request.engine)};
     }
-    aabb::local_composition composition;
-    if (request.tree) composition.tree = aabb::parse_strategy(*request.tree);
-    if (request.triangle) composition.triangle = aabb::parse_strategy(*request.triangle);
+    const aabb::local_composition composition = request.local.composition();
     return {aabb::to_text(composition), aabb::compose(composition, aabb::instrumentation::none)};
 }
 
@@ -97,12 +99,6 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
     } catch (const aabb::input_error& error) {
         throw aabb::input_error(fmt::format("{}: {}", option, error.what()));
     }
-}
-
-aabb::mesh read(const std::string& name) {
-    loaded_mesh loaded = make_mesh(name);
-    if (const std::string report = loaded.report.text(); !report.empty()) note(name + ": " + report);
-    return std::move(loaded.mesh);
 }
 
 void query(aabb::local_stage& stage, const collide_request& request, const std::array<aabb::pose, 2>& poses,
@@ -156,7 +152,7 @@ detection_result detect(const collide_request& request, const detection_method& 
     result.query_ms = milliseconds_of([&] { query(*method.stage, request, poses, result); });
     for (const aabb::mesh& m : meshes) result.triangles.push_back(m.triangle_count());
     set_bytes(result, *method.stage, meshes);
-    if (request.count) return result;
+    if (request.count && !request.self) return result;
     sort_each_once(result.pairs, method.name);
     aabb::digest digest;
     for (const aabb::index_pair pair : result.pairs) {
@@ -167,7 +163,7 @@ detection_result detect(const collide_request& request, const detection_method& 
         ++result.count;
     }
     if (request.self) result.neighbours = result.pairs.size() - result.count;
-    result.digest = digest.text();
+    if (!request.count) result.digest = digest.text();
     return result;
 }
 
@@ -209,8 +205,8 @@ void require_sense(const collide_request& request) {
         if (request.b) throw aabb::input_error("--self holds one mesh against itself, so give no second one");
         if (request.poses[0] || request.poses[1])
             throw aabb::input_error("--self holds a mesh against itself, so poses change nothing; leave them away");
-        if (request.first || request.count)
-            throw aabb::input_error("--self lists every pair, so --first and --count do not go with it");
+        if (request.first)
+            throw aabb::input_error("--self finds every pair, so --first does not go with it; --count does");
     } else if (!request.b) {
         throw aabb::input_error("collide: expected B, the other mesh, or --self");
     }
@@ -225,8 +221,7 @@ void collide(const collide_request& request) {
                                              pose_of(request.poses[1], "--pose-b")};
     std::vector<std::string> names{request.a};
     if (request.b) names.push_back(*request.b);
-    std::vector<aabb::mesh> meshes;
-    for (const std::string& name : names) meshes.push_back(read(name));
+    const std::vector<aabb::mesh> meshes = read_meshes(names);
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, names);
@@ -255,8 +250,7 @@ void add_collide(CLI::App& program, int&) {
                      "Where A is: 12 numbers with commas between, the rows of [R t] (default: as it is)")
         ->type_name("M");
     command->add_option("--pose-b", request->poses[1], "Where B is")->type_name("M");
-    command->add_option("--tree", request->tree, "Tree (default canonical)")->type_name("T");
-    command->add_option("--triangle", request->triangle, "Triangle test (default exact)")->type_name("R");
+    request->local.add_to(*command);
     command->add_option("--engine", request->engine, "Reference system in place of tree and triangle test")
         ->type_name("E");
     command->add_flag("--self", request->self, "Hold A against itself; pairs that share a vertex are counted apart");

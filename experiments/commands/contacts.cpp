@@ -16,6 +16,9 @@
 #include "output.hpp"
 #include "stopwatch.hpp"
 
+// Imports, so it comes last.
+#include "composing.hpp"
+
 import aabb;
 import aabb.registry;
 import aabb.validation;
@@ -31,7 +34,9 @@ namespace {
 struct contacts_request {
     std::string motion;
     std::vector<std::string> meshes;
-    std::optional<std::string> sort, partition, sweep, split_large, tree, triangle, engine, out;
+    global_options global;
+    local_options local;
+    std::optional<std::string> engine, out;
     bool json = false;
 };
 
@@ -51,38 +56,17 @@ struct contacts_result {
     std::vector<double> milliseconds;  ///< by frame
 };
 
-aabb::global_composition global_of(const contacts_request& request) {
-    aabb::global_composition composition;
-    if (request.sort) composition.sort = aabb::parse_strategy(*request.sort);
-    if (request.partition) composition.partition = aabb::parse_strategy(*request.partition);
-    if (request.sweep) composition.sweep = aabb::parse_strategy(*request.sweep);
-    if (request.split_large) composition.split_large = aabb::parse_split_large(*request.split_large);
-    return composition;
-}
-
 both_stages stages_of(const contacts_request& request) {
-    const aabb::global_composition global = global_of(request);
+    const aabb::global_composition global = request.global.composition();
     if (request.engine) {
-        if (request.tree || request.triangle)
+        if (request.local.any())
             throw aabb::input_error("--engine stands in for --tree and --triangle, so give it without them");
         return {to_text(global) + ", " + *request.engine, aabb::compose(global, aabb::instrumentation::none),
                 aabb::make_mesh_engine(*request.engine)};
     }
-    aabb::local_composition local;
-    if (request.tree) local.tree = aabb::parse_strategy(*request.tree);
-    if (request.triangle) local.triangle = aabb::parse_strategy(*request.triangle);
+    const aabb::local_composition local = request.local.composition();
     return {to_text(global) + ", " + to_text(local), aabb::compose(global, aabb::instrumentation::none),
             aabb::compose(local, aabb::instrumentation::none)};
-}
-
-std::vector<aabb::mesh> read_all(const std::vector<std::string>& names) {
-    std::vector<aabb::mesh> meshes;
-    for (const std::string& name : names) {
-        loaded_mesh loaded = make_mesh(name);
-        if (const std::string report = loaded.report.text(); !report.empty()) note(name + ": " + report);
-        meshes.push_back(std::move(loaded.mesh));
-    }
-    return meshes;
 }
 
 std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {
@@ -90,6 +74,16 @@ std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {
     for (std::size_t i = 0; i < sorted.size(); ++i)
         pairs += i == 0 || sorted[i].a != sorted[i - 1].a || sorted[i].b != sorted[i - 1].b;
     return pairs;
+}
+
+void play(aabb::pipeline& both, const std::vector<aabb::pose>& poses, std::uint32_t frame) {
+    try {
+        both.update(poses);
+        both.search();
+        both.detect();
+    } catch (const aabb::input_error& error) {
+        throw aabb::input_error(fmt::format("frame {}: {}", frame, error.what()));
+    }
 }
 
 contacts_result detect_all(aabb::mesh_scene& scene, const both_stages& stages, std::optional<number_table>& table) {
@@ -102,11 +96,7 @@ contacts_result detect_all(aabb::mesh_scene& scene, const both_stages& stages, s
     std::vector<aabb::pose> poses;
     std::vector<aabb::contact> contacts;
     for (std::uint32_t frame = 0; scene.next(poses); ++frame) {
-        result.milliseconds.push_back(milliseconds_of([&] {
-            both->update(poses);
-            both->search();
-            both->detect();
-        }));
+        result.milliseconds.push_back(milliseconds_of([&] { play(*both, poses, frame); }));
         contacts.assign(both->contacts().begin(), both->contacts().end());
         sort_each_once(contacts, fmt::format("{}, frame {}", stages.name, frame));
         for (const aabb::contact& c : contacts) {
@@ -142,7 +132,7 @@ void print_text(const contacts_request& request, const both_stages& stages, cons
 
 void find_contacts(const contacts_request& request) {
     const both_stages stages = stages_of(request);
-    const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_all(request.meshes));
+    const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_meshes(request.meshes));
     std::optional<number_table> table;
     if (request.out) {
         std::vector<std::string> inputs = request.meshes;
@@ -174,15 +164,8 @@ void add_contacts(CLI::App& program, int&) {
                      "Mesh files or shapes; object i is mesh i, from the first again when they run out")
         ->required()
         ->type_name("");
-    command->add_option("--sort", request->sort, "Sort (default std)")->type_name("S");
-    command->add_option("--partition", request->partition, "Partition (default none)")->type_name("P");
-    command->add_option("--sweep", request->sweep, "Sweep (default one_axis)")->type_name("W");
-    command
-        ->add_option("--split-large,--split_large", request->split_large,
-                     "Split boxes longer than this many mean extents first (default off)")
-        ->type_name("SIZE");
-    command->add_option("--tree", request->tree, "Tree (default canonical)")->type_name("T");
-    command->add_option("--triangle", request->triangle, "Triangle test (default exact)")->type_name("R");
+    request->global.add_to(*command);
+    request->local.add_to(*command);
     command->add_option("--engine", request->engine, "Reference system in place of tree and triangle test")
         ->type_name("E");
     command

@@ -14,6 +14,9 @@
 #include "output.hpp"
 #include "stopwatch.hpp"
 
+// Imports, so it comes last.
+#include "composing.hpp"
+
 import aabb;
 import aabb.registry;
 import aabb.validation;
@@ -27,7 +30,8 @@ namespace {
 
 struct pairs_request {
     std::string recording;
-    std::optional<std::string> sort, partition, sweep, split_large, engine, out;
+    global_options global;
+    std::optional<std::string> engine, out;
     bool json = false;
 };
 
@@ -45,16 +49,12 @@ struct search_result {
 
 search_method method_of(const pairs_request& request) {
     if (request.engine) {
-        if (request.sort || request.partition || request.sweep || request.split_large)
+        if (request.global.any())
             throw aabb::input_error(
                 "--engine stands in for --sort, --partition, --sweep and --split-large, so give it alone");
         return {*request.engine, aabb::make_box_engine(*request.engine)};
     }
-    aabb::global_composition composition;
-    if (request.sort) composition.sort = aabb::parse_strategy(*request.sort);
-    if (request.partition) composition.partition = aabb::parse_strategy(*request.partition);
-    if (request.sweep) composition.sweep = aabb::parse_strategy(*request.sweep);
-    if (request.split_large) composition.split_large = aabb::parse_split_large(*request.split_large);
+    const aabb::global_composition composition = request.global.composition();
     return {aabb::to_text(composition), aabb::compose(composition, aabb::instrumentation::none)};
 }
 
@@ -128,13 +128,7 @@ void add_pairs(CLI::App& program, int&) {
     auto* command = program.add_subcommand("pairs", "Global search on a recording: every pair of overlapping boxes");
     auto request = std::make_shared<pairs_request>();
     command->add_option("SCENE", request->recording, "Recording of boxes (.aabbs)")->required()->type_name("");
-    command->add_option("--sort", request->sort, "Sort (default std)")->type_name("S");
-    command->add_option("--partition", request->partition, "Partition (default none)")->type_name("P");
-    command->add_option("--sweep", request->sweep, "Sweep, as in one_axis:axis=x (default one_axis)")->type_name("W");
-    command
-        ->add_option("--split-large,--split_large", request->split_large,
-                     "Split boxes longer than this many mean extents first (default off)")
-        ->type_name("SIZE");
+    request->global.add_to(*command);
     command->add_option("--engine", request->engine, "Reference system in place of all of these")->type_name("E");
     command->add_option("--out", request->out, "Write the pairs, rows frame,a,b, to this CSV file")->type_name("FILE");
     command->add_flag("--json", request->json, "Print the summary as JSON");

@@ -45,7 +45,7 @@ public:
     /// @param motion null where poses are not to be written.
     world_boxes(std::unique_ptr<aabb::mesh_scene> scene, motion_file* motion)
         : scene_(std::move(scene)), motion_(motion) {
-        fit_bounds();
+        for (const aabb::mesh& m : scene_->meshes) bounds_.push_back(aabb::bounds_of(m));
     }
 
     [[nodiscard]] std::size_t objects() const override { return scene_->mesh_of.size(); }
@@ -53,7 +53,8 @@ public:
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_->next(poses_)) return false;
         if (motion_) motion_->add(poses_);
-        if (scene_->deforms()) fit_bounds();
+        for (std::uint32_t m = 0; m < bounds_.size(); ++m)
+            if (scene_->deforms(m)) bounds_[m] = aabb::bounds_of(scene_->meshes[m]);
         boxes.clear();
         for (std::size_t object = 0; object < poses_.size(); ++object)
             boxes.push_back(aabb::world_bounds(bounds_[scene_->mesh_of[object]], poses_[object]));
@@ -62,11 +63,6 @@ public:
     }
 
 private:
-    void fit_bounds() {
-        bounds_.clear();
-        for (const aabb::mesh& m : scene_->meshes) bounds_.push_back(aabb::bounds_of(m));
-    }
-
     std::unique_ptr<aabb::mesh_scene> scene_;
     motion_file* motion_;
     std::vector<aabb::box> bounds_;  // by mesh
@@ -109,13 +105,24 @@ const scene_info& kind_named(const std::string& name) {
     return *kind;
 }
 
+/// What a motion file cannot tell.
+void require_poses_suffice(const scene_info& kind, const scene_choice& choice, const aabb::mesh_scene& scene) {
+    for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
+        if (scene.deforms(m))
+            throw aabb::input_error(kind.name +
+                                    " deforms its meshes, so poses alone, as --motion writes them, are not it");
+    const auto scaled = std::ranges::find(choice.settings, "normalise", &aabb::setting::name);
+    if (scaled == choice.settings.end() || scaled->value != "no")
+        throw aabb::input_error(
+            "--motion writes poses of meshes as they are in their files, so give --normalise no with it");
+}
+
 std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice, motion_file* motion) {
     if (!kind.has_meshes && motion)
         throw aabb::input_error(kind.name + " is a scene of boxes, which have no poses to write with --motion");
     if (!kind.has_meshes) return make_box_scene(choice);
     std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
-    if (scene->deforms() && motion)
-        throw aabb::input_error(kind.name + " deforms its meshes, so poses alone, as --motion writes them, are not it");
+    if (motion) require_poses_suffice(kind, choice, *scene);
     return std::make_unique<world_boxes>(std::move(scene), motion);
 }
 

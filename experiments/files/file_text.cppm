@@ -60,8 +60,8 @@ using file_handle = std::unique_ptr<std::FILE, close_file>;
 
 /// All of a file.
 /// @param size what `require_file` says
-/// @throws aabb::input_error when it cannot be read, or does not fit into memory with as much again, which what is read
-/// from it will take.
-[[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size);
+/// @param times how many times as much memory as the text what is read from it takes at most, the text included
+/// @throws aabb::input_error when it cannot be read or does not fit into memory.
+[[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size, double times);
 
 }  // namespace aabblab

@@ -34,7 +34,8 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 
 /// Opens a motion file for playing with these meshes: object i is mesh i modulo their number. A line is a frame, an
 /// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames are numbered from 0 and stand in
-/// order; frame 0 has every object, later ones those that have moved.
+/// order; frame 0 has every object, later ones those that have moved, so that a frame in which none has may be left
+/// out.
 /// @throws aabb::input_error, with file and line, on anything else, a pose that is not rigid, or more meshes than
 /// objects.
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,

@@ -62,7 +62,8 @@ loaded_mesh read_mesh(const std::filesystem::path& file) {
     const auto found = std::ranges::find(formats, ending, &format::ending);
     if (found == std::end(formats))
         throw aabb::input_error(file.string() + ": " + aabb::unknown_name("mesh format", ending, mesh_endings()));
-    return found->read(read_whole(file, size));
+    // A mesh takes about as much again as its text.
+    return found->read(read_whole(file, size, 2));
 }
 
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {

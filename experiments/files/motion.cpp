@@ -68,9 +68,11 @@ public:
 private:
     void begin(std::uint32_t frame) {
         if (frame == frame_) return;
-        if (frame != frame_ + 1)
+        if (frame < frame_)
             in_.fail("frame " + std::to_string(frame) + " follows frame " + std::to_string(frame_) +
-                     "; frames are numbered from 0 and stand in order");
+                     "; frames stand in order");
+        if (frame >= most)
+            in_.fail("a frame is a number below " + std::to_string(most) + ", not " + std::to_string(frame));
         if (frame_ == 0) require_all_objects();
         frame_ = frame;
     }
@@ -83,7 +85,6 @@ private:
     }
 
     void place(std::uint32_t object) {
-        constexpr std::uint32_t most = 10'000'000;
         if (object >= most)
             in_.fail("an object is a number below " + std::to_string(most) + ", not " + std::to_string(object));
         if (frame_ == 0 && object >= placed_.size()) placed_.resize(object + 1, 0);
@@ -92,6 +93,8 @@ private:
             in_.fail("object " + std::to_string(object) + " has two poses in frame " + std::to_string(frame_));
         placed_[object] = frame_ + 1;
     }
+
+    static constexpr std::uint32_t most = 10'000'000;  // of objects and frames, against slips of the pen
 
     text_scanner in_;
     std::vector<step> steps_;
@@ -103,7 +106,7 @@ private:
 class motion_scene final : public aabb::mesh_scene {
 public:
     motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> given) {
-        const file_text text = read_whole(file, require_file(file));
+        const file_text text = read_whole(file, require_file(file), 8);
         motion_reader reader(text);
         steps_ = reader.read();
         meshes = std::move(given);
@@ -118,9 +121,9 @@ public:
     [[nodiscard]] std::size_t frames() const override { return std::size_t{steps_.back().frame} + 1; }
 
     bool next(std::vector<aabb::pose>& poses) override {
-        if (at_ == steps_.size()) return false;
-        for (const std::uint32_t frame = steps_[at_].frame; at_ < steps_.size() && steps_[at_].frame == frame; ++at_)
-            poses_[steps_[at_].object] = steps_[at_].pose;
+        if (frame_ == frames()) return false;
+        for (; at_ < steps_.size() && steps_[at_].frame == frame_; ++at_) poses_[steps_[at_].object] = steps_[at_].pose;
+        ++frame_;
         poses = poses_;
         return true;
     }
@@ -128,6 +131,7 @@ public:
 private:
     std::vector<step> steps_;
     std::size_t at_ = 0;
+    std::size_t frame_ = 0;
     std::vector<aabb::pose> poses_;  // by object
 };
 

@@ -50,7 +50,7 @@ void judge::play(std::span<const aabb::box> boxes) {
     boxes_->search(pairs_);
     std::ranges::sort(pairs_);
     if (!triangles_) return;
-    if (scene_.meshes()->deforms()) follow_meshes();
+    follow_meshes();
     const std::vector<std::uint32_t>& mesh_of = scene_.meshes()->mesh_of;
     std::vector<aabb::index_pair> found;
     for (const auto [a, b] : near_objects()) {
@@ -64,6 +64,7 @@ void judge::play(std::span<const aabb::box> boxes) {
 void judge::follow_meshes() {
     const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
     for (std::uint32_t m = 0; m < meshes.size(); ++m) {
+        if (!scene_.meshes()->deforms(m)) continue;
         triangles_->refit(m);
         spheres_[m] = sphere_around(meshes[m]);
     }

@@ -71,6 +71,7 @@ public:
             pairs.push_back(ordered_pair(found.a, found.b));
             return false;
         };
+        begin();
         nodes_.assign(1, m.root());
         while (!nodes_.empty()) {
             const cursor at = nodes_.back();
@@ -106,11 +107,17 @@ private:
     /// Whose node of a pair has not been tested against the other yet.
     enum class side : std::uint8_t { a, b, both };
 
+    /// Forgets an earlier query, which may have stopped half-way.
+    void begin() {
+        stack_.clear();
+        image_of_ = no_triangle;
+    }
+
     /// `emit` takes a pair and says whether to stop.
     template <class Emit>
     void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, Emit emit) {
         const relative_pose to_a(pose_a, pose_b, b.bounds());
-        stack_.clear();
+        begin();
         push_if_near(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, side::both);
         drain(a, b, to_a, emit);
     }
@@ -142,20 +149,26 @@ private:
     template <class Frame>
     [[nodiscard]] bool intersect(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& at) {
         counters_.add(work::triangle_tests);
-        return triangle_.intersects(a.triangles().triangle(a.tree().triangle(at.a)),
-                                    to_a(b.triangles().triangle(b.tree().triangle(at.b))));
+        return triangle_.intersects(a.triangles().triangle(a.tree().triangle(at.a)), image(b, to_a, at.b));
+    }
+
+    /// The triangle of a leaf of B, in A's frame. A leaf meets many nodes of A in turn, so the last one is kept.
+    template <class Frame>
+    [[nodiscard]] const triangle3f& image(const model<Tree>& b, const Frame& to_a, const cursor& leaf) {
+        const std::uint32_t triangle = b.tree().triangle(leaf);
+        if (triangle != image_of_) image_ = to_a(b.triangles().triangle(triangle));
+        image_of_ = triangle;
+        return image_;
     }
 
     /// The box of a child of B's node, in A's frame. A leaf without a box goes on with its parent's, or with that of
     /// its triangle as it stands in A's frame.
     template <class Frame>
-    [[nodiscard]] static box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child,
-                                         const box& parent) {
+    [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)
             if (b.tree().is_leaf(child))
-                return b.tree().leaf_test() == leaf_test_choice::triangle_aabb
-                           ? bounds_of(to_a(b.triangles().triangle(b.tree().triangle(child))))
-                           : parent;
+                return b.tree().leaf_test() == leaf_test_choice::triangle_aabb ? bounds_of(image(b, to_a, child))
+                                                                               : parent;
         return to_a(b.tree().bounds(child));
     }
 
@@ -179,9 +192,7 @@ private:
             if (test == leaf_test_choice::none && (untested == side::a ? a_is_leaf : b_is_leaf)) return true;
             if (tests_triangles && a_is_leaf)
                 return meets_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
-            if (tests_triangles && b_is_leaf)
-                return meets_box(to_a(b.triangles().triangle(b.tree().triangle(next.b))), a.tree().bounds(next.a),
-                                 test);
+            if (tests_triangles && b_is_leaf) return meets_box(image(b, to_a, next.b), a.tree().bounds(next.a), test);
         }
         counters_.add(work::box_tests);
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
@@ -202,6 +213,9 @@ private:
     [[no_unique_address]] Counters counters_;
     std::vector<node_pair> stack_;
     std::vector<cursor> nodes_;  // of one tree, still to be held against itself
+    static constexpr std::uint32_t no_triangle = 0xffffffff;
+    std::uint32_t image_of_ = no_triangle;  // triangle of B
+    triangle3f image_{};
 };
 
 }  // namespace aabb

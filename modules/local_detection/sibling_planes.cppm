@@ -21,22 +21,23 @@ static_assert(sizeof(sibling_planes) == 24);
 /// Bit k of the symbol: the right child inherits the parent's plane k, the left one has its own; else the reverse.
 inline constexpr std::uint8_t plane_bits = 0b11'1111;
 
-struct encoded_siblings {
-    sibling_planes planes;
-    std::uint8_t symbol;
-};
+/// The other two bits: the left child is a leaf, the right child is.
+[[nodiscard]] constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
+    return static_cast<std::uint8_t>(64U << side);
+}
 
+/// Sets the record, and the symbol but for its leaf flags.
 /// @param left,right boxes whose union is the parent's.
-[[nodiscard]] constexpr encoded_siblings encode_siblings(const box& left, const box& right) noexcept {
-    encoded_siblings all{};
+constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
+                               std::uint8_t& symbol) noexcept {
+    symbol &= static_cast<std::uint8_t>(~plane_bits);
     for (int k = 0; k < 3; ++k) {
         const auto low = static_cast<std::size_t>(k);
-        if (left.min[k] > right.min[k]) all.symbol |= static_cast<std::uint8_t>(1U << low);
-        if (left.max[k] < right.max[k]) all.symbol |= static_cast<std::uint8_t>(8U << low);
-        all.planes.own[low] = std::max(left.min[k], right.min[k]);
-        all.planes.own[low + 3] = std::min(left.max[k], right.max[k]);
+        if (left.min[k] > right.min[k]) symbol |= static_cast<std::uint8_t>(1U << low);
+        if (left.max[k] < right.max[k]) symbol |= static_cast<std::uint8_t>(8U << low);
+        planes.own[low] = std::max(left.min[k], right.min[k]);
+        planes.own[low + 3] = std::min(left.max[k], right.max[k]);
     }
-    return all;
 }
 
 /// The boxes of the left and the right child.

@@ -14,7 +14,7 @@ import :policy;
 
 export namespace aabb {
 
-/// Heap bytes of a tree, as allocated.
+/// Bytes of a tree, as allocated; the box of the root counts where the other boxes are made from it.
 struct tree_bytes {
     std::size_t nodes;    ///< boxes, planes and symbols
     std::size_t indices;  ///< of children and triangles

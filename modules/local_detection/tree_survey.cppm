@@ -39,6 +39,7 @@ public:
             else if (at.opened < 2) {
                 const auto child = tree_.children(at.cursor, mesh_)[at.opened++];
                 open_.push_back({child, empty_box(), 0});
+                if (open_.size() > seen_.size()) result_.fault = "the tree is deeper than it has triangles";
                 continue;
             }
             close(at);

@@ -51,9 +51,13 @@ export namespace aabb {
 ///   is what R gains when each g grows by 4 u (V + g).
 /// - The normal's axis carries seven: off by at most 7.1 u Σ N_k (V_k + g_k), where N is the normal with all its terms
 ///   added as magnitudes. `slack` times N covers it.
-/// All together stays below g = h + s with s = 16 u (V + h), its own roundings included. Products that underflow add at
-/// most 2^-148, times the extent for the normal. Coordinates above 2^40 might overflow and are never culled.
-[[nodiscard]] inline bool triangle_meets_box(const triangle3f& t, const box& b) noexcept {
+/// All together stays below g = h + s with s = 16 u (V + h), its own roundings included, and at least one denormal
+/// where that underflows. Products that underflow add at most 2^-148, times the extent for the normal. Coordinates
+/// above 2^40 might overflow and are never culled.
+/// @param growth,least of the box: 16 u of where things lie, and at least a denormal. Less is for tests that show that
+/// less is not enough.
+[[nodiscard]] inline bool triangle_meets_box(const triangle3f& t, const box& b, float growth = 0x1p-20F,
+                                             float least = 0x1p-149F) noexcept {
     if (!overlaps(bounds_of(t), b)) return false;
     constexpr float tiny = 0x1p-126F;
     detail::centred_triangle seen{};
@@ -67,7 +71,7 @@ export namespace aabb {
             furthest = std::max(furthest, std::abs(seen.corner[i][k]));
         }
         const float half = std::max(b.max[k] - centre, centre - b.min[k]);
-        slack[k] = 0x1p-20F * (furthest + half);
+        slack[k] = growth * (furthest + half) + least;
         seen.half[k] = half + slack[k];
         size += furthest + half;
     }
@@ -87,7 +91,8 @@ export namespace aabb {
     return std::abs(distance) <= reach && !detail::edge_separates(seen, tiny);
 }
 
-/// The same test as published, in float without any margin: it parts some triangles and boxes that touch. A baseline.
+/// The same axes as they were published, in float without any margin: it parts some triangles and boxes that touch. A
+/// baseline. (Of the two ends of an edge, whose projections differ by rounding only, this may take the other one.)
 [[nodiscard]] inline bool moller_triangle_meets_box(const triangle3f& t, const box& b) noexcept {
     detail::centred_triangle seen{};
     for (int k = 0; k < 3; ++k) {

@@ -13,10 +13,9 @@ export namespace aabb {
 
 /// The paper's compressed storage (section 3.2, table 1) without loss: no leaves, and two siblings share one record of
 /// six planes, 12 bytes a node. Where both children are leaves there is nothing to describe: such nodes stand behind
-/// the others, as two triangle indices without planes or symbol. That takes 20.5 bytes a triangle, where table 1 comes
-/// to
-/// 21. Leaves come in pairs (`leaf_pairing::even`), since one beside an internal node would waste half a record.
-/// When to use: for the least memory with exact boxes.
+/// the others, as two triangle indices without planes and without the symbol byte. That takes 20.5 bytes a triangle in
+/// place of table 1's 21. Leaves come in pairs (`leaf_pairing::even`), since one beside an internal node would waste
+/// half a record. When to use: for the least memory with exact boxes.
 class compressed_tree {
 public:
     static constexpr std::string_view name = "compressed";
@@ -53,7 +52,7 @@ public:
             child_pair& child = packed[i] < with_planes ? nodes_[packed[i]].child : pair_at(packed[i]);
             child = {packed[i + 1], packed[right]};
             if (packed[i] >= with_planes) continue;
-            encode(packed[i], nodes[i + 1].bounds, nodes[right].bounds);
+            encode_siblings(nodes[i + 1].bounds, nodes[right].bounds, nodes_[packed[i]].planes, symbols_[packed[i]]);
             if (nodes[i + 1].is_leaf()) symbols_[packed[i]] |= leaf_flag(0);
             if (nodes[right].is_leaf()) symbols_[packed[i]] |= leaf_flag(1);
         }
@@ -74,7 +73,7 @@ public:
             const box left = bounds_at(i, 0);
             const box right = bounds_at(i, 1);
             boxes[i] = merged(left, right);
-            encode(i, left, right);
+            encode_siblings(left, right, nodes_[i].planes, symbols_[i]);
         }
         root_ = boxes.empty() ? bounds_of(m.triangle(0)) : boxes[0];
     }
@@ -114,17 +113,7 @@ private:
     };
     static_assert(sizeof(node) == 32);
 
-    [[nodiscard]] static constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
-        return static_cast<std::uint8_t>(64U << side);
-    }
-
     [[nodiscard]] child_pair& pair_at(std::size_t index) noexcept { return leaf_pairs_[index - nodes_.size()]; }
-
-    void encode(std::size_t at, const box& left, const box& right) noexcept {
-        const auto [planes, symbol] = encode_siblings(left, right);
-        nodes_[at].planes = planes;
-        symbols_[at] = static_cast<std::uint8_t>((symbols_[at] & ~plane_bits) | symbol);
-    }
 
     config config_;
     box root_{};

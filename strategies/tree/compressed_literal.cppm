@@ -98,9 +98,6 @@ private:
     };
     static_assert(sizeof(node) == 20);
 
-    [[nodiscard]] static constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
-        return static_cast<std::uint8_t>(64U << side);
-    }
     [[nodiscard]] inline bool is_leaf(std::size_t parent, std::size_t side) const noexcept {
         return symbols_[parent] & leaf_flag(side);
     }

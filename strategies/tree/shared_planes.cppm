@@ -52,7 +52,8 @@ public:
                 nodes_[packed[i]].child[side] = packed[children[side]];
                 if (nodes[children[side]].is_leaf()) symbols_[packed[i]] |= leaf_flag(side);
             }
-            encode(packed[i], nodes[children[0]].bounds, nodes[children[1]].bounds);
+            encode_siblings(nodes[children[0]].bounds, nodes[children[1]].bounds, nodes_[packed[i]].planes,
+                            symbols_[packed[i]]);
         }
         root_ = nodes[0].bounds;
     }
@@ -68,7 +69,7 @@ public:
             const box left = bounds_at(i, 0);
             const box right = bounds_at(i, 1);
             boxes[i] = merged(left, right);
-            encode(i, left, right);
+            encode_siblings(left, right, nodes_[i].planes, symbols_[i]);
         }
         root_ = nodes_.empty() ? bounds_of(m.triangle(0)) : boxes[0];
     }
@@ -98,16 +99,6 @@ private:
         std::array<std::uint32_t, 2> child;
     };
     static_assert(sizeof(node) == 32);
-
-    [[nodiscard]] static constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
-        return static_cast<std::uint8_t>(64U << side);
-    }
-
-    void encode(std::size_t at, const box& left, const box& right) noexcept {
-        const auto [planes, symbol] = encode_siblings(left, right);
-        nodes_[at].planes = planes;
-        symbols_[at] = static_cast<std::uint8_t>((symbols_[at] & ~plane_bits) | symbol);
-    }
 
     config config_;
     box root_{};

@@ -102,7 +102,7 @@ TEST_CASE("global search allocates nothing in steady state") {
 }
 
 TEST_CASE("local detection allocates nothing in steady state") {
-    const mesh m = ripples(20);
+    mesh m = ripples(20);
     for (const local_composition& composition : all_local_compositions()) {
         INFO(to_text(composition));
         const auto stage = compose(composition, instrumentation::none);
@@ -117,6 +117,9 @@ TEST_CASE("local detection allocates nothing in steady state") {
                 pairs.clear();
                 stage->all_pairs(model, {}, model, moved, pairs);
                 if (!stage->first_pair(model, {}, model, moved)) std::abort();
+                if (stage->count_pairs(model, {}, model, moved) != pairs.size()) std::abort();
+                stage->self_pairs(model, pairs);
+                stage->refit(model);
             }
         }
         const std::size_t made = allocations - before;

@@ -55,13 +55,35 @@ box any_box() {
     return b;
 }
 
+/// Brings a far point to within 1 of the origin of A's frame, so that the digits that double loses on the way are
+/// digits that float has.
+pose brings_near(const vec3f& far, const pose& pose_a) {
+    pose b = any_pose(1);
+    for (int i = 0; i < 3; ++i) {
+        b.translation[i] += pose_a.translation[i];
+        for (int j = 0; j < 3; ++j) b.translation[i] -= b.rotation[3 * i + j] * far[j];
+    }
+    return b;
+}
+
+box far_box() {
+    box b = any_box();
+    for (int k = 0; k < 3; ++k) {
+        const auto by = static_cast<float>(uniform(-1, 1) * std::pow(10.0, uniform(0, 10)));
+        b.min[k] += by;
+        b.max[k] += by;
+    }
+    return b;
+}
+
 }  // namespace
 
 TEST_CASE("the image of a box holds the image of every point of it") {
     REQUIRE(rc::check([] {
         const double reach = std::pow(10.0, uniform(-2, 8));
-        const box reach_b = any_box();
-        const relative_pose to_a(any_pose(reach), any_pose(reach), reach_b);
+        const box reach_b = far_box();
+        const pose a = any_pose(reach);
+        const relative_pose to_a(a, *rc::gen::element(any_pose(reach), brings_near(reach_b.min, a)), reach_b);
         for (int i = 0; i < 20; ++i) {
             const box b = merged(bounds_of(any_point(reach_b)), bounds_of(any_point(reach_b)));
             const box image = to_a(b);
@@ -74,10 +96,9 @@ TEST_CASE("the margin of a box's image is needed: without it rounding loses poin
     // The same formula without growing, over boxes of one point, whose image a tight box would have to hit exactly.
     int lost = 0;
     REQUIRE(rc::check([&] {
-        const box reach_b = any_box();
+        const box reach_b = far_box();
         const pose a = any_pose(1e9);
-        pose b = any_pose(1);
-        for (int k = 0; k < 3; ++k) b.translation[k] += a.translation[k];
+        const pose b = brings_near(reach_b.min, a);
         const relative_pose to_a(a, b, reach_b);
         const vec3f x = any_point(reach_b);
         for (int i = 0; i < 3; ++i) {
@@ -103,6 +124,18 @@ TEST_CASE("two meshes moved together keep their vertices") {
         const pose p = any_pose(100);
         const vec3f image = relative_pose(p, p, reach)(x);
         for (int k = 0; k < 3; ++k) RC_ASSERT(std::abs(image[k] - x[k]) < 1e-6F);
+        // Bit by bit, as long as the translations hold what is added to them.
+        pose a = p;
+        pose b = any_pose(1);
+        for (pose* q : {&a, &b})
+            for (int k = 0; k < 3; ++k) q->translation[k] = *rc::gen::inRange(-4096, 4096) / 1024.0;
+        const vec3f here = relative_pose(a, b, reach)(x);
+        for (int k = 0; k < 3; ++k) {
+            const double far = *rc::gen::inRange(-1'000'000'000, 1'000'000'000);
+            a.translation[k] += far;
+            b.translation[k] += far;
+        }
+        RC_ASSERT(relative_pose(a, b, reach)(x) == here);
     }));
 }
 

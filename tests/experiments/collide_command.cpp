@@ -84,6 +84,10 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     REQUIRE(summary["neighbours"] == reference["neighbours"]);
     REQUIRE(summary["digest"] == reference["digest"]);
     REQUIRE(bytes_of_file(folder / "self.csv") == rows);
+    const auto counted = nlohmann::json::parse(run_program({"collide", mesh, "--self", "--count", "--json"}).out);
+    REQUIRE(counted["pairs"] == summary["pairs"]);
+    REQUIRE(counted["neighbours"] == summary["neighbours"]);
+    REQUIRE(counted["digest"].is_null());
     REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 pairs of triangles that share a vertex") !=
             std::string::npos);
 }
@@ -95,7 +99,7 @@ TEST_CASE("collide refuses questions that do not go together") {
         {{a}, "collide: expected B, the other mesh, or --self"},
         {{a, a, "--self"}, "--self holds one mesh against itself, so give no second one"},
         {{a, "--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "poses change nothing"},
-        {{a, "--self", "--first"}, "--self lists every pair"},
+        {{a, "--self", "--first"}, "--self finds every pair, so --first does not go with it"},
         {{a, a, "--first", "--count"}, "--first and --count ask for different things"},
         {{a, a, "--count", "--out", folder / "x.csv"}, "--count keeps no pairs"},
     };

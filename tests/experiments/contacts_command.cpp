@@ -61,6 +61,20 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     CHECK(run_program({"contacts", motion, mesh}).out.find("3 objects, 4 frames") != std::string::npos);
 }
 
+TEST_CASE("a frame that a motion file leaves out is like the one before") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0.2 0 1 0 0.1 0 0 1 0\n";
+    const auto contacts = [&](const std::string& text) {
+        return nlohmann::json::parse(run_program({"contacts", folder.write("m.txt", text), mesh, "--json"}).out);
+    };
+    const int once = contacts(still)["contacts"].get<int>();
+    REQUIRE(once > 0);
+    const auto summary = contacts(still + "3 1 1 0 0 9 0 1 0 0 0 0 1 0\n");
+    CHECK(summary["frames"] == 4);
+    CHECK(summary["contacts"] == 3 * once);
+}
+
 TEST_CASE("contacts plays the motion that a scene has written, and finds what the scene holds") {
     const temporary_folder folder;
     const std::string motion = folder / "swarm.txt";
@@ -94,8 +108,8 @@ TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves
         {"0 0 2 0 0 0 0 1 0 0 0 0 1 0\n", ":1: the pose is not rigid"},
         {"0 0 1 0 0 0 0 1 0 0 0 0 1 0 7\n", ":1: expected the end of the line after frame, object and twelve numbers"},
         {"1 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
-        {one + "2 0 1 0 0 0 0 1 0 0 0 0 1 0\n",
-         ":2: frame 2 follows frame 0; frames are numbered from 0 and stand in order"},
+        {one + "99999999 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: a frame is a number below 10000000"},
+        {one + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + one, ":3: frame 0 follows frame 1; frames stand in order"},
         {one + one, ":2: object 0 has two poses in frame 0"},
         {one + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
         {"0 2 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
@@ -114,6 +128,7 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const std::string far = folder.write("far.txt", "0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n");
     const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
         {{"contacts", motion, mesh, mesh}, "moves 1 objects, but there are 2 meshes"},
         {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --tree"},
@@ -123,12 +138,14 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
         {{"scene", "brownian", "--motion", folder / "x.txt"}, "brownian is a scene of boxes, which have no poses"},
         {{"scene", "deforming", "--motion", folder / "x.txt"}, "deforming deforms its meshes, so poses alone"},
         {{"scene", "mesh_pair", "--motion", folder / "x", "--out", folder / "x"}, "--out and --motion are the same"},
+        {{"scene", "mesh_pair", "--motion", folder / "x"}, "so give --normalise no with it"},
+        {{"contacts", far, mesh}, "frame 0: object 0 lies beyond the range of float"},
     };
     for (const auto& [arguments, said] : refused) {
         const program_result result = run_program(arguments);
         INFO(result.err);
         CHECK(result.status == 2);
         CHECK(result.err.find(said) != std::string::npos);
-        CHECK(folder.files() == 2);
+        CHECK(folder.files() == 3);
     }
 }

@@ -116,7 +116,8 @@ TEST_CASE("a wave runs through the second mesh of deforming, no higher than told
                                                  {{"frames", "9"}, {"amplitude", "0.1"}},
                                                  {"icosphere:triangles=320", "icosphere:triangles=320"},
                                                  3});
-    REQUIRE(scene->deforms());
+    REQUIRE(scene->deforms(1));
+    REQUIRE_FALSE(scene->deforms(0));
     const std::vector<aabb::vec3f> rigid = scene->meshes[0].vertices;
     const std::vector<aabb::vec3f> rest = scene->meshes[1].vertices;
     std::vector<aabb::vec3f> before;

@@ -137,9 +137,37 @@ TEST_CASE("every exact composition finds exactly the intersecting triangles of a
             RC_LOG(to_text(c));
             const auto stage = compose(c, instrumentation::none);
             stage->add_model(m);
+            // A query that stops half-way leaves nothing behind.
+            (void)stage->first_pair(0, {}, 0, {});
             std::vector<index_pair> found;
             stage->self_pairs(0, found);
             RC_ASSERT(sorted(found) == truth);
+        }
+    }));
+}
+
+// Whatever rounding does to the two points it does alike; boxes that are carried from frame to frame must make up for
+// it by growing (relative_pose). Without that most of these pairs are lost.
+TEST_CASE("a point on a point is found from any pose, far from the origin too") {
+    const std::vector<local_composition> compositions = exact_compositions();
+    REQUIRE(rc::check([&] {
+        const pose pose_a = any_pose();
+        pose pose_b = any_pose();
+        // Far off in its mesh, near in A's frame: what double loses on the way are digits that float has.
+        const double far = *rc::gen::element(1.0, 1e6, 1e9);
+        const vec3f x{static_cast<float>(uniform(-far, far)), static_cast<float>(uniform(-far, far)), 0.3F};
+        for (int k = 0; k < 3; ++k) {
+            pose_b.translation[k] = pose_a.translation[k] + uniform(-1, 1);
+            for (int j = 0; j < 3; ++j) pose_b.translation[k] -= pose_b.rotation[3 * k + j] * x[j];
+        }
+        const mesh b{{x}, {{0, 0, 0}}};
+        const mesh a{{relative_pose(pose_a, pose_b, bounds_of(x))(x)}, {{0, 0, 0}}};
+        for (const local_composition& c : compositions) {
+            RC_LOG(to_text(c));
+            const auto stage = compose(c, instrumentation::none);
+            stage->add_model(a);
+            stage->add_model(b);
+            RC_ASSERT(stage->count_pairs(0, pose_a, 1, pose_b) == 1U);
         }
     }));
 }
@@ -178,6 +206,29 @@ TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
     // The tree, tested box by box, is the same.
     CHECK(work_of({"canonical", {}})[work::box_tests] == work_of({"shared_planes", {}})[work::box_tests]);
     CHECK(work_of({"canonical", {}})[work::triangle_tests] == work_of({"shared_planes", {}})[work::triangle_tests]);
+}
+
+TEST_CASE("Möller's original triangle-box test loses pairs that touch, and invents none") {
+    const local_composition original{{"leafless", {{"leaf_test", "moller_triangle_box"}}}, {"exact", {}}};
+    std::size_t lost = 0;
+    REQUIRE(rc::check([&] {
+        for (int i = 0; i < 10; ++i) {
+            const mesh a = any_mesh();
+            const mesh b = any_mesh();
+            const pose pose_a = any_pose();
+            pose pose_b = any_pose();
+            pose_b.translation = pose_a.translation;
+            const std::vector<index_pair> truth = expected(a, pose_a, b, pose_b);
+            const auto stage = compose(original, instrumentation::none);
+            stage->add_model(a);
+            stage->add_model(b);
+            std::vector<index_pair> found;
+            stage->all_pairs(0, pose_a, 1, pose_b, found);
+            RC_ASSERT(std::ranges::includes(truth, sorted(found)));
+            lost += truth.size() - found.size();
+        }
+    }));
+    CHECK(lost > 0);
 }
 
 TEST_CASE("only Möller's original makes a leafless tree inexact") {

@@ -14,6 +14,7 @@
 
 import aabb;
 import aabb.registry;
+import aabb.strategies;
 
 using namespace aabb;
 using Catch::Matchers::Message;
@@ -143,6 +144,60 @@ TEST_CASE("a mesh that has lost triangles or turned bad is not refitted") {
         CHECK_THROWS_MATCHES(stage->refit(0), input_error,
                              Message("a mesh that deforms keeps its triangles: there were 7, now there are 6"));
     }
+}
+
+TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles") {
+    for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
+        if (!is_exact(local_composition{tree, {"exact", {}}})) continue;
+        INFO(to_text(tree));
+        const mesh points = receding(300);
+        const mesh equal = many_equal(60);
+        const auto stage = stage_of(tree);
+        stage->add_model(points);
+        stage->add_model(equal);
+        std::vector<index_pair> pairs;
+        stage->self_pairs(1, pairs);
+        CHECK(pairs.size() == 60 * 59 / 2);
+        pose aside;
+        aside.translation = {0, 0.25, 0};
+        CHECK(stage->count_pairs(1, {}, 1, aside) == 60 * 60);
+        // Of the points on the ray from the origin, those that are no further than 1 lie in the triangle's edge.
+        const auto near = std::ranges::count_if(points.vertices, [](const vec3f& p) { return p[0] <= 1; });
+        CHECK(stage->count_pairs(0, {}, 1, {}) == static_cast<std::uint64_t>(60 * near));
+    }
+}
+
+TEST_CASE("the half-steps hold the canonical tree, box by box") {
+    for (const char* build : {"median", "mean", "sah"})
+        for (const mesh& m : meshes()) {
+            const auto method = build == std::string("median") ? build_method::median
+                                : build == std::string("mean") ? build_method::mean
+                                                               : build_method::sah;
+            canonical_tree canonical(canonical_tree::config{method});
+            shared_planes_tree shared(shared_planes_tree::config{method});
+            leafless_tree leafless(leafless_config{method, leaf_test_choice::none});
+            compressed_literal_tree literal(leafless_config{method, leaf_test_choice::none});
+            canonical.build(m);
+            shared.build(m);
+            leafless.build(m);
+            literal.build(m);
+            const auto same = [&](auto self, const auto& other, auto at, auto there, bool lossless) -> void {
+                REQUIRE(canonical.is_leaf(at) == other.is_leaf(there));
+                if (canonical.is_leaf(at)) {
+                    REQUIRE(canonical.triangle(at) == other.triangle(there));
+                    if (other.has_leaf_boxes) REQUIRE(canonical.bounds(at) == other.bounds(there));
+                    return;
+                }
+                if (lossless) REQUIRE(canonical.bounds(at) == other.bounds(there));
+                REQUIRE(contains(other.bounds(there), canonical.bounds(at)));
+                const auto children = canonical.children(at, m);
+                const auto others = other.children(there, m);
+                for (std::size_t side = 0; side < 2; ++side) self(self, other, children[side], others[side], lossless);
+            };
+            same(same, shared, canonical.root(m), shared.root(m), true);
+            same(same, leafless, canonical.root(m), leafless.root(m), true);
+            same(same, literal, canonical.root(m), literal.root(m), false);
+        }
 }
 
 TEST_CASE("layouts take the bytes that the paper says, or less") {

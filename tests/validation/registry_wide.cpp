@@ -98,13 +98,16 @@ TEST_CASE("two meshes moved together keep their pairs, up to 10^7 times their si
         INFO(to_text(composition));
         const auto stage = compose(composition, instrumentation::none);
         const std::vector<index_pair> pairs = pairs_of(*stage, ball, still, ball, near);
+        const std::vector<index_pair> touching = pairs_of(*stage, ball, still, ball, still);
         REQUIRE(pairs.size() > 50);
+        REQUIRE(touching.size() > 1000);
         for (const double far : {1e3, 1e5, 1e7}) {
             pose a = still;
             pose b = near;
             for (pose* p : {&a, &b})
                 for (int k = 0; k < 3; ++k) p->translation[k] += far * (k + 1);
             REQUIRE(pairs_of(*stage, ball, a, ball, b) == pairs);
+            REQUIRE(pairs_of(*stage, ball, a, ball, a) == touching);
         }
     }
 }

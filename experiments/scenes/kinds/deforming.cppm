@@ -66,7 +66,7 @@ public:
     }
 
     [[nodiscard]] std::size_t frames() const override { return frames_; }
-    [[nodiscard]] bool deforms() const override { return true; }
+    [[nodiscard]] bool deforms(std::uint32_t mesh) const override { return mesh == 1; }
 
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames_) return false;

@@ -12,7 +12,7 @@ import :median_split;
 export namespace aabb {
 
 /// The unbalanced split that the balanced one is held against: at the mean of the centroids along the longest axis of
-/// the box; at the median where no centroid lies below the mean (all are equal).
+/// the box; at the median where none or all lie below the mean as rounded (equal ones).
 [[nodiscard]] inline split_choice mean_split(std::span<const build_element> range, const box& bounds) noexcept {
     const int axis = longest_axis(bounds);
     double sum = 0;
