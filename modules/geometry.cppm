@@ -66,7 +66,7 @@ using triangle3f = triangle3<float>;
 using triangle3d = triangle3<double>;
 
 /// Without rounding.
-[[nodiscard]] constexpr const triangle3d& in_double(const triangle3d& t) noexcept {
+[[nodiscard]] constexpr triangle3d in_double(const triangle3d& t) noexcept {
     return t;
 }
 [[nodiscard]] constexpr triangle3d in_double(const triangle3f& t) noexcept {

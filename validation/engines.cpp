@@ -22,8 +22,8 @@ struct engine {
 
 const std::vector<engine>& all_engines() {
     static const std::vector<engine> all = {
-        {{"brute_force", "every pair of boxes or of triangles, decided one by one in CGAL's exact kernel", true, true,
-          true},
+        {{"brute_force", "every pair of boxes; every pair of triangles whose boxes overlap, in CGAL's exact kernel",
+          true, true, true},
          make_brute_force_boxes,
          [] { return make_pairwise_engine(candidates_by_double_loop, exactly_intersect); }},
         {{"cgal", "CGAL's intersection of box sequences, and its exact kernel for triangles", true, true, true},
@@ -61,6 +61,10 @@ std::span<const engine_info> engines() {
         return all;
     }();
     return infos;
+}
+
+bool is_exact_engine(std::string_view name) {
+    return engine_named(name).info.exact;
 }
 
 std::unique_ptr<global_stage> make_box_engine(std::string_view name) {

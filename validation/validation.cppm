@@ -28,6 +28,10 @@ struct engine_info {
 /// brute_force, cgal, fcl, libccd.
 [[nodiscard]] std::span<const engine_info> engines();
 
+/// Whether this engine is exact.
+/// @throws input_error on an unknown name, with the nearest one.
+[[nodiscard]] bool is_exact_engine(std::string_view name);
+
 /// The engine in place of a global search. Differs from a composed stage in nothing but speed and counters.
 /// @throws input_error on an unknown name, with the nearest one, or an engine that has no broad phase.
 [[nodiscard]] std::unique_ptr<global_stage> make_box_engine(std::string_view name);

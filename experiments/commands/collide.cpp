@@ -44,6 +44,7 @@ struct collide_request {
 
 struct detection_method {
     std::string name;
+    bool exact;
     std::unique_ptr<aabb::local_stage> stage;
 };
 
@@ -52,7 +53,7 @@ struct detection_result {
     std::vector<aabb::index_pair> pairs;
     std::uint64_t count = 0;                  ///< of pairs, of a mesh with itself those that share no vertex
     std::optional<std::uint64_t> neighbours;  ///< of a mesh with itself: pairs that share a vertex
-    std::optional<std::string> digest;        ///< of the pairs counted; none where they are counted only
+    std::optional<std::string> digest;        ///< of all pairs, neighbours too; none where they are counted only
     double build_ms = 0;
     double query_ms = 0;
     std::vector<aabb::part_bytes> bytes;
@@ -63,10 +64,11 @@ detection_method method_of(const collide_request& request) {
     if (request.engine) {
         if (request.local.any())
             throw aabb::input_error("--engine stands in for --tree and --triangle, so give it alone");
-        return {*request.engine, aabb::make_mesh_engine(*request.engine)};
+        return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_mesh_engine(*request.engine)};
     }
     const aabb::local_composition composition = request.local.composition();
-    return {aabb::to_text(composition), aabb::compose(composition, aabb::instrumentation::none)};
+    return {aabb::to_text(composition), aabb::is_exact(composition),
+            aabb::compose(composition, aabb::instrumentation::none)};
 }
 
 /// @param text the rows of [R t]
@@ -158,22 +160,23 @@ detection_result detect(const collide_request& request, const detection_method& 
     for (const aabb::index_pair pair : result.pairs) {
         const std::uint32_t shared = request.self ? shared_vertices(meshes[0], pair) : 0;
         if (table) request.self ? table->add({pair.a, pair.b, shared}) : table->add({pair.a, pair.b});
-        if (shared > 0) continue;
-        digest.add(0, {&pair, 1});
-        ++result.count;
+        result.count += shared == 0;
     }
+    digest.add(0, result.pairs);
     if (request.self) result.neighbours = result.pairs.size() - result.count;
     if (!request.count) result.digest = digest.text();
     return result;
 }
 
-void print_json(const detection_result& result) {
+void print_json(const detection_method& method, const detection_result& result) {
     nlohmann::ordered_json summary = {
         {"triangles", result.triangles}, {"pairs", result.count},       {"digest", nullptr},
         {"build_ms", result.build_ms},   {"query_ms", result.query_ms}, {"bytes_per_triangle", nullptr}};
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
+    summary["method"] = method.name;
+    summary["exact"] = method.exact;
     for (const aabb::part_bytes& part : result.bytes) summary["bytes"][part.part] = part.bytes;
     print(summary.dump() + "\n");
 }
@@ -187,8 +190,9 @@ void print_text(const collide_request& request, const detection_method& method, 
     else
         print(fmt::format("{} intersecting pairs of triangles{}{}\n", result.count,
                           request.self ? " that share no vertex" : "", digest));
-    if (result.neighbours) print(fmt::format("{} pairs of triangles that share a vertex\n", *result.neighbours));
-    print(fmt::format("{}: built in {:.3f} ms, searched in {:.3f} ms", method.name, result.build_ms, result.query_ms));
+    if (result.neighbours) print(fmt::format("{} more among triangles that share a vertex\n", *result.neighbours));
+    print(fmt::format("{}{}: built in {:.3f} ms, searched in {:.3f} ms", method.name, method.exact ? "" : " (inexact)",
+                      result.build_ms, result.query_ms));
     if (result.bytes_per_triangle) print(fmt::format(", {:.1f} bytes a triangle", *result.bytes_per_triangle));
     print("\nbytes:");
     const char* before = " ";
@@ -224,13 +228,13 @@ void collide(const collide_request& request) {
     const std::vector<aabb::mesh> meshes = read_meshes(names);
     std::optional<number_table> table;
     if (request.out) {
-        require_other_file(*request.out, names);
+        require_no_mesh(*request.out, names);
         table.emplace(*request.out, request.self ? "a,b,shared_vertices" : "a,b");
     }
     const detection_result result = detect(request, method, meshes, poses, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)
-        print_json(result);
+        print_json(method, result);
     else
         print_text(request, method, result);
 }

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +46,16 @@ aabb::local_composition local_options::composition() const {
     if (tree) made.tree = aabb::parse_strategy(*tree);
     if (triangle) made.triangle = aabb::parse_strategy(*triangle);
     return made;
+}
+
+void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes) {
+    std::vector<std::string> files = meshes;
+    for (const std::string& name : meshes) files.push_back((data_folder() / name).string());
+    require_other_file(out, files);
+    // A file of that name here would from now on hide the one in the data folder.
+    for (const std::string& name : meshes)
+        if (std::filesystem::weakly_canonical(name) == std::filesystem::weakly_canonical(out))
+            throw aabb::input_error(out + " is the name of a mesh that this command reads from the data folder");
 }
 
 std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names) {

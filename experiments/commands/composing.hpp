@@ -36,4 +36,8 @@ struct local_options {
 /// Meshes by the names that the user gave them; what was fanned, dropped or rounded is said.
 [[nodiscard]] std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names);
 
+/// Refuses to write over a mesh that the same command reads, here or in the data folder.
+/// @throws aabb::input_error where `out` is one of them, by whatever path.
+void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes);
+
 }  // namespace aabblab

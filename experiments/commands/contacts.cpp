@@ -42,6 +42,7 @@ struct contacts_request {
 
 struct both_stages {
     std::string name;
+    bool exact;
     std::unique_ptr<aabb::global_stage> global;
     std::unique_ptr<aabb::local_stage> local;
 };
@@ -61,12 +62,12 @@ both_stages stages_of(const contacts_request& request) {
     if (request.engine) {
         if (request.local.any())
             throw aabb::input_error("--engine stands in for --tree and --triangle, so give it without them");
-        return {to_text(global) + ", " + *request.engine, aabb::compose(global, aabb::instrumentation::none),
-                aabb::make_mesh_engine(*request.engine)};
+        return {to_text(global) + ", " + *request.engine, is_exact(global) && aabb::is_exact_engine(*request.engine),
+                aabb::compose(global, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)};
     }
     const aabb::local_composition local = request.local.composition();
-    return {to_text(global) + ", " + to_text(local), aabb::compose(global, aabb::instrumentation::none),
-            aabb::compose(local, aabb::instrumentation::none)};
+    return {to_text(global) + ", " + to_text(local), is_exact(global) && is_exact(local),
+            aabb::compose(global, aabb::instrumentation::none), aabb::compose(local, aabb::instrumentation::none)};
 }
 
 std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {
@@ -112,11 +113,12 @@ contacts_result detect_all(aabb::mesh_scene& scene, const both_stages& stages, s
     return result;
 }
 
-void print_json(const contacts_result& result) {
+void print_json(const both_stages& stages, const contacts_result& result) {
     const nlohmann::ordered_json summary = {{"objects", result.objects},       {"frames", result.milliseconds.size()},
                                             {"candidates", result.candidates}, {"object_pairs", result.object_pairs},
                                             {"contacts", result.contacts},     {"digest", result.digest},
-                                            {"build_ms", result.build_ms},     {"ms", result.milliseconds}};
+                                            {"build_ms", result.build_ms},     {"ms", result.milliseconds},
+                                            {"method", stages.name},           {"exact", stages.exact}};
     print(summary.dump() + "\n");
 }
 
@@ -126,7 +128,8 @@ void print_text(const contacts_request& request, const both_stages& stages, cons
     print(fmt::format("{}: {} objects, {} frames\n", request.motion, result.objects, result.milliseconds.size()));
     print(fmt::format("{} contacts of triangles in {} contacts of objects ({} pairs of boxes), digest {}\n",
                       result.contacts, result.object_pairs, result.candidates, result.digest));
-    print(fmt::format("{}: built in {:.3f} ms, {:.3f} ms a frame (mean)\n", stages.name, result.build_ms,
+    print(fmt::format("{}{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", stages.name,
+                      stages.exact ? "" : " (inexact)", result.build_ms,
                       all / static_cast<double>(result.milliseconds.size())));
 }
 
@@ -135,15 +138,14 @@ void find_contacts(const contacts_request& request) {
     const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_meshes(request.meshes));
     std::optional<number_table> table;
     if (request.out) {
-        std::vector<std::string> inputs = request.meshes;
-        inputs.push_back(request.motion);
-        require_other_file(*request.out, inputs);
+        require_other_file(*request.out, {&request.motion, 1});
+        require_no_mesh(*request.out, request.meshes);
         table.emplace(*request.out, "frame,object_a,object_b,triangle_a,triangle_b");
     }
     const contacts_result result = detect_all(*scene, stages, table);
     if (table) table->commit();
     if (request.json)
-        print_json(result);
+        print_json(stages, result);
     else
         print_text(request, stages, result);
 }

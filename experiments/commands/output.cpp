@@ -37,7 +37,7 @@ void require_other_file(const std::string& out, std::span<const std::string> inp
     std::error_code ignored;  // a file that is not there is no other's
     for (const std::string& input : inputs)
         if (std::filesystem::equivalent(out, input, ignored))
-            throw aabb::input_error("--out " + out + " would write over " + input + ", which this command reads");
+            throw aabb::input_error(out + " would write over " + input + ", which this command reads");
 }
 
 }  // namespace aabblab

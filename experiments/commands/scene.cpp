@@ -18,6 +18,9 @@
 #include "commands.hpp"
 #include "output.hpp"
 
+// Imports, so it comes last.
+#include "composing.hpp"
+
 import aabb;
 import aabblab.config;
 import aabblab.files;
@@ -148,6 +151,7 @@ std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request&
 
 void require_outputs(const scene_request& request) {
     const auto outputs = outputs_of(request);
+    for (const auto& [option, file] : outputs) require_no_mesh(file, request.meshes);
     if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, the file to write");
     for (std::size_t i = 0; i < outputs.size(); ++i)
         for (std::size_t j = i + 1; j < outputs.size(); ++j) {

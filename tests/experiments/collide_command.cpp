@@ -48,6 +48,9 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
 
     std::size_t trees = summary["bytes"]["nodes"].get<std::size_t>() + summary["bytes"]["indices"].get<std::size_t>();
     REQUIRE(summary["bytes_per_triangle"] == static_cast<double>(trees) / 10);
+    REQUIRE(summary["method"] == std::string(tree) + " + exact");
+    REQUIRE(summary["exact"] == true);
+    REQUIRE(run_program({"collide", a, b, "--triangle", "moller"}).out.find("moller (inexact)") != std::string::npos);
     REQUIRE(summary["bytes"]["triangles"] >= 120);
     REQUIRE(summary["bytes"]["vertices"] >= 108);
 
@@ -88,7 +91,7 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     REQUIRE(counted["pairs"] == summary["pairs"]);
     REQUIRE(counted["neighbours"] == summary["neighbours"]);
     REQUIRE(counted["digest"].is_null());
-    REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 pairs of triangles that share a vertex") !=
+    REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 more among triangles that share a vertex") !=
             std::string::npos);
 }
 

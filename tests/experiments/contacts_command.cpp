@@ -57,8 +57,12 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     REQUIRE(result.status == 0);
     const auto summary = nlohmann::json::parse(result.out);
     CHECK(summary["digest"] == reference["digest"]);
+    CHECK(summary["exact"] == true);
     CHECK(bytes_of_file(folder / "c.csv") == rows);
     CHECK(run_program({"contacts", motion, mesh}).out.find("3 objects, 4 frames") != std::string::npos);
+    CHECK(nlohmann::json::parse(
+              run_program({"contacts", motion, mesh, "--json", "--triangle", "moller"}).out)["exact"] == false);
+    CHECK(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out.find("fcl (inexact)") != std::string::npos);
 }
 
 TEST_CASE("a frame that a motion file leaves out is like the one before") {
@@ -134,6 +138,10 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
         {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --tree"},
         {{"contacts", motion, mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
         {{"contacts", motion, mesh, "--out", motion}, "m.txt"},
+        {{"contacts", motion, mesh, "--out", mesh}, "a.off"},
+        {{"scene", "mesh_pair", "--mesh", mesh, "--out", mesh}, "a.off"},
+        {{"scene", "mesh_pair", "--mesh", mesh, "--picture", mesh}, "a.off"},
+        {{"scene", "mesh_pair", "--mesh", mesh, "--normalise", "no", "--motion", mesh}, "a.off"},
         {{"contacts", motion}, "MESH"},
         {{"scene", "brownian", "--motion", folder / "x.txt"}, "brownian is a scene of boxes, which have no poses"},
         {{"scene", "deforming", "--motion", folder / "x.txt"}, "deforming deforms its meshes, so poses alone"},
