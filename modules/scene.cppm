@@ -44,9 +44,9 @@ public:
     std::vector<std::uint32_t> mesh_of;  ///< by object
 
     [[nodiscard]] virtual std::size_t frames() const = 0;
-    /// The poses of the next frame, one an object; false after the last. Vertices of meshes that
-    /// deform move too.
+    /// The poses of the next frame, one an object; false after the last. Vertices of meshes that deform move too.
     virtual bool next(std::vector<pose>& poses) = 0;
+    /// Whether vertices of this mesh move from frame to frame, so that trees and boxes of it must be fitted anew.
     [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
 };
 

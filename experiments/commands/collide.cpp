@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -22,9 +21,7 @@
 import aabb;
 import aabb.registry;
 import aabb.validation;
-import aabblab.files;
 import aabblab.pair_output;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -2,14 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -25,7 +23,6 @@ import aabb.validation;
 import aabblab.files;
 import aabblab.pair_output;
 import aabblab.progress;
-import aabblab.scenes;
 
 namespace aabblab {
 

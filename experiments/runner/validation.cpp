@@ -162,9 +162,11 @@ private:
 };
 
 /// In the world, as the pipeline makes them.
-std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::span<const aabb::pose> poses) {
-    std::vector<aabb::box> mesh_bounds;
-    for (const aabb::mesh& m : scene.meshes) mesh_bounds.push_back(aabb::bounds_of(m));
+/// @param mesh_bounds brought up to date where meshes have deformed
+std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::vector<aabb::box>& mesh_bounds,
+                                std::span<const aabb::pose> poses) {
+    for (std::uint32_t m = 0; m < mesh_bounds.size(); ++m)
+        if (scene.deforms(m)) mesh_bounds[m] = aabb::bounds_of(scene.meshes[m]);
     std::vector<aabb::box> boxes;
     for (std::size_t object = 0; object < poses.size(); ++object)
         boxes.push_back(aabb::world_bounds(mesh_bounds[scene.mesh_of[object]], poses[object]));
@@ -179,11 +181,14 @@ scene_verdicts validate_scene(const scene_choice& choice, std::span<const conten
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<comparison> comparisons;
     for (const contender& who : contenders) comparisons.emplace_back(who, choice, scene);
+    std::vector<aabb::box> mesh_bounds;
+    if (scene.meshes())
+        for (const aabb::mesh& m : scene.meshes()->meshes) mesh_bounds.push_back(aabb::bounds_of(m));
     progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (scene.meshes())
-            exact.play(boxes_of(*scene.meshes(), scene.poses()));
+            exact.play(boxes_of(*scene.meshes(), mesh_bounds, scene.poses()));
         else
             exact.play(scene.boxes());
         exact_tally.add(exact.pairs(), exact.contacts());

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "../random_poses.hpp"
+
 import aabb;
 
 using namespace aabb;
@@ -14,28 +16,17 @@ using Catch::Matchers::MessageMatches;
 
 namespace {
 
-double uniform(double low, double high) {
-    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
-}
-
 pose any_pose(double reach) {
-    double q[4];
-    double length = 0;
+    std::array<double, 4> q{};
+    double square = 0;
     do {
-        length = 0;
+        square = 0;
         for (double& x : q) {
             x = uniform(-1, 1);
-            length += x * x;
+            square += x * x;
         }
-    } while (length < 0.01);
-    for (double& x : q) x /= std::sqrt(length);
-    const auto [w, x, y, z] = q;
-    pose p;
-    p.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-                  2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                  2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
-    p.translation = {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)};
-    return p;
+    } while (square < 0.01);
+    return turned_by(q, {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)});
 }
 
 vec3f any_point(const box& b) {

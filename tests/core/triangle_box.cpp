@@ -5,16 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../random_poses.hpp"
+
 import aabb;
 import aabb.triangle.exact;
 
 using namespace aabb;
 
 namespace {
-
-double uniform(double low, double high) {
-    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
-}
 
 float any_number(float size) {
     return static_cast<float>(uniform(-1, 1)) * size;

@@ -7,19 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
 
-constexpr const char* tetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
 constexpr const char* pyramid =
     "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n4 0 1 2 3\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n";
-
-std::vector<std::string> joined(std::vector<std::string> arguments, const std::vector<std::string>& more) {
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-}
 
 }  // namespace
 

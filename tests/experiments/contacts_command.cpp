@@ -7,12 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
 namespace {
-
-constexpr const char* tetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
 
 /// The second of two objects comes, stays and goes; the third stands far away.
 constexpr const char* coming =
@@ -24,11 +23,6 @@ constexpr const char* coming =
     "1 1  1 0 0 +0.25 0 1 0 0.25  0 0 1 0  # here\n"
     "2 2  1 0 0 80 0 1 0 0  0 0 1 0\n"
     "3 1  0 -1 0 -9  1 0 0 0  0 0 1 0\n";
-
-std::vector<std::string> joined(std::vector<std::string> arguments, const std::vector<std::string>& more) {
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-}
 
 }  // namespace
 

@@ -24,3 +24,7 @@ template <class Value>
 [[nodiscard]] inline std::string stl_header(std::uint32_t triangles, const std::string& text = "binary") {
     return text + std::string(80 - text.size(), ' ') + raw(triangles);
 }
+
+/// The text of an OFF file.
+inline constexpr const char* tetrahedron =
+    "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";

@@ -69,6 +69,13 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
             program_detail::content_of(err.get())};
 }
 
+/// Arguments, and more of them.
+[[nodiscard]] inline std::vector<std::string> joined(std::vector<std::string> arguments,
+                                                     const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
 /// Is it one sentence that begins with the program's name?
 [[nodiscard]] inline bool is_one_sentence(const std::string& text) {
     return text.starts_with("aabblab: ") && text.find('\n') == text.size() - 1;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../compositions.hpp"
+#include "../random_poses.hpp"
 
 import aabb;
 import aabb.registry;
@@ -19,10 +20,6 @@ import aabb.triangle.exact;
 using namespace aabb;
 
 namespace {
-
-double uniform(double low, double high) {
-    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
-}
 
 /// Vertices on a coarse lattice, so that many triangles touch, repeat, are coplanar or have no area; sometimes small,
 /// sometimes thin.
@@ -54,17 +51,10 @@ pose any_pose() {
         q[0] = 1;
         q[*rc::gen::inRange<std::size_t>(1, 4)] = 1;
     }
-    double length = 0;
-    for (const double x : q) length += x * x;
-    for (double& x : q) x /= std::sqrt(length);
-    const auto [w, x, y, z] = q;
-    pose p;
-    p.rotation = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-                  2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-                  2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
     const double far = *rc::gen::element(0.0, 0.0, 1e3, 1e9);
-    for (int k = 0; k < 3; ++k) p.translation[k] = far + *rc::gen::inRange(-2, 3) * *rc::gen::element(0.1, 1.0);
-    return p;
+    vec3d translation;
+    for (int k = 0; k < 3; ++k) translation[k] = far + *rc::gen::inRange(-2, 3) * *rc::gen::element(0.1, 1.0);
+    return turned_by(q, translation);
 }
 
 std::vector<index_pair> expected(const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <rapidcheck.h>
+
+#include <array>
+#include <cmath>
+
+import aabb;
+
+/// Evenly in [low, high), from RapidCheck's source.
+inline double uniform(double low, double high) {
+    return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
+}
+
+/// A rotation by a quaternion w, x, y, z of any length but 0, then a translation.
+inline aabb::pose turned_by(std::array<double, 4> q, const aabb::vec3d& translation) {
+    double square = 0;
+    for (const double c : q) square += c * c;
+    for (double& c : q) c /= std::sqrt(square);
+    const auto [w, x, y, z] = q;
+    return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+             1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
+             1 - 2 * (x * x + y * y)},
+            translation};
+}
