@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,13 @@ int main(int argc, char** argv) {
     aabblab::add_sort_benchmarks();
     aabblab::add_partition_benchmarks();
     aabblab::add_sweep_benchmarks();
-    // It says itself that nothing matches a filter.
-    return benchmark::RunSpecifiedBenchmarks() == 0 ? bad_input : EXIT_SUCCESS;
+    aabblab::add_leaf_test_benchmarks();
+    aabblab::add_triangle_test_benchmarks();
+    try {
+        // It says itself that nothing matches a filter.
+        return benchmark::RunSpecifiedBenchmarks() == 0 ? bad_input : EXIT_SUCCESS;
+    } catch (const std::logic_error& wrong) {  // what is to be timed gives wrong answers
+        std::cerr << "aabblab: benchmark: " << wrong.what() << '\n';
+        return EXIT_FAILURE;
+    }
 }

@@ -17,4 +17,15 @@ void add_partition_benchmarks();
 /// includes the sorting of its lists.
 void add_sweep_benchmarks();
 
+// The tests of local detection, one an iteration. The pairs are those that a walk tests (walked_pairs.cppm), which
+// includes that it reads a box from its tree and a triangle from its mesh. A name is the test: "test/box". There what
+// is tested of B is carried into A's frame as a part of the test; behind the same name and "/frame:a" nothing is. The
+// counter `hits` is the share of pairs to which the test says yes.
+
+/// A leaf that has just been reached against the box of a node: its box, its triangle, or the box of its triangle.
+void add_leaf_test_benchmarks();
+
+/// Every triangle test, of leaves whose boxes overlap.
+void add_triangle_test_benchmarks();
+
 }  // namespace aabblab

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -65,6 +66,74 @@ TEST_CASE("Every strategy of a stage of global search has a benchmark, named as 
         REQUIRE(std::ranges::find(listed, benchmark) != listed.end());
     std::ranges::sort(listed);
     REQUIRE(std::ranges::adjacent_find(listed) == listed.end());
+}
+
+TEST_CASE("Every test of local detection has a benchmark, with and without what carries B into A's frame") {
+    const program_result result = run_program({"--benchmark_list_tests", "--benchmark_filter=^test/"});
+    REQUIRE(result.status == 0);
+    const std::vector<std::string> listed = lines_of(result.out);
+    const std::string triangle = "test/triangle/";
+    const auto triangle_test_of = [](const std::string& benchmark) {
+        return strategy_of(benchmark.substr(std::string("test/").size()));
+    };
+    std::vector<std::string> expected = {"test/box", "test/triangle_box", "test/triangle_aabb",
+                                         triangle + "moller:epsilon=scaled"};
+    for (const std::string& name : strategy_names(aabb::strategy_kind::triangle)) {
+        const auto of_it = [&](const std::string& benchmark) {
+            return benchmark.starts_with(triangle) && triangle_test_of(benchmark).name == name;
+        };
+        const auto first = std::ranges::find_if(listed, of_it);
+        INFO(name);
+        REQUIRE(first != listed.end());
+        expected.push_back(*first);
+    }
+    for (const std::string& name : expected)
+        for (const char* frame : {"", "/frame:a"}) {
+            INFO(name << frame);
+            REQUIRE(std::ranges::count(listed, name + frame) == 1);
+        }
+    for (const std::string& benchmark : listed)
+        if (benchmark.starts_with(triangle)) {
+            INFO(benchmark);
+            REQUIRE_NOTHROW(require_known(aabb::strategy_kind::triangle, triangle_test_of(benchmark)));
+        }
+}
+
+TEST_CASE("Tests of local detection report a time and the share of hits, which is the same in every run") {
+    const auto run = [] {
+        const program_result result =
+            run_program({"--benchmark_filter=^test/", "--benchmark_min_time=0.001", "--benchmark_format=json"});
+        INFO(result.err);
+        REQUIRE(result.status == 0);
+        return nlohmann::json::parse(result.out)["benchmarks"];
+    };
+    const auto benchmarks = run();
+    const auto again = run();
+    REQUIRE(benchmarks.size() >= 14);
+    REQUIRE(again.size() == benchmarks.size());
+    const auto hits = [&](const std::string& name) {
+        for (const auto& benchmark : benchmarks)
+            if (benchmark["name"] == name) return benchmark["hits"].get<double>();
+        return -1.0;
+    };
+    for (std::size_t i = 0; i < benchmarks.size(); ++i) {
+        INFO(benchmarks[i].dump());
+        CHECK(benchmarks[i].value("real_time", 0.0) > 0);
+        CHECK(benchmarks[i].value("cpu_time", 0.0) > 0);
+        CHECK(benchmarks[i].value("time_unit", "") == "ns");
+        CHECK(benchmarks[i].value("hits", 0.0) > 0);
+        CHECK(benchmarks[i].value("hits", 1.0) < 1);
+        CHECK(benchmarks[i]["hits"] == again[i]["hits"]);
+    }
+    // The box of a triangle holds it, and the leaf's box, when it is turned, holds that of the turned triangle.
+    for (const std::string frame : {"", "/frame:a"}) {
+        INFO(frame);
+        CHECK(hits("test/triangle_box" + frame) < hits("test/triangle_aabb" + frame));
+        CHECK(hits("test/triangle_aabb" + frame) <= hits("test/box" + frame));
+    }
+    // Where nothing is turned the two boxes are one.
+    CHECK(hits("test/triangle_aabb/frame:a") == hits("test/box/frame:a"));
+    CHECK(hits("test/triangle/exact/frame:a") == hits("test/triangle/exact"));
 }
 
 TEST_CASE("Benchmarks report their counters") {
