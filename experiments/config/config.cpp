@@ -82,7 +82,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
     doc.require_table("measure", *measure);
-    doc.require_keys(*measure, " of [measure]", {"repeats", "metrics", "quick"});
+    doc.require_keys(*measure, " of [measure]", {"repeats", "processes", "metrics", "quick"});
     const node* repeats = measure->find("repeats");
     if (repeats && !quick) e.repeats = doc.integer_of("repeats", *repeats, 1);
     if (e.repeats > most_repeats) doc.fail(repeats->line, "repeats must be at most " + std::to_string(most_repeats));
@@ -94,11 +94,23 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
 
+/// Fresh processes share the repeats, so there are at most as many.
+void read_processes(const document& doc, experiment& e) {
+    const node* measure = doc.root().find("measure");
+    const node* processes = measure ? measure->find("processes") : nullptr;
+    if (!processes) return;
+    e.processes = doc.integer_of("processes", *processes, 1);
+    if (e.quick || !e.measured.time)
+        e.processes = std::min(e.processes, e.repeats);
+    else if (e.processes > e.repeats)
+        doc.fail(processes->line, "processes must be at most repeats, which is " + std::to_string(e.repeats));
+}
+
 }  // namespace
 
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
-    doc.require_keys(doc.root(), "", {"name", "seed", "engines", "scene", "compose", "measure"});
+    doc.require_keys(doc.root(), "", {"name", "seed", "engines", "scene", "compose", "measure", "quick"});
     experiment e;
     e.file = file;
     e.text = text;
@@ -107,6 +119,7 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     e.engines = engines_of(doc);
     e.compositions = compositions_of(doc, doc.root().find("compose"));
     read_measure(doc, size, e);
+    read_processes(doc, e);
     read_scenes(doc, size, e);
     // What stands under quick is checked now, not when somebody first asks for it.
     if (size == experiment_size::full) (void)parse_experiment(text, file, experiment_size::quick);
@@ -131,7 +144,7 @@ std::string parameters_text(const scene_choice& scene) {
 }
 
 std::string hash_of(const experiment& e) {
-    std::string all = e.name + " repeats=" + std::to_string(e.repeats);
+    std::string all = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
     for (const bool metric : {e.measured.time, e.measured.counts, e.measured.bytes, e.measured.error})
         all += metric ? '+' : '-';
     for (const std::string& engine : e.engines) all += "\n" + engine;

@@ -41,6 +41,7 @@ struct experiment {
     std::string mesh_digest;  ///< of the vertices and triangles of the scenes' meshes
     std::vector<composition> compositions;
     std::size_t repeats = 9;
+    std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
     metrics measured;
     std::vector<std::string> notes;  ///< what stands in for meshes that are not there, a sentence each
 };

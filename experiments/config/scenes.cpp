@@ -130,6 +130,17 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
     }
 }
 
+/// The seeds of scenes that have none of their own, for this size of the experiment.
+const node* seed_of(const document& doc, experiment_size size) {
+    const node* quick = doc.root().find("quick");
+    if (quick) {
+        doc.require_table("quick", *quick);
+        doc.require_keys(*quick, " of quick", {"seed"});
+        if (const node* seed = quick->find("seed"); seed && size == experiment_size::quick) return seed;
+    }
+    return doc.root().find("seed");
+}
+
 }  // namespace
 
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
@@ -137,7 +148,8 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     if (!scenes) doc.fail(1, "this config has no scene; expected at least one [[scene]]");
     if (scenes->kind != node_kind::list) doc.fail(scenes->line, "scene must stand in double brackets: [[scene]]");
     aabb::digest meshes_made;
-    for (const node& scene : scenes->items) add_scenes(doc, scene, doc.root().find("seed"), size, e, meshes_made);
+    const node* seed = seed_of(doc, size);
+    for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e, meshes_made);
     e.mesh_digest = meshes_made.text();
     if (e.scenes.empty()) doc.fail(scenes->line, "this config has no scene; expected at least one [[scene]]");
 }

@@ -60,6 +60,7 @@ results_folder::results_folder(std::filesystem::path folder, const experiment& e
     }
     if (std::filesystem::exists(table)) {
         rows_ = read_rows(table);
+        for (const row& r : rows_) keys_.insert(r.key());
         if (!rows_.empty() && existing == existing_results::refuse)
             throw aabb::input_error("results are already in " + folder_.string() +
                                     "; --resume continues them, --out DIR puts new ones elsewhere");
@@ -83,19 +84,22 @@ results_folder::~results_folder() {
 }
 
 bool results_folder::has(const row& wanted) const {
-    return std::ranges::any_of(rows_, [key = wanted.key()](const row& r) { return r.key() == key; });
+    return keys_.contains(wanted.key());
 }
 
 void results_folder::add(const row& finished) {
     if (std::fputs(csv_of(finished).c_str(), file_) < 0 || std::fflush(file_) != 0) fail_table();
     rows_.push_back(finished);
+    keys_.insert(finished.key());
 }
 
 void results_folder::drop(const scene_choice& scene, const contender_name& name) {
-    const auto dropped = std::erase_if(rows_, [&](const row& r) {
-        return r.scene == scene.kind && r.scene_parameters == parameters_text(scene) && r.name == name;
+    const auto dropped = std::erase_if(rows_, [&, parameters = parameters_text(scene)](const row& r) {
+        return r.scene == scene.kind && r.scene_parameters == parameters && r.name == name;
     });
     if (dropped == 0) return;
+    keys_.clear();
+    for (const row& r : rows_) keys_.insert(r.key());
     std::string text = csv_header_of_rows();
     for (const row& r : rows_) text += csv_of(r);
     replace_file(folder_ / "results.csv", text);

@@ -94,6 +94,10 @@ resumed_manifest resume_manifest(const std::filesystem::path& file, const experi
     return manifest;
 }
 
+std::string build_description() {
+    return build().dump(2) + "\n";
+}
+
 manifest_summary read_manifest(const std::filesystem::path& folder) {
     const json manifest = read_json(folder / "manifest.json");
     const json& made = manifest["build"];

@@ -6,6 +6,7 @@ module;
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ struct row {
     std::uint64_t frames = 0;
     contender_name name;
     std::uint64_t repeat = 0;
+    std::uint64_t process = 0;               ///< that timed it, from 0
     std::optional<std::uint64_t> triangles;  ///< of the scene's meshes, each counted once; empty in scenes of boxes
     std::optional<double> build_ms;          ///< making the stages, taking the objects, building the trees
     std::optional<double> first_ms;          ///< frame 0, whole
@@ -120,6 +122,7 @@ private:
     std::string date_;
     std::string replaced_;
     std::vector<row> rows_;
+    std::set<std::string> keys_;  // of the rows
     std::vector<difference> differences_;
     std::map<std::string, std::string> digests_;  // by scene and parameters
     std::FILE* file_ = nullptr;
@@ -134,6 +137,9 @@ struct manifest_summary {
     std::vector<std::string> notes;
 };
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
+
+/// What made results of this program, as a manifest says it: times of different builds or machines must not meet.
+[[nodiscard]] std::string build_description();
 
 }  // namespace aabblab
 

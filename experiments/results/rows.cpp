@@ -47,6 +47,7 @@ void for_each_key(Row& r, Field field) {
 template <class Row, class Field>
 void for_each_column(Row& r, Field field) {
     for_each_key(r, field);
+    field("process", r.process);
     field("triangles", r.triangles);
     field("build_ms", r.build_ms);
     field("first_ms", r.first_ms);

@@ -51,15 +51,34 @@ row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts&
     return r;
 }
 
-std::vector<contender> unfinished(const experiment& e, const scene_choice& scene, std::span<const contender> contenders,
-                                  std::size_t repeats, std::span<const row> rows) {
+/// The repeats of one process.
+struct share_of_repeats {
+    share_of_repeats(const experiment& e, std::size_t process) {
+        const std::size_t repeats = e.measured.time ? e.repeats : 1;
+        begin = repeats * process / e.processes;
+        end = repeats * (process + 1) / e.processes;
+    }
+
+    std::size_t begin;
+    std::size_t end;
+};
+
+/// The rows of a scene that there are.
+std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
+    const std::string parameters = parameters_text(scene);
+    std::vector<row> found;
+    for (const row& r : rows)
+        if (r.scene == scene.kind && r.scene_parameters == parameters) found.push_back(r);
+    return found;
+}
+
+std::vector<contender> unfinished(std::span<const contender> contenders, const share_of_repeats& share,
+                                  std::span<const row> rows) {
     std::vector<contender> left;
     for (const contender& who : contenders) {
-        const auto finished = std::ranges::count_if(rows, [&](const row& r) {
-            return r.experiment == e.name && r.scene == scene.kind && r.scene_parameters == parameters_text(scene) &&
-                   r.name == who.name;
-        });
-        if (static_cast<std::size_t>(finished) < repeats) left.push_back(who);
+        const auto finished = std::ranges::count_if(
+            rows, [&](const row& r) { return r.name == who.name && r.repeat >= share.begin && r.repeat < share.end; });
+        if (static_cast<std::size_t>(finished) < share.end - share.begin) left.push_back(who);
     }
     return left;
 }
@@ -80,35 +99,60 @@ std::string time_into(const scene_choice& scene, timed_contender& timed) {
            times.digest + ", validated it was " + r.digest;
 }
 
-}  // namespace
-
-std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
-                                   std::span<const contender> contenders, results_folder& results) {
-    const std::size_t repeats = e.measured.time ? e.repeats : 1;
-    const std::vector<contender> left = unfinished(e, scene, contenders, repeats, results.rows());
-    if (left.empty()) return {};
-    const scene_verdicts validated = validate_scene(scene, left);
-    results.set_digest(scene, validated.digest);
+/// Who is ready to be timed, and what is wrong with the others.
+struct admission {
+    std::vector<timed_contender> timed;
     std::vector<std::string> failures;
+};
+
+/// Plays the scene beside the judge.
+admission validated(const experiment& e, const scene_choice& scene, std::span<const contender> contenders,
+                    results_folder& results) {
+    admission all;
+    const scene_verdicts found = validate_scene(scene, contenders);
+    results.set_digest(scene, found.digest);
     std::vector<contender_name> names;
     std::vector<difference> differences;
-    std::vector<timed_contender> timed;
-    for (std::size_t i = 0; i < left.size(); ++i) {
-        const verdict& v = validated.verdicts[i];
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        const verdict& v = found.verdicts[i];
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())
-            timed.push_back({&left[i], row_of(e, scene, validated, v)});
+            all.timed.push_back({&contenders[i], row_of(e, scene, found, v)});
         else
-            failures.push_back(v.failure);
+            all.failures.push_back(v.failure);
     }
     if (e.measured.error) results.set_differences(scene, names, differences);
-    progress shown("timing " + scene.kind, repeats * timed.size());
-    for (std::size_t repeat = 0, done = 0; repeat < repeats; ++repeat)
+    return all;
+}
+
+/// Those whom the first process validated, with what it found.
+admission known(std::span<const contender> contenders, std::span<const row> rows) {
+    admission all;
+    for (const contender& who : contenders) {
+        const auto before = std::ranges::find(rows, who.name, &row::name);
+        if (before != rows.end()) all.timed.push_back({&who, *before});
+    }
+    return all;
+}
+
+}  // namespace
+
+std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
+                                   std::span<const contender> contenders, results_folder& results,
+                                   std::size_t process) {
+    const share_of_repeats share(e, process);
+    const std::vector<row> rows = rows_of(scene, results.rows());
+    const std::vector<contender> left = unfinished(contenders, share, rows);
+    if (left.empty()) return {};
+    auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
+    progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
+    for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat)
         for (std::size_t i = 0; i < timed.size(); ++i, shown.at(++done)) {
             // Each repeat begins with another contender, so that none is always the first.
             timed_contender& turn = timed[(i + repeat) % timed.size()];
             turn.result.repeat = repeat;
+            turn.result.process = process;
             if (turn.strayed || results.has(turn.result)) continue;
             const std::string failure = e.measured.time ? time_into(scene, turn) : std::string();
             if (failure.empty()) {

@@ -72,10 +72,13 @@ struct timing {
 };
 [[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who);
 
-/// Validates a scene, then times its repeats, interleaved over the contenders, and adds a row for each. What the folder
-/// has already is not played again.
+/// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
+/// adds a row for each. What the folder has already is not played again; later processes take what the first one
+/// validated as known, and compare the digest of every repeat with it.
+/// @param process from 0; each takes an equal share of the repeats, in order
 /// @returns a sentence for each contender that is wrong; it gets no row.
 [[nodiscard]] std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
-                                                 std::span<const contender> contenders, results_folder& results);
+                                                 std::span<const contender> contenders, results_folder& results,
+                                                 std::size_t process = 0);
 
 }  // namespace aabblab

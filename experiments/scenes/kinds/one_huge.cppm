@@ -15,29 +15,35 @@ import :random;
 
 namespace aabblab {
 
-/// Unit cubes and one that is huge, which overlaps whatever lies within it: by default an eighth of all objects.
+/// Unit cubes and one that is huge, or several, each of which overlaps whatever lies within it: by default an eighth of
+/// all objects.
 class one_huge final : public generated_boxes {
 public:
     static constexpr std::string_view name = "one_huge";
     static constexpr std::string_view summary =
-        "unit cubes that drift in a cube, and object 0, which spans a large part of their world";
+        "unit cubes that drift in a cube, and one, or several, that span a large part of their world";
 
     struct config : motion_config {
         /// Edge of the huge box over the world's side.
         double span = 0.5;
+        /// The first objects are the huge ones.
+        std::uint32_t huge = 1;
     };
     static constexpr auto parameters = std::tuple_cat(
-        motion_parameters, std::tuple{aabb::number_parameter{"span", &config::span, 0.0, 1.0,
-                                                             "edge of the huge box over the side of the world"}});
+        motion_parameters,
+        std::tuple{
+            aabb::number_parameter{"span", &config::span, 0.0, 1.0, "edge of a huge box over the side of the world"},
+            aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many boxes are huge"}});
 
     one_huge(const config& c, std::uint64_t seed)
-        : one_huge(c, seed, std::min(c.objects, 1U), width_for(c.objects, 3)) {}
+        : one_huge(c, seed, std::min(c.objects, c.huge), width_for(c.objects, 3)) {}
 
 private:
     one_huge(const config& c, std::uint64_t seed, std::uint32_t huge, double width)
         : generated_boxes(name, c, seed, drifting_points::bytes_each),
           edge_(c.span * (width + 1)),
-          step_(step_of(c, (edge_ + c.objects - 1) / std::max(c.objects, 1U), {width + 1, width + 1, width + 1})),
+          step_(step_of(c, (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U),
+                        {width + 1, width + 1, width + 1})),
           huge_(huge, 3, width + 1 - edge_, {step_, step_}, random_),
           unit_(c.objects - huge, 3, width, {step_, step_}, random_) {}
 
@@ -47,9 +53,8 @@ private:
     }
 
     void place(std::span<aabb::box> boxes) override {
-        if (boxes.empty()) return;
-        boxes[0] = cube_at(huge_[0], edge_);
-        for (std::size_t i = 0; i < unit_.size(); ++i) boxes[i + 1] = cube_at(unit_[i], 1);
+        for (std::size_t i = 0; i < huge_.size(); ++i) boxes[i] = cube_at(huge_[i], edge_);
+        place_cubes(unit_, boxes.subspan(huge_.size()));
     }
 
     double edge_;
