@@ -7,6 +7,8 @@ packages=(
     libcgal-dev libfcl-dev libccd-dev libeigen3-dev libassimp-dev
     libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
 )
+# Debian's packages of gnuplot exclude each other, and any of them will do.
+command -v gnuplot >/dev/null || packages+=(gnuplot-nox)
 [[ ${AABBLAB_LINT:-0} == 0 ]] || packages+=(clang-format-19 clang-tidy-19)
 # Debian 12 has versions this new in its backports only.
 declare -A least=([cmake]=3.28 [catch2]=3.0)
@@ -23,6 +25,13 @@ at_least() {
     IFS=. read -r want_major want_minor <<<"$2"
     [[ $major ]] && ((major > want_major || (major == want_major && ${minor:-0} >= want_minor)))
 }
+
+# What `paper` needs beside pdflatex: the packages that bring it, and the files that show it is there on any system.
+tex_packages=(texlive-latex-base texlive-latex-recommended lmodern)
+tex_files=(
+    article.cls amsmath.sty array.sty booktabs.sty caption.sty fontenc.sty geometry.sty graphicx.sty hyperref.sty
+    lmodern.sty longtable.sty microtype.sty textcomp.sty lmr10.pfb
+)
 
 # ---- Set-up on Debian 12 and 13 --------------------------------------------------------------------------------------
 
@@ -116,6 +125,13 @@ install_packages() {
     ((${#missing[@]} == 0)) || fail "apt-get installed no version new enough of: ${missing[*]}."
 }
 
+# listed NAME…: with commas.
+listed() {
+    local names
+    printf -v names ', %s' "$@"
+    printf '%s' "${names:2}"
+}
+
 # ---- Other systems ---------------------------------------------------------------------------------------------------
 
 # Sets `compiler`, or ends with all that is missing.
@@ -128,11 +144,12 @@ find_tools() {
     command -v "clang-scan-deps${compiler#clang++}" clang-scan-deps >/dev/null || lacking+=(clang-scan-deps)
     at_least "$(cmake --version 2>/dev/null | sed -n '1s/[^0-9]*//p')" 3.28 || lacking+=('CMake 3.28 or newer')
     command -v ninja >/dev/null || lacking+=(ninja)
+    command -v gnuplot >/dev/null || lacking+=(gnuplot)
     for header in "${headers[@]}"; do
         [[ ! $compiler ]] || "$compiler" -E -x c++ -include "$header" /dev/null >/dev/null 2>&1 || lacking+=("<$header>")
     done
     ((${#lacking[@]} == 0)) ||
-        fail "packages are installed on Debian 12 and 13 only, and here is missing:$(printf ' %s,' "${lacking[@]}" | sed 's/,$/./')"
+        fail "packages are installed on Debian 12 and 13 only, and here is missing: $(listed "${lacking[@]}")."
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
@@ -145,4 +162,31 @@ set_up() {
     elif [[ ! -e $build/build.ninja ]]; then
         find_tools
     fi
+}
+
+# Sets `lacking` to what TeX lacks for the paper.
+find_missing_tex() {
+    local name found
+    lacking=(pdflatex)
+    command -v pdflatex >/dev/null || return 0
+    lacking=()
+    found=$(kpsewhich "${tex_files[@]}" 2>/dev/null) || true
+    for name in "${tex_files[@]}"; do
+        [[ $'\n'$found$'\n' == *"/$name"$'\n'* ]] || lacking+=("$name")
+    done
+}
+
+# As set_up, but what `paper` needs, whether or not anything is built.
+set_up_tex() {
+    local lacking packages=("${tex_packages[@]}")
+    find_missing_tex
+    ((${#lacking[@]} > 0)) || return 0
+    if on_debian; then
+        find_missing_packages
+        ((${#missing[@]} == 0)) || install_packages
+        find_missing_tex
+        ((${#lacking[@]} > 0)) || return 0
+        fail "${tex_packages[*]} are installed, but TeX does not find $(listed "${lacking[@]}")."
+    fi
+    fail "packages are installed on Debian 12 and 13 only, and TeX lacks here $(listed "${lacking[@]}")."
 }

@@ -57,6 +57,7 @@ int main_of(int argc, char** argv) {
         add_reproduce(program, status);
         add_run(program, status);
         add_validate(program, status);
+        add_compare(program, status);
         add_explain(program, status);
         add_list(program, status);
         add_pairs(program, status);
@@ -70,6 +71,7 @@ int main_of(int argc, char** argv) {
             "  test                        Build and run every test\n"
             "  data                        Fetch the real meshes\n"
             "  benchmark                   Time each stage of global search alone\n"
+            "  paper                       The report of a reproduction as a PDF\n"
             "aabblab COMMAND --help tells the options of a command.\n"
             "Exit status: 0, 1 when a check failed, 2 on bad input.");
         run(program, argc, argv);

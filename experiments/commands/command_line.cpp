@@ -35,7 +35,7 @@ std::string unexpected(const CLI::App& program, const CLI::App& command, const s
     if (&command != &program)
         return "unexpected argument '" + argument + "'; see aabblab " + command.get_name() + " --help";
     std::vector<std::string> names = command_names(program);
-    const std::vector<std::string> of_script = {"test", "data", "benchmark"};
+    const std::vector<std::string> of_script = {"test", "data", "benchmark", "paper"};
     if (std::ranges::find(of_script, argument) != of_script.end())
         return "'" + argument + "' is a command of the script aabblab at the root of the source tree";
     names.insert(names.end(), of_script.begin(), of_script.end());

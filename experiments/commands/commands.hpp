@@ -10,6 +10,7 @@ namespace aabblab {
 
 void add_classify(CLI::App& program, int& status);
 void add_collide(CLI::App& program, int& status);
+void add_compare(CLI::App& program, int& status);
 void add_contacts(CLI::App& program, int& status);
 void add_explain(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);

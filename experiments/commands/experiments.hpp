@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,10 +16,19 @@ namespace aabblab {
 /// Reads a config and says on standard error what stands in for meshes that are not there.
 [[nodiscard]] experiment open_experiment(const std::string& config, bool quick);
 
-/// Validates and times scene by scene; prints each scene's table when it is done, and failures on standard error.
-/// Interrupted (Ctrl-C), it says that `resume_with` continues it.
-/// @returns the failures
-[[nodiscard]] std::vector<std::string> play_experiment(const experiment& e, results_folder& results,
-                                                       const std::string& resume_with);
+/// What is printed while an experiment is played: every scene's tables, or nothing.
+enum class printed { tables, nothing };
+
+/// Plays an experiment into a folder, in as many fresh processes as it asks for, and says on standard error what is
+/// wrong. Interrupted (Ctrl-C), it says that `resume_with` continues it.
+/// @returns a sentence for each composition that is wrong
+[[nodiscard]] std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
+                                                       existing_results existing, const std::string& resume_with,
+                                                       printed shown);
+
+/// One of these processes: plays its share of the repeats into results that are there. What is wrong goes to standard
+/// output, a line each.
+/// @returns whether nothing is
+[[nodiscard]] bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process);
 
 }  // namespace aabblab

@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
 
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,18 +23,22 @@ namespace {
 struct run_request {
     std::string config;
     std::optional<std::string> out;
+    std::optional<std::size_t> process;
     bool quick = false;
     bool resume = false;
 };
 
 int run(const run_request& request) {
-    const experiment e = open_experiment(request.config, request.quick);
+    const experiment e = request.process ? read_experiment(request.config, request.quick ? experiment_size::quick
+                                                                                         : experiment_size::full)
+                                         : open_experiment(request.config, request.quick);
     // A first look does not stand in the way of the whole.
-    const std::string folder = "results/" + e.name + (request.quick ? "-quick" : "");
-    results_folder results(request.out.value_or(folder), e,
-                           request.resume ? existing_results::resume : existing_results::refuse);
-    const std::vector<std::string> failures = play_experiment(e, results, "the same command with --resume");
-    print("Every repeat is a row of " + (results.path() / "results.csv").string() + "\n");
+    const std::filesystem::path folder = request.out.value_or("results/" + e.name + (request.quick ? "-quick" : ""));
+    if (request.process) return play_share(e, folder, *request.process) ? 0 : 1;
+    const std::vector<std::string> failures =
+        play_experiment(e, folder, request.resume ? existing_results::resume : existing_results::refuse,
+                        "the same command with --resume", printed::tables);
+    print("Every repeat is a row of " + (folder / "results.csv").string() + "\n");
     return failures.empty() ? 0 : 1;
 }
 
@@ -46,6 +52,8 @@ void add_run(CLI::App& program, int& status) {
         ->type_name("DIR");
     command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
     command->add_flag("--resume", request->resume, "Skip what is finished in the folder already");
+    // What it starts afresh for each of the processes that a config asks for; not for users.
+    command->add_option("--process", request->process)->group("");
     command->callback([request, &status] { status = run(*request); });
 }
 

@@ -1,18 +1,18 @@
 module;
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// Results as tables, figures and a report. Reads result files only, whoever made them.
+/// Results as tables, scene by scene.
 export module aabblab.report;
 
 import aabb;
 import aabblab.results;
+import aabblab.statistics;
 
 export namespace aabblab {
 
@@ -32,23 +32,9 @@ struct table {
 [[nodiscard]] std::string to_markdown(const table& t);
 [[nodiscard]] std::string to_tex(const table& t);
 [[nodiscard]] std::string to_html(const table& t);
-
-struct quartiles {
-    double low;
-    double median;
-    double high;
-};
-/// Interpolated between the nearest two values; `values` must not be empty.
-[[nodiscard]] quartiles quartiles_of(std::vector<double> values);
-
-struct interval {
-    double low;
-    double high;
-};
-/// Holds the median of what the values are drawn from with a confidence of 95 % or more, whatever the distribution:
-/// from the order statistics that a sign test would not reject. With fewer than six values it is all their range, which
-/// is less sure. `values` must not be empty.
-[[nodiscard]] interval median_interval(std::vector<double> values);
+/// Text as it stands in LaTeX and in HTML: what means something there is written so that it means itself.
+[[nodiscard]] std::string tex_text(std::string_view text);
+[[nodiscard]] std::string html_text(std::string_view text);
 
 /// All repeats of one composition or engine in one scene.
 struct summary_line {
@@ -101,19 +87,6 @@ enum class number_style { grouped, plain };
 
 /// What stands above the table, some lines.
 [[nodiscard]] std::string heading_of(const scene_summary& scene);
-
-/// Median and quartiles of every line on a logarithmic axis; empty where nothing was timed.
-[[nodiscard]] std::string figure_of(const scene_summary& scene);
-
-/// One experiment of a report.
-struct report_part {
-    std::filesystem::path results;      ///< its folder
-    std::vector<std::string> failures;  ///< what validation found
-};
-
-/// Writes report.md and report.html, and every table and figure as .csv, .md, .tex and .svg under tables/.
-/// @throws aabb::input_error where a file cannot be read or written.
-void write_report(const std::filesystem::path& folder, std::span<const report_part> parts);
 
 }  // namespace aabblab
 

@@ -81,14 +81,29 @@ std::string to_markdown(const table& t) {
     return text;
 }
 
+std::string tex_text(std::string_view text) {
+    return escaped(text, {{'\\', "\\textbackslash{}"},
+                          {'_', "\\_"},
+                          {'%', "\\%"},
+                          {'&', "\\&"},
+                          {'#', "\\#"},
+                          {'$', "\\$"},
+                          {'{', "\\{"},
+                          {'}', "\\}"},
+                          {'~', "\\textasciitilde{}"},
+                          {'^', "\\textasciicircum{}"}});
+}
+
+std::string html_text(std::string_view text) {
+    return escaped(text, {{'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}, {'"', "&quot;"}});
+}
+
 std::string to_tex(const table& t) {
     std::string text = "\\begin{tabular}{";
     for (const column& c : t.columns) text += c.is_number ? 'r' : 'l';
     text += "}\n\\hline\n";
     const auto add = [&](const std::vector<std::string>& cells) {
-        for (const std::string& cell : cells)
-            text += (&cell == cells.data() ? "" : " & ") +
-                    escaped(cell, {{'_', "\\_"}, {'%', "\\%"}, {'&', "\\&"}, {'#', "\\#"}, {'{', "\\{"}, {'}', "\\}"}});
+        for (const std::string& cell : cells) text += (&cell == cells.data() ? "" : " & ") + tex_text(cell);
         text += " \\\\\n";
     };
     add(header_of(t));
@@ -102,8 +117,8 @@ std::string to_html(const table& t) {
     const auto add = [&](const std::vector<std::string>& cells, const std::string& tag) {
         text += "<tr>";
         for (std::size_t k = 0; k < cells.size(); ++k)
-            text += "<" + tag + (t.columns[k].is_number ? " class=\"number\">" : ">") +
-                    escaped(cells[k], {{'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}}) + "</" + tag + ">";
+            text += "<" + tag + (t.columns[k].is_number ? " class=\"number\">" : ">") + html_text(cells[k]) + "</" +
+                    tag + ">";
         text += "</tr>\n";
     };
     add(header_of(t), "th");

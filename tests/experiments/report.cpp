@@ -1,19 +1,12 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "temporary_folder.hpp"
-
 import aabb;
-import aabblab.config;
 import aabblab.report;
 import aabblab.results;
-import aabblab.runner;
-import aabblab.scenes;
 
 using aabblab::row;
 
@@ -41,30 +34,6 @@ row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
 }
 
 }  // namespace
-
-TEST_CASE("Quartiles are interpolated") {
-    const aabblab::quartiles q = aabblab::quartiles_of({4, 1, 2, 3});
-    REQUIRE(q.low == 1.75);
-    REQUIRE(q.median == 2.5);
-    REQUIRE(q.high == 3.25);
-    REQUIRE(aabblab::quartiles_of({7}).low == 7);
-}
-
-TEST_CASE("The interval of a median leaves out what a sign test would not reject") {
-    const auto ends = [](int n) {
-        std::vector<double> values;
-        for (int i = 1; i <= n; ++i) values.push_back(i);
-        const aabblab::interval i = aabblab::median_interval(values);
-        return std::pair(i.low, i.high);
-    };
-    // Tables of the binomial distribution: with 6 values the range, with 9 the second and the last but one, with 20 the
-    // sixth and the last but five.
-    REQUIRE(ends(1) == std::pair(1.0, 1.0));
-    REQUIRE(ends(5) == std::pair(1.0, 5.0));
-    REQUIRE(ends(6) == std::pair(1.0, 6.0));
-    REQUIRE(ends(9) == std::pair(2.0, 8.0));
-    REQUIRE(ends(20) == std::pair(6.0, 15.0));
-}
 
 TEST_CASE("Ratios are taken within a repeat") {
     std::vector<row> rows;
@@ -120,7 +89,6 @@ TEST_CASE("A summary has medians per frame after frame 0, ratios to the first li
     REQUIRE(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}).find("a\\_b \\\\\n\\hline\n50\\% \\\\") !=
             std::string::npos);
     REQUIRE(aabblab::to_html({{{"a", false}}, {{"<x>"}}}).find("<td>&lt;x&gt;</td>") != std::string::npos);
-    REQUIRE(aabblab::figure_of(scenes[0]).find("insertion") != std::string::npos);
 }
 
 TEST_CASE("Tables fit a terminal of 120 columns and line up") {
@@ -136,27 +104,4 @@ TEST_CASE("Tables fit a terminal of 120 columns and line up") {
     const std::string text =
         aabblab::to_text(aabblab::table_of(aabblab::summarise(rows)[0], aabblab::number_style::grouped));
     for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) REQUIRE(text.find('\n', at) - at <= 120);
-}
-
-TEST_CASE("A report has every table in four formats, figures, and one page that needs no other file") {
-    const temporary_folder folder;
-    const aabblab::experiment e = aabblab::parse_experiment(
-        "name = \"small\"\n[[scene]]\nkind = \"brownian\"\nobjects = 50\nframes = 2\n[compose]\n"
-        "sort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 2\n",
-        "small.toml", aabblab::experiment_size::full);
-    {
-        aabblab::results_folder results(folder / "small", e, aabblab::existing_results::refuse);
-        const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
-        REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
-    }
-    const std::vector<aabblab::report_part> parts{{folder / "small", {}}};
-    aabblab::write_report(folder.path(), parts);
-    for (const char* ending : {".csv", ".md", ".tex", ".svg"})
-        REQUIRE(std::filesystem::exists(folder / ("tables/small-1-brownian" + std::string(ending))));
-    const std::string markdown = bytes_of_file(folder / "report.md");
-    REQUIRE(markdown.find("no composition that must be exact was wrong") != std::string::npos);
-    REQUIRE(markdown.find("| insertion | exact |") != std::string::npos);
-    const std::string html = bytes_of_file(folder / "report.html");
-    REQUIRE(html.find("<svg") != std::string::npos);
-    REQUIRE(html.find("src=") == std::string::npos);
 }

@@ -1,0 +1,60 @@
+module;
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+selection limited(const std::string& limit, const std::string& segments) {
+    return {"", "axial_cut:limit=" + limit + ",segments=" + segments, "", "", ""};
+}
+
+}  // namespace
+
+claim_result one_cut_a_box(const measurements& m) {
+    claim_result claim;
+    claim.id = "C10";
+    claim.claim = "Cutting a box more than once on an axis does not pay";
+    claim.measured = "time a frame of axial_cut with its limit over that without";
+    claim.expected = expectation::not_more;
+    claim.experiments = {"c10"};
+    std::vector<candidate> candidates;
+    figure f{"c10",
+             "Time of global search with at most one cut of a box on an axis, over that without the limit (the level "
+             "1), against the number of huge objects, by their edge over the side of the world; 95 % intervals.",
+             {"huge objects", true, {}},
+             {"time with the limit over that without", true, {}},
+             {},
+             {}};
+    std::map<std::string, series> by_span;
+    for (const condition& c : m.of("c10"))
+        for (const char* segments : {"auto", "32"}) {
+            candidates.push_back(candidate_of(c, limited("on", segments), limited("off", segments), frame_ms(),
+                                              {{"segments", segments}}));
+            candidate& one = candidates.back();
+            const std::string span = value_of(c.of(), "span");
+            const bool automatic = std::string(segments) == "auto";
+            one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && automatic;
+            if (span.empty() || !automatic || one.log_ratio.draws.empty()) continue;
+            const endpoint e = endpoint_of(one, expectation::not_more);
+            series& s = by_span[span];
+            s.label = "edge " + span + " of the world";
+            s.points.push_back({number_of(c.of(), "huge"), e.ratio, e.range.low, e.range.high});
+        }
+    judge(claim, std::move(candidates));
+    for (const auto& [span, s] : by_span) f.lines.push_back(s);
+    f.lines.push_back({"any number of cuts", series_style::level, {{1, 1, 1, 1}}});
+    claim.figures.push_back(f);
+    return claim;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,87 @@
+module;
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.report;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+constexpr const char* compressed = "compressed:leaf_test=triangle_box";
+
+selection with_tree(selection global, const std::string& tree) {
+    global.tree = tree;
+    return global;
+}
+
+struct method {
+    const char* label;
+    selection who;
+};
+const std::vector<method>& methods() {
+    static const std::vector<method> all{{"traditional in both stages", with_tree(traditional, "canonical")},
+                                         {"improved global search", with_tree(improved, "canonical")},
+                                         {"improved local detection", with_tree(traditional, compressed)},
+                                         {"improved in both", with_tree(improved, compressed)}};
+    return all;
+}
+
+table half_steps(const std::vector<condition>& conditions) {
+    table t{{{"meshes", false}, {"objects"}}, {}};
+    for (std::size_t i = 1; i < methods().size(); ++i) t.columns.push_back({methods()[i].label});
+    for (const condition& c : conditions) {
+        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{mesh_of(c), value_of(c.of(), "objects")});
+        for (std::size_t i = 1; i < methods().size(); ++i) {
+            const candidate ratio = candidate_of(c, methods()[i].who, methods()[0].who, frame_ms());
+            cells.push_back(ratio.log_ratio.draws.empty() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
+        }
+    }
+    return t;
+}
+
+}  // namespace
+
+claim_result whole_algorithm(const measurements& m) {
+    claim_result claim;
+    claim.id = "C11";
+    claim.claim = "The whole improved algorithm takes less time than the traditional one on the same models";
+    claim.measured = "time a frame of both stages, shell + axial_cut + compressed over insertion + none + canonical";
+    claim.experiments = {"c11"};
+    const std::vector<condition>& conditions = m.of("c11");
+    std::vector<candidate> candidates;
+    // The crowd of the first models: the last condition that has the meshes of the first.
+    const condition* crowd = nullptr;
+    for (const condition& c : conditions)
+        if (mesh_of(c) == mesh_of(conditions.front())) crowd = &c;
+    for (const condition& c : conditions) {
+        candidates.push_back(candidate_of(c, methods()[3].who, methods()[0].who, frame_ms()));
+        candidates.back().primary = &c == crowd;
+    }
+    judge(claim, std::move(candidates));
+    if (conditions.empty()) return claim;
+    claim.tables.push_back(
+        {"c11_stages", "Time a frame of both stages over that of the traditional method.", half_steps(conditions)});
+    std::vector<const condition*> small;
+    for (const condition& c : conditions)
+        if (mesh_of(c) == mesh_of(conditions.back())) small.push_back(&c);
+    figure f{"c11",
+             "Time of both stages against the number of objects, many small models: traditional, improved, and each "
+             "stage improved alone; medians and quartiles.",
+             {"objects", true, {}},
+             {"time a frame (ms)", true, {}},
+             {},
+             {}};
+    for (const method& one : methods()) f.lines.push_back(series_of(one.label, small, "objects", one.who, frame_ms()));
+    claim.figures.push_back(f);
+    return claim;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,102 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.results;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// One sort on input of one disorder, at every size.
+struct sizes {
+    std::vector<double> log_n;
+    std::vector<cells> per_element;  // logarithms
+
+    /// How much work an element costs at ten times as many, from the straight line through work against log N; the line
+    /// is flat where the sort is O(N).
+    [[nodiscard]] double growth(const resample& d) const {
+        double mean_x = 0, mean_y = 0;
+        std::vector<double> y;
+        for (std::size_t i = 0; i < log_n.size(); ++i) {
+            y.push_back(std::exp(d.mean_of(per_element[i])));
+            mean_x += log_n[i] / static_cast<double>(log_n.size());
+            mean_y += y[i] / static_cast<double>(log_n.size());
+        }
+        double xx = 0, xy = 0;
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            xx += (log_n[i] - mean_x) * (log_n[i] - mean_x);
+            xy += (log_n[i] - mean_x) * (y[i] - mean_y);
+        }
+        // A steep fall would give a negative level; the line has no meaning there.
+        return std::log(std::max(1e-6, 1 + xy / xx / mean_y));
+    }
+};
+
+metric per_element(std::string_view column) {
+    return [count = count_of(column)](const row& r) -> std::optional<double> {
+        const std::optional<double> all = count(r);
+        return all ? std::optional(*all / static_cast<double>(r.objects)) : std::nullopt;
+    };
+}
+
+const std::vector<std::string>& sorts() {
+    static const std::vector<std::string> all{"shell:gaps=ciura", "shell:gaps=tokuda", "shell:gaps=shell", "insertion"};
+    return all;
+}
+
+}  // namespace
+
+claim_result linear_sort(const measurements& m) {
+    claim_result claim;
+    claim.id = "C2";
+    claim.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too";
+    claim.measured = "work of the sort for an element at 10 N over that at N, from its regression on log N";
+    claim.expected = expectation::not_more;
+    claim.experiments = {"c2"};
+    std::map<std::string, std::vector<const condition*>> by_displacement;
+    for (const condition& c : m.of("c2")) by_displacement[value_of(c.of(), "displacement")].push_back(&c);
+    std::vector<candidate> candidates;
+    for (const auto& [displacement, conditions] : by_displacement)
+        for (const std::string& sort : sorts())
+            for (const std::string_view work : {"comparisons", "moves"}) {
+                sizes all;
+                for (const condition* c : conditions) {
+                    all.log_n.push_back(std::log10(number_of(c->of(), "objects")));
+                    all.per_element.push_back(c->logs({sort, "", "", "", ""}, per_element(work)));
+                }
+                candidates.push_back(
+                    {{{"sort", sort}, {"displacement", displacement}, {"work", std::string(work)}},
+                     bootstrap(1, conditions.front()->seeds(), [&](const resample& d) { return all.growth(d); }),
+                     sort == "shell:gaps=ciura" && displacement == "0.1" && work == "comparisons"});
+            }
+    judge(claim, std::move(candidates));
+    figure f{"c2",
+             "Comparisons for each element against the number of elements, at a displacement of a tenth of an edge: a "
+             "level line is O(N).",
+             {"elements", true, {}},
+             {"comparisons for each element", true, {}},
+             {},
+             {}};
+    for (const std::string& sort : sorts())
+        f.lines.push_back(
+            series_of(sort, by_displacement["0.1"], "objects", {sort, "", "", "", ""}, per_element("comparisons")));
+    f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {"insertion", "", "", "", ""},
+                                per_element("inversions")));
+    claim.figures.push_back(f);
+    return claim;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,108 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.report;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+const std::vector<int>& segments_wanted() {
+    static const std::vector<int> all{2, 4, 8, 16, 32, 64, 256};
+    return all;
+}
+
+selection cut_into(int axes, const std::string& segments) {
+    return {"insertion", "axial_cut:axes=" + std::to_string(axes) + ",segments=" + segments, "one_axis", "", ""};
+}
+
+/// Segments on each axis that was cut; empty where it was not measured.
+std::optional<double> segments_got(const condition& c, int axes, int wanted) {
+    const auto got = c.spread(cut_into(axes, std::to_string(wanted)), count_of("segments_got"));
+    return got ? std::optional(got->median / axes) : std::nullopt;
+}
+
+/// The limit leaves a finer cut as it is: it makes hardly a segment more.
+bool is_finer(const condition& c, int axes, int wanted, int before) {
+    const auto now = segments_got(c, axes, wanted);
+    const auto then = segments_got(c, axes, before);
+    return now && then && *now > 1.1 * *then;
+}
+
+figure figure_of(const condition& c) {
+    figure f{"c4",
+             "Time of global search against the segments wanted on each axis, with one, two and three axes cut; the "
+             "marks say how many segments the limit of one cut a box leaves. The level is without a cut.",
+             {"segments wanted on each axis", true, {}},
+             {"time a frame (ms)", true, {}},
+             {},
+             {}};
+    for (int axes = 1; axes <= 3; ++axes) {
+        series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes"), series_style::line, {}};
+        for (const int wanted : segments_wanted())
+            if (const auto point = c.point(wanted, cut_into(axes, std::to_string(wanted)), frame_ms()))
+                s.points.push_back(*point);
+        f.lines.push_back(s);
+        if (const auto limit = segments_got(c, axes, segments_wanted().back()))
+            f.marks.push_back({*limit, "limit, " + s.label});
+    }
+    if (const auto uncut = c.point(segments_wanted().front(), traditional, frame_ms()))
+        f.lines.push_back({"no cut", series_style::level, {*uncut}});
+    return f;
+}
+
+/// Segments need not be tiny: what the automatic choice leaves on the table.
+table automatic(const std::vector<condition>& conditions) {
+    table t{{{"scene", false}, {"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}}, {}};
+    for (const condition& c : conditions)
+        for (int axes = 1; axes <= 3; ++axes) {
+            const candidate ratio = candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms());
+            const auto chosen = c.spread(cut_into(axes, "auto"), count_of("segments_got"));
+            const auto limit = segments_got(c, axes, 256);
+            if (ratio.log_ratio.draws.empty() || !chosen || !limit) continue;
+            t.rows.push_back({text_of(c.of()), std::to_string(axes), digits_of(chosen->median / axes),
+                              digits_of(*limit), ratio_text(endpoint_of(ratio, expectation::less))});
+        }
+    return t;
+}
+
+}  // namespace
+
+claim_result more_segments(const measurements& m) {
+    claim_result claim;
+    claim.id = "C4";
+    claim.claim = "The more segments, the faster, up to the limit; and segments need not be tiny";
+    claim.measured = "time a frame with more segments over that with the next fewer, up to the limit";
+    claim.experiments = {"c4"};
+    const std::vector<condition>& conditions = m.of("c4");
+    std::vector<candidate> candidates;
+    for (const condition& c : conditions)
+        for (int axes = 1; axes <= 3; ++axes)
+            for (std::size_t i = 1; i < segments_wanted().size(); ++i) {
+                const int wanted = segments_wanted()[i];
+                const int before = segments_wanted()[i - 1];
+                if (!is_finer(c, axes, wanted, before)) continue;
+                candidates.push_back(
+                    candidate_of(c, cut_into(axes, std::to_string(wanted)), cut_into(axes, std::to_string(before)),
+                                 frame_ms(), {{"axes", std::to_string(axes)}, {"segments", std::to_string(wanted)}}));
+                candidates.back().primary = value_of(c.of(), "scene") == "brownian" && axes == 2 && wanted == 8;
+            }
+    judge(claim, std::move(candidates));
+    if (conditions.empty()) return claim;
+    claim.tables.push_back({"c4_auto", "Segments on each axis, and time, with the automatic choice and at the limit.",
+                            automatic(conditions)});
+    claim.figures.push_back(figure_of(conditions.front()));
+    return claim;
+}
+
+}  // namespace aabblab

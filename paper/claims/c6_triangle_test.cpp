@@ -1,0 +1,150 @@
+module;
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabb;
+import aabblab.figures;
+import aabblab.report;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// Nanoseconds of each elementary test, by name, process and repetition.
+using test_times = std::map<std::string, std::vector<std::vector<double>>>;
+
+void read_process(const std::filesystem::path& file, std::size_t process, test_times& times) {
+    std::ifstream in(file);
+    const nlohmann::json results = nlohmann::json::parse(in, nullptr, false);
+    if (!results.is_object() || !results.contains("benchmarks"))
+        throw aabb::input_error(file.string() + " is not a result of Google Benchmark; remove it to measure again");
+    for (const nlohmann::json& one : results["benchmarks"]) {
+        if (one.value("run_type", "") != "iteration") continue;
+        const std::string unit = one.value("time_unit", "ns");
+        const double ns = one.value("real_time", 0.0) * (unit == "us" ? 1e3 : unit == "ms" ? 1e6 : 1);
+        // The names of repetitions end alike; "run_name" has none of that.
+        auto& processes = times[one.value("run_name", one.value("name", ""))];
+        processes.resize(std::max(processes.size(), process + 1));
+        processes[process].push_back(ns);
+    }
+}
+
+/// FOLDER/c6/process-0.json, …
+test_times read_tests(const std::filesystem::path& folder) {
+    test_times times;
+    for (std::size_t process = 0;; ++process) {
+        const std::filesystem::path file = folder / "c6" / ("process-" + std::to_string(process) + ".json");
+        if (!std::filesystem::exists(file)) return times;
+        read_process(file, process, times);
+    }
+}
+
+cells ratios_of(const test_times& times, const std::string& arm, const std::string& base) {
+    const auto a = times.find(arm);
+    const auto b = times.find(base);
+    if (a == times.end() || b == times.end()) return {0, 0};
+    const std::size_t processes = std::min(a->second.size(), b->second.size());
+    cells all(processes, 1);
+    for (std::size_t process = 0; process < processes; ++process)
+        for (std::size_t i = 0; i < std::min(a->second[process].size(), b->second[process].size()); ++i)
+            all.add(process, 0, std::log(a->second[process][i] / b->second[process][i]));
+    return all;
+}
+
+quartiles spread_of(const std::vector<std::vector<double>>& processes) {
+    std::vector<double> all;
+    for (const std::vector<double>& one : processes) all.insert(all.end(), one.begin(), one.end());
+    return quartiles_of(all);
+}
+
+table table_of(const test_times& times) {
+    table t{{{"test", false}, {"ns"}, {"quartiles"}, {"over a box test"}}, {}};
+    for (const auto& [name, processes] : times) {
+        const quartiles q = spread_of(processes);
+        const cells ratios = ratios_of(times, name, "test/box");
+        t.rows.push_back(
+            {name, digits_of(q.median), digits_of(q.low) + " to " + digits_of(q.high),
+             ratios.empty() ? "-" : ratio_text(endpoint_of({{}, bootstrap(ratios)}, expectation::not_more))});
+    }
+    return t;
+}
+
+/// The leaf of A that is tested as it is, in place of one of B that is carried into A's frame.
+constexpr std::string_view in_place = "/frame:a";
+
+figure figure_of(const test_times& times) {
+    figure f{"c6",
+             "Nanoseconds of one elementary test, on the pairs that a walk through two trees meets; medians and "
+             "quartiles.",
+             {"test", false, {}},
+             {"time a test (ns)", false, {}},
+             {},
+             {}};
+    series carried{"what is tested of B is carried into A's frame", series_style::points, {}};
+    series of_a{"nothing is carried", series_style::points, {}};
+    for (const auto& [name, processes] : times) {
+        if (name.ends_with(in_place)) continue;
+        const auto place = static_cast<double>(f.x.names.size());
+        f.x.names.emplace_back(place, name.substr(name.find('/') + 1));
+        const auto add = [&](series& to, const std::string& test) {
+            const auto found = times.find(test);
+            if (found == times.end()) return;
+            const quartiles q = spread_of(found->second);
+            to.points.push_back({place, q.median, q.low, q.high});
+        };
+        add(carried, name);
+        add(of_a, name + std::string(in_place));
+    }
+    f.lines = {carried, of_a};
+    return f;
+}
+
+}  // namespace
+
+claim_result triangle_for_box(const measurements& m) {
+    claim_result claim;
+    claim.id = "C6";
+    claim.claim = "Testing the triangle of a leaf costs what testing its box costs";
+    claim.measured =
+        "time of a triangle-box test over that of a box test; in whole queries, of leafless over canonical";
+    claim.expected = expectation::not_more;
+    claim.experiments = {"figure2"};
+    const test_times times = read_tests(m.folder());
+    std::vector<candidate> candidates;
+    for (const std::string frame : {std::string(), std::string(in_place)})
+        for (const std::string test : {"triangle_box", "triangle_aabb"})
+            if (const cells ratios = ratios_of(times, "test/" + test + frame, "test/box" + frame); !ratios.empty())
+                candidates.push_back({{{"of", "one test"},
+                                       {"in place of the box", test},
+                                       {"leaf of", frame.empty() ? "B, carried into A's frame" : "A"}},
+                                      bootstrap(ratios),
+                                      test == "triangle_box" && frame.empty()});
+    for (const condition& c : m.of("figure2"))
+        for (const char* test : {"triangle_box", "triangle_aabb", "none"}) {
+            candidate one = candidate_of(c, {"", "", "", "", std::string("leafless:leaf_test=") + test},
+                                         {"", "", "", "", "canonical"}, detect_ms());
+            one.where = {{"of", "a query"}, {"in place of the box", test}, {"meshes", mesh_of(c)}};
+            candidates.push_back(std::move(one));
+        }
+    judge(claim, std::move(candidates));
+    claim.tables.push_back(
+        {"tests", "Time of one elementary test, and its ratio to that of a box test.", table_of(times)});
+    claim.figures.push_back(figure_of(times));
+    return claim;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,85 @@
+module;
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.report;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+selection canonical(const std::string& build) {
+    return {"", "", "", "", "canonical:build=" + build};
+}
+
+/// What each build costs and brings.
+table builds(const std::vector<condition>& conditions) {
+    table t{{{"meshes", false},
+             {"build", false},
+             {"build (ms)"},
+             {"query (ms)"},
+             {"box tests a query"},
+             {"triangle tests a query"}},
+            {}};
+    for (const condition& c : conditions)
+        for (const char* build : {"median", "mean", "sah"}) {
+            std::vector<std::string> cells{mesh_of(c), build};
+            for (const metric& of : {build_ms(), detect_ms(), count_of("box_tests"), count_of("triangle_tests")}) {
+                const auto value = c.spread(canonical(build), of);
+                cells.push_back(value ? digits_of(value->median) : "-");
+            }
+            t.rows.push_back(cells);
+        }
+    return t;
+}
+
+}  // namespace
+
+claim_result balanced_tree(const measurements& m) {
+    claim_result claim;
+    claim.id = "C8";
+    claim.claim = "The balanced (median) tree is searched faster than an unbalanced one";
+    claim.measured = "time a query, canonical tree split at the median over the same split otherwise";
+    claim.experiments = {"table1"};
+    const std::vector<condition>& conditions = m.of("table1");
+    std::vector<candidate> candidates;
+    for (const char* build : {"mean", "sah"})
+        for (const condition& c : conditions) {
+            candidates.push_back(
+                candidate_of(c, canonical("median"), canonical(build), detect_ms(), {{"over", build}}));
+            candidates.back().primary = &c == conditions.data() && std::string(build) == "mean";
+        }
+    judge(claim, std::move(candidates));
+    claim.tables.push_back(
+        {"c8_builds", "Medians of time and work of canonical trees, by where nodes are split.", builds(conditions)});
+    figure f{"c8",
+             "Time of a query in the canonical tree split at the mean and by surface area, over that split at the "
+             "median (the level 1), with 95 % intervals.",
+             {"meshes", false, {}},
+             {"time over that of median splits", false, {}},
+             {},
+             {}};
+    for (const char* build : {"mean", "sah"}) {
+        series s{build, series_style::points, {}};
+        for (std::size_t i = 0; i < conditions.size(); ++i) {
+            const candidate ratio = candidate_of(conditions[i], canonical(build), canonical("median"), detect_ms());
+            if (ratio.log_ratio.draws.empty()) continue;
+            const endpoint e = endpoint_of(ratio, expectation::less);
+            s.points.push_back({static_cast<double>(i), e.ratio, e.range.low, e.range.high});
+        }
+        f.lines.push_back(s);
+    }
+    for (std::size_t i = 0; i < conditions.size(); ++i)
+        f.x.names.emplace_back(static_cast<double>(i), mesh_of(conditions[i]));
+    f.lines.push_back({"median", series_style::level, {{0, 1, 1, 1}}});
+    claim.figures.push_back(f);
+    return claim;
+}
+
+}  // namespace aabblab

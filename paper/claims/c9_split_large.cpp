@@ -1,0 +1,58 @@
+module;
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+selection splitting(const std::string& size) {
+    return {"", "", "", size, ""};
+}
+
+}  // namespace
+
+claim_result large_objects_split(const measurements& m) {
+    claim_result claim;
+    claim.id = "C9";
+    claim.claim = "Splitting large objects before the search pays off";
+    claim.measured = "time a frame with split_large over that without, both with axial_cut";
+    claim.experiments = {"c9"};
+    std::vector<candidate> candidates;
+    figure f{"c9",
+             "Time of global search with objects split that are longer than four mean extents, over that without (the "
+             "level 1), against the number of huge objects, by their edge over the side of the world; 95 % intervals.",
+             {"huge objects", true, {}},
+             {"time over that without splitting", true, {}},
+             {},
+             {}};
+    std::map<std::string, series> by_span;
+    for (const condition& c : m.of("c9"))
+        for (const char* size : {"4", "8"}) {
+            candidates.push_back(
+                candidate_of(c, splitting(size), splitting("off"), frame_ms(), {{"split_large", size}}));
+            candidate& one = candidates.back();
+            const std::string span = value_of(c.of(), "span");
+            one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && std::string(size) == "4";
+            if (span.empty() || std::string(size) != "4" || one.log_ratio.draws.empty()) continue;
+            const endpoint e = endpoint_of(one, expectation::less);
+            series& s = by_span[span];
+            s.label = "edge " + span + " of the world";
+            s.points.push_back({number_of(c.of(), "huge"), e.ratio, e.range.low, e.range.high});
+        }
+    judge(claim, std::move(candidates));
+    for (const auto& [span, s] : by_span) f.lines.push_back(s);
+    f.lines.push_back({"not split", series_style::level, {{1, 1, 1, 1}}});
+    claim.figures.push_back(f);
+    return claim;
+}
+
+}  // namespace aabblab

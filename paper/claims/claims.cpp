@@ -1,0 +1,252 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.figures;
+import aabblab.report;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+std::string grouped(const std::string& text) {
+    if (text.size() < 5 || text.find_first_not_of("0123456789") != std::string::npos) return text;
+    std::string digits = text;
+    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+    return digits;
+}
+
+std::size_t count_of(std::span<const endpoint> all, support what) {
+    return static_cast<std::size_t>(std::ranges::count(all, what, &endpoint::found));
+}
+
+std::string where_against_band(support found, expectation expected, double ratio) {
+    if (found == support::open) return "cannot be told from the band of no difference, 0.95 to 1.05";
+    if (found == support::no_difference) return "lies within the band of no difference, 0.95 to 1.05";
+    if (found == support::favours && expected == expectation::not_more && ratio > 1 / (1 + equivalence_band))
+        return "is not above 1.05";
+    return found == support::favours ? "is below 0.95" : "is above 1.05";
+}
+
+std::string sentence_of(const claim_result& claim) {
+    if (!claim.has_primary) return "There are no measurements that decide it.";
+    std::string text =
+        fmt::format("At {} the ratio is {}, which {}", text_of(claim.primary.where), ratio_text(claim.primary),
+                    where_against_band(claim.primary.found, claim.expected, claim.primary.ratio));
+    if (claim.secondary.empty()) return text + ".";
+    return text + fmt::format(
+                      "; of {} other conditions {} favour the claim, {} contradict it, {} show no difference "
+                      "and {} are open.",
+                      claim.secondary.size(), count_of(claim.secondary, support::favours),
+                      count_of(claim.secondary, support::contradicts),
+                      count_of(claim.secondary, support::no_difference), count_of(claim.secondary, support::open));
+}
+
+/// The factors in which endpoints differ are columns.
+table endpoint_table(const claim_result& claim) {
+    std::vector<endpoint> all;
+    if (claim.has_primary) all.push_back(claim.primary);
+    all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
+    std::vector<std::string> names;
+    for (const endpoint& e : all)
+        for (const auto& [name, value] : e.where)
+            if (std::ranges::find(names, name) == names.end() &&
+                std::ranges::any_of(
+                    all, [&, n = name, v = value](const endpoint& other) { return value_of(other.where, n) != v; }))
+                names.push_back(name);
+    table t;
+    for (const std::string& name : names) t.columns.push_back({name, false});
+    t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", false}});
+    for (const endpoint& e : all) {
+        std::vector<std::string>& cells = t.rows.emplace_back();
+        for (const std::string& name : names) cells.push_back(grouped(value_of(e.where, name)));
+        cells.push_back(digits_of(e.ratio));
+        cells.push_back(digits_of(e.range.low) + " to " + digits_of(e.range.high));
+        cells.push_back(text_of(e.found) + (&e == all.data() && claim.has_primary ? " (primary)" : ""));
+    }
+    return t;
+}
+
+}  // namespace
+
+bool open_choice::flips() const {
+    return std::ranges::any_of(alternatives, [&](const alternative& a) {
+        return a.measured.found != support::open && a.measured.found != alternatives.front().measured.found;
+    });
+}
+
+endpoint endpoint_of(const candidate& c, expectation expected) {
+    const interval range = c.log_ratio.range();
+    return {c.where,
+            std::exp(c.log_ratio.value),
+            {std::exp(range.low), std::exp(range.high)},
+            support_of(expected, decide(evidence_of(c.log_ratio)))};
+}
+
+void judge(claim_result& claim, std::vector<candidate> candidates) {
+    std::erase_if(candidates, [](const candidate& c) { return !std::isfinite(c.log_ratio.value); });
+    std::vector<evidence> others;
+    for (const candidate& c : candidates) {
+        const endpoint e = endpoint_of(c, claim.expected);
+        if (c.primary && !claim.has_primary) {
+            claim.has_primary = true;
+            claim.primary = e;
+            continue;
+        }
+        claim.secondary.push_back(e);
+        others.push_back(evidence_of(c.log_ratio));
+    }
+    const std::vector<outcome> outcomes = decide_together(others);
+    std::vector<support> supports;
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        claim.secondary[i].found = support_of(claim.expected, outcomes[i]);
+        supports.push_back(claim.secondary[i].found);
+    }
+    if (claim.has_primary) {
+        claim.verdict = verdict_of(claim.primary.found, supports);
+        if (claim.verdict == verdict_kind::holds_when) {
+            std::vector<endpoint> all{claim.primary};
+            all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
+            claim.when = simplest_condition(all);
+            if (claim.when.empty())
+                claim.when = fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size());
+        }
+    }
+    claim.because = sentence_of(claim);
+    std::string name = claim.id;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    claim.tables.insert(claim.tables.begin(),
+                        {name, "Every endpoint of " + claim.id + ": " + claim.measured + ".", endpoint_table(claim)});
+}
+
+candidate candidate_of(const condition& c, const selection& arm, const selection& base, const metric& of,
+                       factors more) {
+    factors where = c.of();
+    where.insert(where.end(), more.begin(), more.end());
+    const cells ratios = c.log_ratios(arm, base, of);
+    if (ratios.empty()) return {where, {std::nan(""), {}}};
+    return {where, bootstrap(ratios)};
+}
+
+series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
+                 const selection& who, const metric& of) {
+    series s{label, series_style::line, {}};
+    for (const condition* c : conditions) {
+        const double place = x == "triangles" ? triangles_of(*c) : number_of(c->of(), x);
+        if (const auto point = c->point(place, who, of)) s.points.push_back(*point);
+    }
+    std::ranges::sort(s.points, {}, &figure_point::x);
+    return s;
+}
+
+std::string mesh_of(const condition& c) {
+    return value_of(c.of(), "meshes");
+}
+double triangles_of(const condition& c) {
+    return c.rows().empty() ? 0 : static_cast<double>(c.rows().front()->triangles.value_or(0));
+}
+
+reproduction judged(const measurements& m) {
+    reproduction all;
+    all.claims = {improved_search(m),     linear_sort(m),      shell_sort(m),      more_segments(m),
+                  cut_against_grid(m),    triangle_for_box(m), compressed_tree(m), balanced_tree(m),
+                  large_objects_split(m), one_cut_a_box(m),    whole_algorithm(m), fewer_box_tests(m)};
+    all.choices = open_choices(m);
+    all.tables = table1(m);
+    return all;
+}
+
+std::string digits_of(double value) {
+    const double size = std::abs(value);
+    if (size == 0) return "0";
+    return fmt::format("{:.{}f}", value, size < 0.01 ? 4 : size < 1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0);
+}
+
+std::string ratio_text(const endpoint& e) {
+    return fmt::format("{} ({} to {})", digits_of(e.ratio), digits_of(e.range.low), digits_of(e.range.high));
+}
+
+std::string text_of(const factors& where) {
+    std::string text;
+    for (const auto& [name, value] : where)
+        if (!value.empty())
+            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + grouped(value));
+    return text;
+}
+
+std::string text_of(support found) {
+    switch (found) {
+        case support::favours: return "for";
+        case support::no_difference: return "no difference";
+        case support::contradicts: return "against";
+        case support::open: break;
+    }
+    return "open";
+}
+
+std::string text_of(const claim_result& claim) {
+    switch (claim.verdict) {
+        case verdict_kind::holds: return "holds";
+        case verdict_kind::holds_when:
+            return claim.when.starts_with("in ") ? "holds " + claim.when : "holds when " + claim.when;
+        case verdict_kind::no_difference: return "no difference";
+        case verdict_kind::does_not_hold: return "does not hold";
+        case verdict_kind::undecided: break;
+    }
+    return "undecided";
+}
+
+table verdict_table(const reproduction& all) {
+    table t{{{"", false},
+             {"claim", false},
+             {"verdict", false},
+             {"ratio"},
+             {"95 %"},
+             {"for"},
+             {"against"},
+             {"same"},
+             {"open"}},
+            {}};
+    for (const claim_result& c : all.claims) {
+        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c)});
+        cells.push_back(c.has_primary ? digits_of(c.primary.ratio) : "-");
+        cells.push_back(c.has_primary ? digits_of(c.primary.range.low) + " to " + digits_of(c.primary.range.high)
+                                      : "-");
+        for (const support what : {support::favours, support::contradicts, support::no_difference, support::open})
+            cells.push_back(std::to_string(count_of(c.secondary, what)));
+    }
+    return t;
+}
+
+table choice_table(const reproduction& all) {
+    table t{{{"left open", false},
+             {"our choice", false},
+             {"why", false},
+             {"claim", false},
+             {"its ratio", false},
+             {"changes the outcome", false}},
+            {}};
+    for (const open_choice& c : all.choices) {
+        std::string ratios;
+        for (const open_choice::alternative& a : c.alternatives)
+            ratios += (ratios.empty() ? "" : "; ") + a.label + " " + ratio_text(a.measured);
+        t.rows.push_back({c.question, c.choice, c.why, c.claim, ratios.empty() ? "not measured" : ratios,
+                          ratios.empty() ? "-"
+                          : c.flips()    ? "yes"
+                                         : "no"});
+    }
+    return t;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,85 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// A condition on one factor.
+struct predicate {
+    std::string text;
+    std::function<bool(const factors&)> holds;
+};
+
+/// Values of a factor where it has any.
+std::set<std::string> values_of(std::span<const endpoint> all, const std::string& name) {
+    std::set<std::string> values;
+    for (const endpoint& e : all)
+        if (std::string value = value_of(e.where, name); !value.empty()) values.insert(std::move(value));
+    return values;
+}
+
+/// Where a factor is missing, nothing holds of it. `not` is for words only: of numbers it would be a hole in a range.
+void add_predicates(std::span<const endpoint> all, const std::string& name, std::vector<predicate>& found) {
+    const auto is_number = [&](const std::string& value) { return !std::isnan(number_of({{name, value}}, name)); };
+    const std::set<std::string> values = values_of(all, name);
+    for (const std::string& value : values) {
+        if (const double limit = number_of({{name, value}}, name); is_number(value)) {
+            found.push_back({name + " is at least " + value,
+                             [=](const factors& where) { return number_of(where, name) >= limit; }});
+            found.push_back(
+                {name + " is at most " + value, [=](const factors& where) { return number_of(where, name) <= limit; }});
+        }
+        found.push_back({name + " is " + value, [=](const factors& where) { return value_of(where, name) == value; }});
+    }
+    for (const std::string& value : values)
+        if (!is_number(value))
+            found.push_back({name + " is not " + value, [=](const factors& where) {
+                                 const std::string there = value_of(where, name);
+                                 return !there.empty() && there != value;
+                             }});
+}
+
+}  // namespace
+
+std::string simplest_condition(std::span<const endpoint> all) {
+    std::vector<endpoint> decided;
+    for (const endpoint& e : all)
+        if (e.found != support::open) decided.push_back(e);
+    std::vector<std::string> names;
+    for (const endpoint& e : decided)
+        for (const auto& [name, value] : e.where)
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    std::vector<predicate> predicates;
+    for (const std::string& name : names) add_predicates(decided, name, predicates);
+    const auto tells_apart = [&](auto holds) {
+        return std::ranges::all_of(decided,
+                                   [&](const endpoint& e) { return holds(e.where) == (e.found == support::favours); });
+    };
+    for (const predicate& p : predicates)
+        if (tells_apart(p.holds)) return p.text;
+    for (const predicate& p : predicates)
+        for (const predicate& q : predicates) {
+            if (&p >= &q) continue;
+            if (tells_apart([&](const factors& where) { return p.holds(where) && q.holds(where); }))
+                return p.text + " and " + q.text;
+            if (tells_apart([&](const factors& where) { return p.holds(where) || q.holds(where); }))
+                return p.text + " or " + q.text;
+        }
+    return {};
+}
+
+}  // namespace aabblab

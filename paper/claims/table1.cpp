@@ -1,0 +1,106 @@
+module;
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.report;
+import aabblab.results;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// What nodes take on paper: n triangles have n - 1 internal nodes.
+struct layout {
+    const char* name;
+    const char* options;  // beside the build
+    const char* internal;
+    const char* leaf;
+    const char* bytes;  // for a triangle, of large trees
+};
+constexpr layout layouts[] = {
+    {"canonical", "", "box 24, children 8", "box 24, triangle 4", "60"},
+    {"leafless", ",leaf_test=triangle_box", "box 24, children 8", "none", "32"},
+    {"shared_planes", "", "box 12.5, children 8", "box 12.5, triangle 4", "37"},
+    {"compressed", ",leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none", "21"},
+    {"compressed_literal", ",leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none", "21"}};
+
+selection built(const layout& one, const std::string& build) {
+    return {"", "", "", "", std::string(one.name) + ":build=" + build + one.options};
+}
+
+/// The last condition has the largest mesh.
+const condition* measured_on(const measurements& m) {
+    const std::vector<condition>& conditions = m.of("table1");
+    return conditions.empty() ? nullptr : &conditions.back();
+}
+
+table bytes_table(const condition& c) {
+    table t{{{"tree", false},
+             {"internal node", false},
+             {"leaf", false},
+             {"a triangle, on paper"},
+             {"allocated"},
+             {"of it boxes and symbols"},
+             {"indices"}},
+            {}};
+    for (const layout& one : layouts) {
+        const std::vector<const row*> rows = c.rows_of(built(one, "median"));
+        if (rows.empty()) continue;
+        const auto a_triangle = [&](const metric& of) {
+            const std::optional<double> bytes = of(*rows.front());
+            return bytes ? fmt::format("{:.2f}", *bytes / static_cast<double>(rows.front()->triangles.value_or(1)))
+                         : "-";
+        };
+        t.rows.push_back({one.name, one.internal, one.leaf, one.bytes, a_triangle(bytes_of({"nodes", "indices"})),
+                          a_triangle(bytes_of({"nodes"})), a_triangle(bytes_of({"indices"}))});
+    }
+    return t;
+}
+
+table cost_table(const condition& c) {
+    table t{{{"tree", false},
+             {"build", false},
+             {"bytes a triangle"},
+             {"boxes larger by (%)"},
+             {"build time"},
+             {"query time"}},
+            {}};
+    for (const layout& one : layouts)
+        for (const char* build : {"median", "mean", "sah"}) {
+            const std::vector<const row*> rows = c.rows_of(built(one, build));
+            if (rows.empty()) continue;
+            const auto ratio = [&](const metric& of) {
+                const candidate found = candidate_of(c, built(one, build), built(layouts[0], "median"), of);
+                return found.log_ratio.draws.empty() ? "-" : ratio_text(endpoint_of(found, expectation::less));
+            };
+            t.rows.push_back({one.name, build, fmt::format("{:.2f}", tree_bytes()(*rows.front()).value_or(0)),
+                              digits_of(100 * rows.front()->box_inflation.value_or(0)), ratio(build_ms()),
+                              ratio(detect_ms())});
+        }
+    return t;
+}
+
+}  // namespace
+
+std::vector<named_table> table1(const measurements& m) {
+    const condition* c = measured_on(m);
+    if (!c) return {};
+    return {
+        {"table1", "Nodes of every layout, byte by byte: on paper, and as allocated for trees of " + mesh_of(*c) + ".",
+         bytes_table(*c)},
+        {"table1_builds",
+         "What the layouts cost, split at the median, at the mean and by surface area: times over those of canonical, "
+         "median, on " +
+             mesh_of(*c) + ".",
+         cost_table(*c)}};
+}
+
+}  // namespace aabblab

@@ -1,0 +1,86 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+module aabblab.comparison;
+
+import aabb;
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+bool has_results(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(folder / "results.csv", ignored);
+}
+
+/// The folder, or those in it, that hold a results.csv.
+std::vector<std::filesystem::path> folders_in(const std::filesystem::path& folder) {
+    if (has_results(folder)) return {folder};
+    std::error_code error;
+    std::vector<std::filesystem::path> found;
+    for (auto entry = std::filesystem::directory_iterator(folder, error);
+         !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+        if (has_results(entry->path())) found.push_back(entry->path());
+    if (error) throw aabb::input_error(folder.string() + " cannot be read: " + error.message());
+    std::ranges::sort(found);
+    return found;
+}
+
+std::string maker_of(const manifest_summary& m) {
+    return fmt::format("commit {}, {}, {}", m.commit, m.compiler, m.cpu);
+}
+
+}  // namespace
+
+run_results read_results(const std::filesystem::path& folder) {
+    if (!std::filesystem::is_directory(folder))
+        throw aabb::input_error(folder.string() +
+                                (std::filesystem::exists(folder) ? " is not a folder" : " is not there") +
+                                "; expected a folder of results");
+    run_results run{folder, {}, {}};
+    std::map<std::string, std::filesystem::path> folder_of;  // by experiment
+    for (const std::filesystem::path& one : folders_in(folder)) {
+        std::vector<row> rows = read_rows(one / "results.csv");
+        if (rows.empty()) continue;
+        for (const row& r : rows)
+            if (const auto& before = folder_of.emplace(r.experiment, one).first->second; before != one)
+                throw aabb::input_error(
+                    fmt::format("{} and {} both hold results of the experiment {}; compare one of them",
+                                before.string(), one.string(), r.experiment));
+        run.manifests.push_back(read_manifest(one));
+        run.rows.insert(run.rows.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+    }
+    if (run.rows.empty())
+        throw aabb::input_error("there are no results in " + folder.string() +
+                                ": no results.csv with rows, neither there nor in its sub-folders");
+    return run;
+}
+
+std::string makers_of(const run_results& run) {
+    std::vector<std::string> makers;
+    for (const manifest_summary& m : run.manifests)
+        if (std::ranges::find(makers, maker_of(m)) == makers.end()) makers.push_back(maker_of(m));
+    return fmt::format("{}", fmt::join(makers, "; "));
+}
+
+void require_one_machine(const run_results& a, const run_results& b) {
+    for (const manifest_summary& of_a : a.manifests)
+        for (const manifest_summary& of_b : b.manifests)
+            if (of_a.cpu != of_b.cpu)
+                throw aabb::input_error(fmt::format(
+                    "--times compares runs of one machine only: {} is of {}, {} of {}; without it ratios are compared",
+                    a.folder.string(), maker_of(of_a), b.folder.string(), maker_of(of_b)));
+}
+
+}  // namespace aabblab

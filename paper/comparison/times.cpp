@@ -1,0 +1,120 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.comparison;
+
+import aabblab.claims;
+import aabblab.results;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+std::optional<double> log_ms(const row& r) {
+    static const metric frame = frame_ms();
+    if (!r.first_ms || !r.search_ms || !r.detect_ms) return std::nullopt;
+    const std::optional<double> ms = frame(r);
+    return std::isfinite(ms.value_or(0)) && ms.value_or(0) > 0 ? std::optional(std::log(*ms)) : std::nullopt;
+}
+
+std::optional<double> log_ms_in(const played_scenes::repeats& all, const row& same_repeat) {
+    for (const row* r : all)
+        if (r->repeat == same_repeat.repeat)
+            if (const std::optional<double> ms = log_ms(*r)) return ms;
+    return std::nullopt;
+}
+
+std::size_t size_of(const cells& all) {
+    std::size_t count = 0;
+    for (std::size_t process = 0; process < all.processes(); ++process)
+        for (std::size_t seed = 0; seed < all.seeds(); ++seed) count += all.at(process, seed).size();
+    return count;
+}
+
+/// B's mean less A's. What is drawn of the one does not depend on what is drawn of the other, so that every draw of A
+/// may meet every draw of B; each meets `rounds` of them, taken at random.
+estimate change_of(const estimate& a, const estimate& b, std::size_t rounds) {
+    std::mt19937_64 random;  // gives the same numbers everywhere, which the library's shuffle does not
+    std::vector<double> of_b = b.draws;
+    estimate result{b.value - a.value, {}};
+    result.draws.reserve(rounds * of_b.size());
+    for (std::size_t round = 0; round < rounds; ++round) {
+        for (std::size_t i = of_b.size(); i > 1; --i) std::swap(of_b[i - 1], of_b[random() % i]);
+        for (std::size_t i = 0; i < of_b.size(); ++i) result.draws.push_back(of_b[i] - a.draws[i]);
+    }
+    std::ranges::sort(result.draws);
+    return result;
+}
+
+/// The chance that n values all lie above m others of the same distribution: no test may be surer than that. The
+/// bootstrap of a few values would be, as it knows no others; of a single one it knows no noise at all.
+double least_chance(std::size_t n, std::size_t m) {
+    double chance = 1;
+    for (std::size_t i = 1; i <= n; ++i) chance *= static_cast<double>(i) / static_cast<double>(m + i);
+    return chance;
+}
+
+}  // namespace
+
+cells log_times(const played_scenes& run, const shared_scene& in, const contender_name& who,
+                const contender_name* base) {
+    std::vector<std::uint64_t> processes;
+    for (const std::string& seed : in.seeds)
+        for (const row* r : run.of(seed, who)) processes.push_back(r->process);
+    std::ranges::sort(processes);
+    const auto twice = std::ranges::unique(processes);
+    processes.erase(twice.begin(), twice.end());
+    cells all(processes.size(), in.seeds.size());
+    for (std::size_t seed = 0; seed < in.seeds.size(); ++seed)
+        for (const row* r : run.of(in.seeds[seed], who)) {
+            const std::optional<double> own = log_ms(*r);
+            const std::optional<double> other = base ? log_ms_in(run.of(in.seeds[seed], *base), *r) : 0;
+            if (!own || !other) continue;
+            const auto process = std::ranges::lower_bound(processes, r->process) - processes.begin();
+            all.add(static_cast<std::size_t>(process), seed, *own - *other);
+        }
+    return all;
+}
+
+std::optional<contender_name> base_of(const shared_scene& in, const played_scenes& a, const played_scenes& b) {
+    for (const contender_name& name : in.names)
+        if (!log_times(a, in, name, nullptr).empty() && !log_times(b, in, name, nullptr).empty()) return name;
+    return std::nullopt;
+}
+
+std::vector<compared_time> judged(std::span<const two_sides> all) {
+    // Holm's rule asks of the first of many for a chance that 4,000 draws cannot show.
+    const std::size_t rounds = 1 + all.size() / 50;
+    std::vector<compared_time> times;
+    std::vector<evidence> evidences;
+    for (const two_sides& line : all) {
+        const estimate a = bootstrap(line.a);
+        const estimate b = bootstrap(line.b);
+        const estimate change = change_of(a, b, rounds);
+        const interval around = change.range();
+        const double least = least_chance(size_of(line.a), size_of(line.b));
+        evidence& shown = evidences.emplace_back(evidence_of(change));
+        shown.p = std::max(shown.p, least);
+        compared_time& time = times.emplace_back();
+        time.in_a = std::exp(a.value);
+        time.in_b = std::exp(b.value);
+        time.change = std::exp(change.value);
+        time.around = {std::exp(around.low), std::exp(around.high)};
+        time.too_few = decide({outcome::more, least * static_cast<double>(all.size())}) == outcome::open;
+    }
+    const std::vector<outcome> outcomes = decide_together(evidences);
+    for (std::size_t i = 0; i < times.size(); ++i) times[i].found = outcomes[i];
+    return times;
+}
+
+}  // namespace aabblab

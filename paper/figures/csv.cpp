@@ -1,0 +1,45 @@
+module;
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+module aabblab.figures;
+
+import aabblab.results;
+import :drawing;
+import :text;
+
+namespace aabblab {
+
+namespace {
+
+[[nodiscard]] std::string name_at(const figure_axis& axis, double place) {
+    for (const auto& [at, name] : axis.names)
+        if (at == place) return one_line(name);
+    return {};
+}
+
+}  // namespace
+
+std::string csv_of(const figure& f) {
+    // Text stands last, where gnuplot need not understand its quotes.
+    std::vector<std::string> header{"number", "x", "y", "low", "high", "series"};
+    if (!f.x.names.empty()) header.emplace_back("x_name");
+    if (!f.y.names.empty()) header.emplace_back("y_name");
+    std::string text = csv_line(header);
+    for (std::size_t i = 0; i < f.lines.size(); ++i)
+        for (const figure_point& p : points_of(f.lines[i])) {
+            const bool level = f.lines[i].style == series_style::level;
+            std::vector<std::string> fields{fmt::format("{}", i + 1), level ? "" : fmt::format("{}", p.x)};
+            for (const double value : {p.y, p.low, p.high}) fields.push_back(fmt::format("{}", value));
+            fields.push_back(one_line(f.lines[i].label));
+            if (!f.x.names.empty()) fields.push_back(level ? "" : name_at(f.x, p.x));
+            if (!f.y.names.empty()) fields.push_back(name_at(f.y, p.y));
+            text += csv_line(fields);
+        }
+    return text;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,55 @@
+module;
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What a figure is made of.
+export module aabblab.figures:figure;
+
+export namespace aabblab {
+
+/// One measured value and its quartiles; all three are equal where nothing varies. What is not finite is left out, and
+/// so is, on a logarithmic axis, what is not positive.
+struct figure_point {
+    double x;
+    double y;
+    double low;
+    double high;
+};
+
+/// How a series is drawn. Quartiles show only where low < high.
+enum class series_style : unsigned char {
+    line,    ///< points joined in their order, with a band from quartile to quartile
+    points,  ///< points alone, with quartile bars; over names, those of several series stand side by side
+    level,   ///< a horizontal line over the whole width at the first point's y, with its band; x does not matter
+};
+
+struct series {
+    std::string label;  ///< in the legend, where it is not empty
+    series_style style = series_style::line;
+    std::vector<figure_point> points;  ///< a series without is left out; the others look as if it were there
+};
+
+struct figure_axis {
+    std::string label;  ///< with the unit: "time a frame (ms)"
+    bool logarithmic = false;
+    /// Where the axis has names in place of numbers: each with its place, from left to right.
+    std::vector<std::pair<double, std::string>> names;
+};
+
+/// A vertical line with a few words above it.
+struct figure_mark {
+    double x;
+    std::string label;
+};
+
+struct figure {
+    std::string name;     ///< of its files, without ending: "figure1"
+    std::string caption;  ///< one sentence or two; stands beside the figure in reports, not in it
+    figure_axis x;
+    figure_axis y;
+    std::vector<series> lines;  ///< ten can be told apart
+    std::vector<figure_mark> marks;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,136 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.figures;
+
+import :scale;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::string_view minus_sign = "\u2212";
+
+[[nodiscard]] std::string number_text(double value, int decimals) {
+    std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
+    const std::size_t point = std::min(digits.find('.'), digits.size());
+    for (std::size_t i = point; i > 3; i -= 3) digits.insert(i - 3, ",");
+    return (value < 0 ? std::string(minus_sign) : std::string()) + digits;
+}
+
+[[nodiscard]] std::string power_text(double mantissa, int exponent, int decimals) {
+    const std::string power =
+        fmt::format("10^{{{}{}}}", exponent < 0 ? minus_sign : std::string_view(), std::abs(exponent));
+    return mantissa == 1 ? power : number_text(mantissa, decimals) + "\u00d7" + power;
+}
+
+/// The power of ten of the first digit.
+[[nodiscard]] int exponent_of(double value) {
+    return static_cast<int>(std::floor(std::log10(value) + 1e-9));
+}
+
+/// 1, 2 or 5 times a power of ten, so that the span has about so many.
+[[nodiscard]] double step_of(double span, int wanted) {
+    const double least = span / wanted;
+    const double power = std::pow(10, exponent_of(least));
+    for (const double times : {1, 2, 5})
+        if (times * power >= least * (1 - 1e-9)) return times * power;
+    return 10 * power;
+}
+
+[[nodiscard]] std::vector<tick> linear_ticks(double from, double to, double step) {
+    const double first = std::ceil(from / step - 1e-6);
+    const double last = std::floor(to / step + 1e-6);
+    const double largest = std::max(std::abs(first), std::abs(last)) * step;
+    const int step_exponent = exponent_of(step);
+    const bool powers = largest >= 1e7 || step < 1e-5;
+    const int exponent = powers ? exponent_of(largest) : 0;
+    const int decimals = std::max(0, exponent - step_exponent);
+    std::vector<tick> ticks;
+    for (double i = first; i <= last; ++i) {
+        const double at = i == 0 ? 0 : i * step;
+        ticks.push_back({at, powers && at != 0 ? power_text(at * std::pow(10, -exponent), exponent, decimals)
+                                               : number_text(at, at == 0 && powers ? 0 : decimals)});
+    }
+    return ticks;
+}
+
+[[nodiscard]] bool labelled(const tick& t) {
+    return !t.label.empty();
+}
+
+/// The given multiples of every so many powers of ten with numbers, the others without.
+[[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
+    const bool powers = from < 0.9e-4 || to > 1.1e6;
+    std::vector<tick> ticks;
+    for (int exponent = exponent_of(from); exponent <= exponent_of(to); ++exponent)
+        for (int times = 1; times < 10; ++times) {
+            // Divided, because a power below 1 is rounded itself.
+            const double at = exponent < 0 ? times / std::pow(10, -exponent) : times * std::pow(10, exponent);
+            if (at < from * (1 - 1e-9) || at > to * (1 + 1e-9)) continue;
+            const bool of_these = std::ranges::find(multiples, times) != multiples.end();
+            if (of_these && exponent % decades == 0)
+                ticks.push_back(
+                    {at, powers ? power_text(times, exponent, 0) : number_text(at, std::max(0, -exponent))});
+            else if (decades == 1 || times == 1)
+                ticks.push_back({at, {}});
+        }
+    return ticks;
+}
+
+[[nodiscard]] std::vector<tick> log_ticks(double from, double to) {
+    constexpr std::array<int, 1> ones{1};
+    constexpr std::array<int, 3> few{1, 2, 5};
+    constexpr std::ptrdiff_t enough = 3;
+    const int decades = 1 + static_cast<int>(std::log10(to / from) / 7);
+    if (auto ticks = decade_ticks(from, to, ones, decades); std::ranges::count_if(ticks, labelled) >= enough)
+        return ticks;
+    if (auto ticks = decade_ticks(from, to, few, 1); std::ranges::count_if(ticks, labelled) >= enough) return ticks;
+    return linear_ticks(from, to, step_of(to - from, 6));
+}
+
+}  // namespace
+
+double scale::place(double value) const {
+    return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
+}
+
+scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
+    scale s{least, greatest, logarithmic, {}, false};
+    if (logarithmic) {
+        const double beyond = least == greatest ? 2 : std::pow(greatest / least, 0.04);
+        s.from = least / beyond;
+        s.to = greatest * beyond;
+        s.ticks = log_ticks(s.from, s.to);
+        return s;
+    }
+    if (least == greatest) {
+        const double beyond = least == 0 ? 1 : std::abs(least) / 2;
+        s.from -= beyond;
+        s.to += beyond;
+    }
+    if (end == scale_end::on_ticks) {
+        if (s.from > 0 && s.from <= s.to / 2) s.from = 0;
+        const double step = step_of(s.to - s.from, 5);
+        s.from = std::floor(s.from / step + 1e-6) * step;
+        s.to = std::ceil(s.to / step - 1e-6) * step;
+        s.ticks = linear_ticks(s.from, s.to, step);
+    } else {
+        const double beyond = 0.03 * (s.to - s.from);
+        s.from = s.from >= 0 && s.from <= 3 * beyond ? 0 : s.from - beyond;
+        s.to += beyond;
+        s.ticks = linear_ticks(s.from, s.to, step_of(s.to - s.from, 6));
+    }
+    return s;
+}
+
+}  // namespace aabblab

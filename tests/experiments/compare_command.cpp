@@ -1,0 +1,323 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.comparison;
+import aabblab.config;
+import aabblab.results;
+import aabblab.statistics;
+
+using aabblab::outcome;
+using aabblab::row;
+
+namespace {
+
+/// Synthetic results: what plays a scene, and how long a frame takes it.
+struct measured {
+    std::vector<std::pair<std::string, double>> sorts = {{"insertion", 1}, {"std", 2}, {"shell", 0.5}};
+    double machine = 1;   ///< how slow it is
+    double noise = 0.01;  ///< relative, of each time by itself
+    double drift = 1;     ///< by how much of itself the machine gets slower with each repeat
+    std::uint64_t seeds = 3, repeats = 9;
+    std::string experiment = "test";
+    std::uint32_t hour = 1;  ///< other noise at another
+};
+
+std::vector<row> rows_of(const measured& m) {
+    std::mt19937 random(m.hour);
+    const auto noise = [&] { return 1 + m.noise * (static_cast<double>(random() % 2001) / 1000 - 1); };
+    std::vector<row> rows;
+    for (std::uint64_t seed = 1; seed <= m.seeds; ++seed)
+        for (std::uint64_t repeat = 0; repeat < m.repeats; ++repeat)
+            for (const auto& [sort, ms] : m.sorts) {
+                row& r = rows.emplace_back();
+                r.experiment = m.experiment;
+                r.scene = "brownian";
+                r.scene_parameters = "objects=10 frames=3 seed=" + std::to_string(seed);
+                r.objects = 10;
+                r.frames = 4;
+                r.name.sort = sort;
+                r.name.sweep = "one_axis";
+                r.repeat = repeat;
+                r.process = repeat % 3;
+                r.build_ms = 1;
+                r.first_ms = 5;
+                r.update_ms = 3 * ms * m.machine * noise() * (1 + m.drift * static_cast<double>(repeat));
+                r.search_ms = r.detect_ms = 0;
+                r.candidates = 7;
+                r.digest = "00000000000000a" + std::to_string(seed);
+                r.counts[0] = 1000 * seed;
+                r.bytes[0] = 4096;
+                r.status = "exact";
+            }
+    return rows;
+}
+
+aabblab::run_results run_of(const measured& m) {
+    return {"run", rows_of(m), {}};
+}
+
+/// The outcomes of the ratios of two runs, in order.
+std::vector<outcome> outcomes_of(const measured& a, const measured& b) {
+    const aabblab::comparison found = compare(run_of(a), run_of(b), aabblab::compared::ratios);
+    REQUIRE(found.scenes.size() == 1);  // whatever the seeds
+    std::vector<outcome> all;
+    for (const aabblab::compared_time& time : found.scenes[0].ratios) all.push_back(time.found);
+    return all;
+}
+
+std::string write_results(const std::filesystem::path& folder, const std::vector<row>& rows) {
+    const aabblab::experiment e = aabblab::parse_experiment(
+        "name = \"test\"\n[[scene]]\nkind = \"brownian\"\nobjects = 10\nframes = 3\n[compose]\nsort = \"std\"\n",
+        "test.toml", aabblab::experiment_size::full);
+    aabblab::results_folder results(folder, e, aabblab::existing_results::refuse);
+    for (const row& r : rows) results.add(r);
+    return folder.string();
+}
+
+void change_processor(const std::filesystem::path& folder, const std::string& cpu) {
+    auto manifest = nlohmann::ordered_json::parse(bytes_of_file(folder / "manifest.json"));
+    manifest["build"]["cpu"] = cpu;
+    std::ofstream(folder / "manifest.json") << manifest.dump();
+}
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("What has not changed is found to be the same, though every time is another") {
+    REQUIRE(outcomes_of({}, {.hour = 2}) == std::vector{outcome::same, outcome::same});
+}
+
+TEST_CASE("What became slower against its base is found, though the machine is twice as slow in everything") {
+    const measured b{.sorts = {{"insertion", 1}, {"std", 2.4}, {"shell", 0.5}}, .machine = 2, .hour = 2};
+    REQUIRE(outcomes_of({}, b) == std::vector{outcome::more, outcome::same});
+    REQUIRE(outcomes_of(b, {}) == std::vector{outcome::less, outcome::same});
+    const auto found = compare(run_of({}), run_of(b), aabblab::compared::ratios_and_times);
+    const aabblab::compared_scene& scene = found.scenes.at(0);
+    REQUIRE(scene.parameters == "objects=10 frames=3");
+    REQUIRE(scene.base == "insertion");
+    REQUIRE(scene.ratios[0].label == "std");
+    CHECK(std::abs(scene.ratios[0].in_a - 2) < 0.02);
+    CHECK(std::abs(scene.ratios[0].in_b - 2.4) < 0.02);
+    CHECK(std::abs(scene.ratios[0].change - 1.2) < 0.02);
+    CHECK(scene.ratios[0].around.low < 1.2);
+    CHECK(scene.ratios[0].around.low > 1.15);
+    CHECK(scene.ratios[0].around.high > 1.2);
+    CHECK(scene.ratios[0].around.high < 1.25);
+    REQUIRE(scene.times.size() == 3);
+    for (const aabblab::compared_time& time : scene.times) CHECK(time.change > 1.9);
+}
+
+TEST_CASE("Few noisy repeats leave it open, and so few that nothing could show it say so") {
+    const measured slower{.sorts = {{"insertion", 1}, {"std", 2.2}}, .noise = 0.2, .seeds = 1, .repeats = 6, .hour = 2};
+    measured a = slower;
+    a.sorts[1].second = 2;
+    a.hour = 1;
+    REQUIRE(outcomes_of(a, slower) == std::vector{outcome::open});
+    // One repeat has no noise to be seen, so that anything would seem to be beyond it.
+    const measured once{.noise = 0, .seeds = 1, .repeats = 1};
+    measured twice_as_slow = once;
+    twice_as_slow.sorts[1].second = 4;
+    const auto found = compare(run_of(once), run_of(twice_as_slow), aabblab::compared::ratios);
+    for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
+        CHECK(time.found == outcome::open);
+        CHECK(time.too_few);
+    }
+    const auto enough = compare(run_of(a), run_of(slower), aabblab::compared::ratios);
+    CHECK_FALSE(enough.scenes.at(0).ratios.at(0).too_few);
+}
+
+TEST_CASE("One change among hundreds of lines is found") {
+    measured a;
+    for (int i = 0; i < 300; ++i) a.sorts.emplace_back("sort" + std::to_string(i), 1);
+    measured b = a;
+    b.hour = 2;
+    b.sorts[7].second *= 1.2;
+    const std::vector<outcome> found = outcomes_of(a, b);
+    REQUIRE(found.size() == 302);
+    REQUIRE(found[6] == outcome::more);
+    REQUIRE(std::ranges::count(found, outcome::same) == 301);
+}
+
+TEST_CASE("The base is the first in A that both have, and what only one has is counted") {
+    aabblab::run_results a = run_of({});
+    for (row& r : a.rows)
+        if (r.name.sort == "insertion") r.name.sweep = "all_axes";
+    const measured b{.sorts = {{"shell", 0.5}, {"std", 2}, {"quick", 1}}, .seeds = 2, .hour = 2};
+    const auto found = compare(a, run_of(b), aabblab::compared::ratios);
+    REQUIRE(found.scenes.at(0).base == "std");
+    REQUIRE(found.scenes[0].ratios.size() == 1);
+    REQUIRE(found.scenes[0].ratios[0].label == "shell");  // what the two have differs in the sort only
+    REQUIRE(found.answers_compared == 2);
+    REQUIRE(found.only_in_a == 3 + 2);  // all of the third seed, insertion in two
+    REQUIRE(found.only_in_b == 2);
+}
+
+TEST_CASE("Counts and bytes are compared one by one, and so are the answers of what is exact") {
+    const aabblab::run_results a = run_of({});
+    aabblab::run_results b = run_of({.hour = 2});
+    for (row& r : b.rows)
+        if (r.name.sort == "std")
+            r.counts[0] = *r.counts[0] + 60;
+        else if (r.name.sort == "shell" && !r.scene_parameters.ends_with("seed=3"))
+            r.counts[0] = 3000 - *r.counts[0];
+    const auto changed = compare(a, b, aabblab::compared::ratios);
+    REQUIRE(changed.answers.empty());
+    REQUIRE(changed.scenes.at(0).changed.size() == 2);
+    const aabblab::changed_number& number = changed.scenes[0].changed[0];
+    REQUIRE(number.label == "std");
+    REQUIRE(number.what == "comparisons");
+    REQUIRE(number.in_a == 6000);
+    REQUIRE(number.in_b == 6180);
+    // A change that the sum over the seeds does not show.
+    REQUIRE(changed.scenes[0].changed[1].label == "shell");
+    REQUIRE(changed.scenes[0].changed[1].in_a == changed.scenes[0].changed[1].in_b);
+    REQUIRE(changed.numbers_compared == 3 * 3);  // with the pairs
+
+    for (row& r : b.rows)
+        if (r.name.sort == "std" && r.scene_parameters.ends_with("seed=2")) {
+            r.digest = "0123456789abcdef";
+            r.status = "inexact";
+        }
+    REQUIRE(compare(a, b, aabblab::compared::ratios).answers.empty());
+    for (row& r : b.rows) r.status = "exact";
+    const auto different = compare(a, b, aabblab::compared::ratios);
+    REQUIRE(different.answers.size() == 1);
+    REQUIRE(different.answers[0].parameters == "objects=10 frames=3 seed=2");
+    REQUIRE(different.answers[0].in_a == "00000000000000a2");
+}
+
+TEST_CASE("compare lists what changed beyond noise, or all, and ends with status 0") {
+    const temporary_folder folder;
+    const std::string a = write_results(folder / "a", rows_of({}));
+    std::vector<row> slower = rows_of({.sorts = {{"insertion", 1}, {"std", 2.4}, {"shell", 0.5}}, .hour = 2});
+    for (row& r : slower) r.bytes[0] = 8192;
+    const std::string b = write_results(folder / "b", slower);
+    const program_result result = run_program({"compare", a, b});
+    INFO(result.out + result.err);
+    REQUIRE(result.status == 0);
+    CHECK(result.err.empty());
+    CHECK(result.out.starts_with("A: " + a + " (commit "));
+    CHECK(has(result.out, "test: brownian, objects=10 frames=3; time over that of 'insertion'\n"));
+    CHECK(has(result.out, "\nstd "));
+    CHECK_FALSE(has(result.out, " same\n"));
+    CHECK(has(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 open\n"));
+    CHECK(has(result.out, "bytes_projections  12288  24576  +100.00\n"));
+    CHECK(has(result.out, "\n9 counts and sizes compared: 3 changed\n"));
+    const program_result all = run_program({"compare", a, b, "--all"});
+    CHECK(has(all.out, "\nshell "));
+    CHECK(has(all.out, " same\n"));
+    const program_result itself = run_program({"compare", a, a});
+    CHECK(itself.status == 0);
+    CHECK(has(itself.out,
+              "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 open\n"
+              "9 counts and sizes compared: 0 changed\n"));
+    CHECK_FALSE(has(itself.out, "left out"));
+}
+
+TEST_CASE("compare ends with status 1 where answers differ, which it says first") {
+    const temporary_folder folder;
+    const std::string a = write_results(folder / "a", rows_of({}));
+    std::vector<row> wrong = rows_of({.hour = 2});
+    for (row& r : wrong)
+        if (r.scene_parameters.ends_with("seed=3")) r.digest = "0123456789abcdef";
+    const std::string b = write_results(folder / "b", wrong);
+    const program_result result = run_program({"compare", a, b});
+    INFO(result.out);
+    REQUIRE(result.status == 1);
+    CHECK(result.err.empty());
+    CHECK(has(result.out, "the answers differ in 1 of 3 scenes\n"));
+    CHECK(has(result.out, "seed=3  00000000000000a3  0123456789abcdef\n"));
+    CHECK(result.out.find("the answers differ") < result.out.find("ratios compared"));
+}
+
+TEST_CASE("compare takes absolute times of one machine only, and warns of them") {
+    const temporary_folder folder;
+    const std::string a = write_results(folder / "a", rows_of({.drift = 0}));
+    const std::string b = write_results(folder / "b", rows_of({.machine = 2, .drift = 0, .hour = 2}));
+    const program_result one = run_program({"compare", a, b, "--times"});
+    INFO(one.out + one.err);
+    REQUIRE(one.status == 0);
+    CHECK(is_one_sentence(one.err));
+    CHECK(has(one.err, "differ by more than the noise within"));
+    CHECK(has(one.out, "\n2 ratios compared: 0 changed beyond noise, 2 unchanged"));
+    CHECK(has(one.out, "\n3 times compared: 3 changed beyond noise, 0 unchanged"));
+    change_processor(b, "Abacus 9");
+    const program_result two = run_program({"compare", a, b, "--times"});
+    INFO(two.err);
+    REQUIRE(two.status == 2);
+    CHECK(two.out.empty());
+    CHECK(is_one_sentence(two.err));
+    CHECK(has(two.err, "Abacus 9"));
+    CHECK(has(two.err, aabblab::read_manifest(a).cpu));
+    const program_result ratios = run_program({"compare", a, b});
+    CHECK(ratios.status == 0);
+    CHECK(has(ratios.out, "B: " + b + " (commit "));
+    CHECK(has(ratios.out, "Abacus 9)\n"));
+}
+
+TEST_CASE("compare takes folders of several experiments, and leaves out what one of the two does not have") {
+    const temporary_folder folder;
+    write_results(folder / "a/first", rows_of({.experiment = "first"}));
+    write_results(folder / "a/second", rows_of({.experiment = "second"}));
+    std::filesystem::create_directories(folder / "a/c6");
+    std::ofstream(folder / "a/c6/process-0.json") << "{}";
+    const std::string b = write_results(folder / "b", rows_of({.experiment = "second", .hour = 2}));
+    const program_result result = run_program({"compare", (folder / "a").string(), b, "--all"});
+    INFO(result.out + result.err);
+    REQUIRE(result.status == 0);
+    CHECK(has(result.out, "\nsecond: brownian, "));
+    CHECK_FALSE(has(result.out, "\nfirst: brownian, "));
+    CHECK(has(result.out, "\n2 ratios compared: "));
+    CHECK(has(result.out, "left out is what only one of them has: 9 compositions in a scene of A, 0 of B\n"));
+}
+
+TEST_CASE("compare refuses what holds no results, with one sentence") {
+    const temporary_folder folder;
+    const std::string good = write_results(folder / "good", rows_of({}));
+    const std::string other = write_results(folder / "other", rows_of({.experiment = "other"}));
+    const std::string none = write_results(folder / "none", {});
+    const std::string empty = folder / "empty";
+    std::filesystem::create_directories(empty);
+    const std::string torn = write_results(folder / "torn", rows_of({}));
+    std::ofstream(folder / "torn/results.csv", std::ios::app) << "test,brownian\n";
+    const std::string unsaid = write_results(folder / "unsaid", rows_of({}));
+    std::filesystem::remove(folder / "unsaid/manifest.json");
+    write_results(folder / "twice/x", rows_of({}));
+    write_results(folder / "twice/y", rows_of({}));
+    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+        {{good}, "B is required"},
+        {{good, folder / "nowhere"}, "nowhere is not there; expected a folder of results"},
+        {{folder / "good/results.csv", good}, "results.csv is not a folder"},
+        {{good, empty}, "there are no results in " + empty},
+        {{none, good}, "there are no results in " + none},
+        {{good, other}, "have no scene in common"},
+        {{good, torn}, "results.csv:83: the column scene_parameters is missing"},
+        {{unsaid, good}, "manifest.json is not there"},
+        {{folder / "twice", good}, "both hold results of the experiment test"},
+        {{good, good, "--tiems"}, "did you mean '--times'?"},
+    };
+    for (const auto& [arguments, said] : refused) {
+        const program_result result = run_program(joined({"compare"}, arguments));
+        INFO(result.err);
+        CHECK(result.status == 2);
+        CHECK(result.out.empty());
+        CHECK(is_one_sentence(result.err));
+        CHECK(has(result.err, said));
+    }
+}

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.config;
+import aabblab.results;
+import aabblab.runner;
+
+using aabblab::existing_results;
+using aabblab::results_folder;
+using aabblab::row;
+
+namespace {
+
+constexpr const char* config =
+    "name = \"shared\"\nseed = [1, 2]\nquick = { seed = 3 }\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 2\n"
+    "[compose]\nsort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 6\nprocesses = 3\nquick = { repeats = 2 }\n";
+
+/// All of a row but its times.
+std::set<std::string> answers(const std::filesystem::path& results) {
+    std::set<std::string> all;
+    for (const row& r : aabblab::read_rows(results / "results.csv")) {
+        std::string text = r.key() + " " + std::to_string(r.process) + " " + r.digest + " " + r.status;
+        for (const auto& count : r.counts) text += " " + std::to_string(count.value_or(0));
+        all.insert(text);
+    }
+    return all;
+}
+
+/// Leaves the first lines, and half of the next, as a process that is killed does.
+void cut_off(const std::filesystem::path& file, std::size_t lines) {
+    const std::string all = bytes_of_file(file);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < lines; ++i) at = all.find('\n', at) + 1;
+    std::ofstream(file, std::ios::binary) << all.substr(0, at + 40);
+}
+
+}  // namespace
+
+TEST_CASE("Fresh processes share the repeats, and one validates for all") {
+    const temporary_folder folder;
+    const std::string file = folder.write("shared.toml", config).string();
+    const std::string out = (folder / "out").string();
+    const program_result ran = run_program({"run", file, "--out", out});
+    INFO(ran.err);
+    REQUIRE(ran.status == 0);
+    REQUIRE(ran.out.find("insertion") != std::string::npos);
+    const std::vector<row> rows = aabblab::read_rows(folder / "out/results.csv");
+    REQUIRE(rows.size() == 2 * 2 * 6);
+    for (const row& r : rows) {
+        CHECK(r.process == r.repeat / 2);
+        CHECK(r.digest == std::ranges::find(rows, r.scene_parameters, &row::scene_parameters)->digest);
+        CHECK(r.update_ms.has_value());
+        CHECK(r.counts == std::ranges::find_if(rows, [&](const row& other) {
+                              return other.name == r.name && other.scene_parameters == r.scene_parameters;
+                          })->counts);
+    }
+    // In the order of the processes, so that their times lie apart.
+    CHECK(std::ranges::is_sorted(rows, {}, &row::process));
+}
+
+TEST_CASE("A run killed half-way and resumed ends with the rows of one that was not") {
+    const temporary_folder folder;
+    const std::string file = folder.write("shared.toml", config).string();
+    const std::string out = (folder / "out").string();
+    REQUIRE(run_program({"run", file, "--out", out}).status == 0);
+    const std::set<std::string> whole = answers(folder / "out");
+    // In the first process, between two, in the last.
+    for (const std::size_t lines : {1, 4, 9, 13, 24}) {
+        CAPTURE(lines);
+        cut_off(folder / "out/results.csv", lines);
+        const program_result resumed = run_program({"run", file, "--out", out, "--resume"});
+        INFO(resumed.err);
+        REQUIRE(resumed.status == 0);
+        REQUIRE(answers(folder / "out") == whole);
+    }
+}
+
+TEST_CASE("A quick run takes the seeds of quick, and no more processes than repeats") {
+    const temporary_folder folder;
+    const std::string file = folder.write("shared.toml", config).string();
+    REQUIRE(run_program({"run", file, "--quick", "--out", (folder / "out").string()}).status == 0);
+    const std::vector<row> rows = aabblab::read_rows(folder / "out/results.csv");
+    REQUIRE(rows.size() == 2 * 2);
+    for (const row& r : rows) {
+        CHECK(r.scene_parameters.ends_with("seed=3"));
+        CHECK(r.process == r.repeat);
+    }
+}
+
+TEST_CASE("What the first process found wrong is not timed by the others") {
+    const temporary_folder folder;
+    const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
+    results_folder results(folder / "r", e, existing_results::refuse);
+    std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], std::span(contenders).first(1), results, 0).empty());
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 1).empty());
+    REQUIRE(results.rows().size() == 4);
+    for (const row& r : results.rows()) CHECK(r.name == contenders[0].name);
+}
+
+TEST_CASE("A repeat of a later process that finds other pairs is named, and its composition loses its rows") {
+    const temporary_folder folder;
+    const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
+    results_folder results(folder / "r", e, existing_results::refuse);
+    std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 0).empty());
+    // The name of the first, and nothing of what it finds.
+    contenders[0].make_global = [](aabb::instrumentation) -> std::unique_ptr<aabb::global_stage> {
+        class blind final : public aabb::global_stage {
+        public:
+            void insert(std::uint32_t) override {}
+            void remove(std::uint32_t) override {}
+            void update(std::span<const aabb::box>) override {}
+            void search(std::vector<aabb::index_pair>&) override {}
+            [[nodiscard]] aabb::work_counters counters() const override { return {}; }
+            [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
+            [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+        };
+        return std::make_unique<blind>();
+    };
+    const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results, 1);
+    REQUIRE(failures.size() == 1);
+    CHECK(failures[0].starts_with("std + none + one_axis is wrong on brownian"));
+    for (const row& r : results.rows()) CHECK(r.name == contenders[1].name);
+}
+
+TEST_CASE("More processes than repeats are refused, as is a seed of quick that is none") {
+    const auto refusal_of = [](const std::string& text) -> std::string {
+        try {
+            (void)aabblab::parse_experiment(text, "my.toml", aabblab::experiment_size::full);
+        } catch (const aabb::input_error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string scene = "[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n";
+    CHECK(refusal_of("name = \"a\"\n" + scene + "[measure]\nrepeats = 2\nprocesses = 3\n") ==
+          "my.toml:8: processes must be at most repeats, which is 2");
+    CHECK(refusal_of("name = \"a\"\n" + scene + "[measure]\nprocesses = 0\n").starts_with("my.toml:7: processes "));
+    CHECK(refusal_of("name = \"a\"\nquick = { seeds = 1 }\n" + scene).find("did you mean 'seed'?") !=
+          std::string::npos);
+    CHECK(
+        refusal_of("name = \"a\"\nquick = 3\n" + scene).starts_with("my.toml:2: quick is a number; expected a table"));
+}

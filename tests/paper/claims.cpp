@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../experiments/temporary_folder.hpp"
+
+#include "worlds.hpp"
+
+import aabblab.claims;
+import aabblab.reproduction;
+import aabblab.statistics;
+
+using aabblab::claim_result;
+using aabblab::endpoint;
+using aabblab::support;
+using aabblab::verdict_kind;
+
+namespace {
+
+std::vector<std::string> verdicts_of(const aabblab::reproduction& all) {
+    std::vector<std::string> texts;
+    for (const claim_result& c : all.claims) texts.push_back(c.id + " " + text_of(c));
+    return texts;
+}
+
+std::vector<std::string> each(const std::string& verdict) {
+    std::vector<std::string> texts;
+    for (int i = 1; i <= 12; ++i) texts.push_back("C" + std::to_string(i) + " " + verdict);
+    return texts;
+}
+
+/// A world in which `tell` changes the rows of one experiment of otherwise equal times.
+aabblab::reproduction reproduction_where(const std::string& experiment,
+                                         const std::function<void(const worlds::played&, aabblab::row&)>& tell) {
+    const temporary_folder folder;
+    for (const aabblab::experiment& e : worlds::all_experiments())
+        if (e.name == experiment) worlds::write_experiment(folder.path(), e, tell);
+    return judged(aabblab::measurements(folder.path()));
+}
+
+/// Of the LaTeX report, without its comments.
+std::string paper_text() {
+    std::string text;
+    for (const auto& file :
+         std::filesystem::recursive_directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "../paper/tex")) {
+        if (file.path().extension() != ".tex") continue;
+        std::ifstream in(file.path());
+        for (std::string line; std::getline(in, line);)
+            if (!line.starts_with("%")) text += line + "\n";
+    }
+    return text;
+}
+
+endpoint at(const std::string& scene, const std::string& objects, support found) {
+    return {{{"scene", scene}, {"objects", objects}}, 1, {1, 1}, found};
+}
+
+}  // namespace
+
+TEST_CASE("Every claim holds in a world where it is true, and in no other") {
+    struct world {
+        double ratio, noise;
+        std::string verdict;
+    };
+    for (const world& w : {world{0.6, 0.01, "holds"}, {1.7, 0.01, "does not hold"}}) {
+        const temporary_folder folder;
+        worlds::write_world(folder.path(), w.ratio, w.noise);
+        const aabblab::reproduction all = judged(aabblab::measurements(folder.path()));
+        for (const claim_result& c : all.claims) {
+            INFO(c.because);
+            CHECK(c.id + " " + text_of(c) == c.id + " " + w.verdict);
+        }
+    }
+}
+
+TEST_CASE("Where nothing differs there is no difference, and claims of not more hold") {
+    const temporary_folder folder;
+    worlds::write_world(folder.path(), 1, 0.003);
+    for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims) {
+        INFO(c.because);
+        const bool not_more = c.id == "C2" || c.id == "C6" || c.id == "C10";
+        // Of C5 the memory and time of a grid in growing worlds are made equal too.
+        CHECK(c.id + " " + text_of(c) == c.id + (not_more ? " holds" : " no difference"));
+    }
+}
+
+TEST_CASE("Where noise hides everything, what is timed is undecided") {
+    const temporary_folder folder;
+    worlds::write_world(folder.path(), 0.97, 1);
+    for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims) {
+        // Counts, and the times of Google Benchmark, have no noise here.
+        if (c.id == "C2" || c.id == "C6" || c.id == "C12") continue;
+        INFO(c.because);
+        CHECK(c.id + " " + text_of(c) == c.id + " undecided");
+    }
+}
+
+TEST_CASE("Without measurements every claim is undecided") {
+    const temporary_folder folder;
+    REQUIRE(verdicts_of(judged(aabblab::measurements(folder.path()))) == each("undecided"));
+}
+
+TEST_CASE("A claim that is true from some size on says from which") {
+    const auto all = reproduction_where("figure1", [](const worlds::played& p, aabblab::row& r) {
+        const bool improved = p.has("shell") && p.has("axial_cut");
+        const bool many = p.scene.kind == "brownian" && r.objects >= 1000;
+        r.search_ms = improved && !many ? 2 : improved ? 0.1 : 1;
+        r.update_ms = r.search_ms;
+    });
+    INFO(all.claims[0].because);
+    CHECK(text_of(all.claims[0]) == "holds when scene is brownian and objects is at least 1000");
+}
+
+TEST_CASE("A composition that was wrong has no rows, and its claim no verdict") {
+    const auto all = reproduction_where("c3", [](const worlds::played& p, aabblab::row& r) {
+        if (p.has("shell")) r.status = "inexact";
+    });
+    CHECK(text_of(all.claims[2]) == "undecided");
+    CHECK(all.claims[2].because == "There are no measurements that decide it.");
+}
+
+TEST_CASE("The simplest condition tells endpoints apart") {
+    const std::vector<endpoint> by_size{
+        at("brownian", "100", support::contradicts), at("brownian", "1000", support::open),
+        at("brownian", "10000", support::favours), at("still", "100000", support::favours)};
+    CHECK(aabblab::simplest_condition(by_size) == "objects is at least 10000");
+    const std::vector<endpoint> by_scene{at("brownian", "100", support::favours),
+                                         at("still", "100", support::contradicts),
+                                         at("line", "100", support::contradicts)};
+    CHECK(aabblab::simplest_condition(by_scene) == "scene is brownian");
+    const std::vector<endpoint> by_both{at("brownian", "100", support::contradicts),
+                                        at("brownian", "1000", support::favours),
+                                        at("still", "1000", support::contradicts)};
+    CHECK(aabblab::simplest_condition(by_both) == "scene is brownian and objects is at least 1000");
+    const std::vector<endpoint> in_none{at("brownian", "100", support::contradicts),
+                                        at("brownian", "100", support::favours)};
+    CHECK(aabblab::simplest_condition(in_none).empty());
+}
+
+TEST_CASE(
+    "A reproduction is one page without addresses, every table and figure, and every number that the paper names") {
+    const temporary_folder folder;
+    worlds::write_world(folder.path(), 0.6, 0.05);
+    const aabblab::reproduction all = judged(aabblab::measurements(folder.path()));
+    write_reproduction(folder.path(), all, {"shell is wrong on brownian, frame 3"});
+
+    const std::string page = bytes_of_file(folder / "report.html");
+    CHECK(page.find("shell is wrong on brownian, frame 3") != std::string::npos);
+    CHECK(page.find("<script") == std::string::npos);
+    const std::regex address(R"((src|href)="([^"]*))");
+    for (std::sregex_iterator i(page.begin(), page.end(), address), end; i != end; ++i) {
+        const std::string to = (*i)[2];
+        CHECK((to.starts_with("data:") || to.starts_with("#")));
+    }
+
+    const std::string macros = bytes_of_file(folder / "macros.tex");
+    std::set<std::string> keys;
+    const std::regex set(R"(\\aabbset\{([^}]*)\})");
+    for (std::sregex_iterator i(macros.begin(), macros.end(), set), end; i != end; ++i) keys.insert((*i)[1]);
+    const std::string paper = paper_text();
+    const std::regex named(R"(\\result\{([^}#]*)\})");
+    std::size_t count = 0;
+    for (std::sregex_iterator i(paper.begin(), paper.end(), named), end; i != end; ++i, ++count) {
+        CAPTURE((*i)[1].str());
+        CHECK(keys.contains((*i)[1]));
+    }
+    CHECK(count > 20);
+    for (const char* kind : {"claim", "measured", "setup", "condition", "favourable", "ratio", "low", "high", "verdict",
+                             "because", "endpoints", "for", "against", "same", "open"})
+        for (const claim_result& c : all.claims) CHECK(keys.contains(c.id + "." + kind));
+
+    const std::regex drawn(R"(\\aabbfigure\{([^}#]*)\})");
+    for (std::sregex_iterator i(paper.begin(), paper.end(), drawn), end; i != end; ++i)
+        for (const char* ending : {".svg", ".pdf", ".gp", ".csv"}) {
+            CAPTURE((*i)[1].str(), ending);
+            CHECK(std::filesystem::exists(folder / ("figures/" + (*i)[1].str() + ending)));
+        }
+    for (const claim_result& c : all.claims)
+        for (const aabblab::named_table& t : c.tables)
+            for (const char* ending : {".csv", ".md", ".tex"})
+                CHECK(std::filesystem::exists(folder / ("tables/" + t.name + ending)));
+}

@@ -1,0 +1,170 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <utility>
+#include <vector>
+
+import aabblab.statistics;
+
+using aabblab::cells;
+using aabblab::estimate;
+using aabblab::evidence;
+using aabblab::outcome;
+using aabblab::support;
+using aabblab::verdict_kind;
+
+namespace {
+
+constexpr std::size_t processes = 3;
+constexpr std::size_t seeds = 5;
+
+/// What an experiment with a true ratio gives, when processes, seeds and repeats each disturb it.
+cells measured(double log_ratio, double by_process, double by_seed, double by_repeat, std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    cells all(processes, seeds);
+    std::vector<double> of_seed(seeds);
+    for (double& effect : of_seed) effect = by_seed * normal(random);
+    for (std::size_t process = 0; process < processes; ++process) {
+        const double of_process = by_process * normal(random);
+        for (std::size_t seed = 0; seed < seeds; ++seed)
+            for (int repeat = 0; repeat < 3; ++repeat)
+                all.add(process, seed, log_ratio + of_process + of_seed[seed] + by_repeat * normal(random));
+    }
+    return all;
+}
+
+outcome outcome_at(double ratio, double noise) {
+    std::mt19937 random(1);
+    return decide(evidence_of(bootstrap(measured(std::log(ratio), 0, noise, noise, random))));
+}
+
+}  // namespace
+
+TEST_CASE("Quartiles are interpolated") {
+    const aabblab::quartiles q = aabblab::quartiles_of({4, 1, 2, 3});
+    REQUIRE(q.low == 1.75);
+    REQUIRE(q.median == 2.5);
+    REQUIRE(q.high == 3.25);
+    REQUIRE(aabblab::quartiles_of({7}).low == 7);
+}
+
+TEST_CASE("The interval of a median leaves out what a sign test would not reject") {
+    const auto ends = [](int n) {
+        std::vector<double> values;
+        for (int i = 1; i <= n; ++i) values.push_back(i);
+        const aabblab::interval i = aabblab::median_interval(values);
+        return std::pair(i.low, i.high);
+    };
+    // Tables of the binomial distribution: with 6 values the range, with 9 the second and the last but one, with 20 the
+    // sixth and the last but five.
+    REQUIRE(ends(1) == std::pair(1.0, 1.0));
+    REQUIRE(ends(5) == std::pair(1.0, 5.0));
+    REQUIRE(ends(6) == std::pair(1.0, 6.0));
+    REQUIRE(ends(9) == std::pair(2.0, 8.0));
+    REQUIRE(ends(20) == std::pair(6.0, 15.0));
+}
+
+TEST_CASE("An interval of the bootstrap holds the true ratio nearly as often as it says, whatever disturbs it") {
+    struct disturbance {
+        double by_process, by_seed, by_repeat;
+    };
+    for (const disturbance d : {disturbance{0, 0, 0.1}, {0, 0.1, 0.1}, {0.02, 0.05, 0.1}}) {
+        std::mt19937 random(7);
+        int held = 0;
+        constexpr int experiments = 200;
+        for (int i = 0; i < experiments; ++i) {
+            const auto range = bootstrap(measured(0.3, d.by_process, d.by_seed, d.by_repeat, random)).range();
+            held += range.low <= 0.3 && 0.3 <= range.high;
+        }
+        CAPTURE(d.by_process, d.by_seed, d.by_repeat, held);
+        CHECK(held >= 0.88 * experiments);
+    }
+}
+
+TEST_CASE("An interval that leaves out what differs between seeds would be too narrow") {
+    std::mt19937 random(3);
+    const auto quiet = bootstrap(measured(0, 0, 0, 0.01, random)).range();
+    const auto between_seeds = bootstrap(measured(0, 0, 0.1, 0.01, random)).range();
+    const auto between_processes = bootstrap(measured(0, 0.1, 0, 0.01, random)).range();
+    CHECK(between_seeds.high - between_seeds.low > 4 * (quiet.high - quiet.low));
+    CHECK(between_processes.high - between_processes.low > 4 * (quiet.high - quiet.low));
+}
+
+TEST_CASE("The same data give the same draws") {
+    std::mt19937 random(5);
+    const cells data = measured(0.1, 0.01, 0.01, 0.1, random);
+    REQUIRE(bootstrap(data).draws == bootstrap(data).draws);
+    REQUIRE(bootstrap(data).draws.size() == aabblab::draws_of_an_estimate);
+}
+
+TEST_CASE("One slow repeat does not move a ratio") {
+    cells all(processes, seeds);
+    for (std::size_t process = 0; process < processes; ++process)
+        for (std::size_t seed = 0; seed < seeds; ++seed)
+            for (int repeat = 0; repeat < 3; ++repeat) all.add(process, seed, repeat == 0 && seed == 0 ? 5 : 0.25);
+    REQUIRE(bootstrap(all).value == 0.25);
+}
+
+TEST_CASE("Where measurements are missing, the others decide") {
+    cells all(processes, seeds);
+    all.add(0, 0, 0.5);
+    REQUIRE(bootstrap(all).value == 0.5);
+    REQUIRE(std::isnan(bootstrap(cells(processes, seeds)).value));
+    REQUIRE(cells(processes, seeds).empty());
+    REQUIRE_FALSE(all.empty());
+}
+
+TEST_CASE("The outcome is where the interval lies against the band") {
+    CHECK(outcome_at(0.5, 0.05) == outcome::less);
+    CHECK(outcome_at(2, 0.05) == outcome::more);
+    CHECK(outcome_at(1, 0.005) == outcome::same);
+    CHECK(outcome_at(1, 0.3) == outcome::open);
+    // Less than 1, but not shown to be less than the band.
+    CHECK(outcome_at(0.96, 0.05) == outcome::open);
+    // Counts do not vary: the value alone decides.
+    CHECK(outcome_at(0.94, 0) == outcome::less);
+    CHECK(outcome_at(0.96, 0) == outcome::same);
+    CHECK(outcome_at(1.06, 0) == outcome::more);
+}
+
+TEST_CASE("Several outcomes at once are decided step by step, the surest first") {
+    const auto together = [](std::vector<double> chances) {
+        std::vector<evidence> all;
+        for (const double p : chances) all.push_back({outcome::less, p});
+        std::vector<bool> decided;
+        for (const outcome o : decide_together(all)) decided.push_back(o == outcome::less);
+        return decided;
+    };
+    // Holm, 1979: the k-th of m surest is held against 0.025 / (m - k + 1).
+    CHECK(together({0.02}) == std::vector{true});
+    CHECK(together({0.02, 0.02}) == std::vector{false, false});
+    CHECK(together({0.02, 0.01}) == std::vector{true, true});
+    CHECK(together({0.024, 0.001, 0.012}) == std::vector{true, true, true});
+    CHECK(together({0.024, 0.001, 0.013}) == std::vector{false, true, false});
+    CHECK(together({}).empty());
+}
+
+TEST_CASE("A claim of less is favoured by less only, one of not more by no difference too") {
+    using aabblab::expectation;
+    CHECK(support_of(expectation::less, outcome::less) == support::favours);
+    CHECK(support_of(expectation::less, outcome::same) == support::no_difference);
+    CHECK(support_of(expectation::less, outcome::more) == support::contradicts);
+    CHECK(support_of(expectation::less, outcome::open) == support::open);
+    CHECK(support_of(expectation::not_more, outcome::same) == support::favours);
+    CHECK(support_of(expectation::not_more, outcome::more) == support::contradicts);
+}
+
+TEST_CASE("The verdict is the primary endpoint's, and depends on conditions where others are decided otherwise") {
+    using enum support;
+    const auto verdict = [](support primary, std::vector<support> others) { return verdict_of(primary, others); };
+    CHECK(verdict(favours, {}) == verdict_kind::holds);
+    CHECK(verdict(favours, {favours, open}) == verdict_kind::holds);
+    CHECK(verdict(favours, {favours, contradicts}) == verdict_kind::holds_when);
+    CHECK(verdict(favours, {no_difference}) == verdict_kind::holds_when);
+    CHECK(verdict(contradicts, {contradicts, open}) == verdict_kind::does_not_hold);
+    CHECK(verdict(contradicts, {favours}) == verdict_kind::holds_when);
+    CHECK(verdict(no_difference, {contradicts, open}) == verdict_kind::no_difference);
+    CHECK(verdict(no_difference, {favours}) == verdict_kind::holds_when);
+    CHECK(verdict(open, {favours, favours}) == verdict_kind::undecided);
+}
