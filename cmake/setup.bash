@@ -5,7 +5,7 @@ packages=(
     clang-19 clang-tools-19 libclang-rt-19-dev cmake ninja-build
     catch2 librapidcheck-dev libbenchmark-dev
     libcgal-dev libfcl-dev libccd-dev libeigen3-dev libassimp-dev
-    libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
+    libboost-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
 )
 # Debian's packages of gnuplot exclude each other, and any of them will do.
 command -v gnuplot >/dev/null || packages+=(gnuplot-nox)
@@ -15,7 +15,7 @@ declare -A least=([cmake]=3.28 [catch2]=3.0)
 # What shows that a library is there on a system without dpkg.
 headers=(
     catch2/catch_test_macros.hpp rapidcheck.h benchmark/benchmark.h CGAL/version.h fcl/config.h ccd/ccd.h
-    eigen3/Eigen/Core assimp/scene.h toml++/toml.h CLI/CLI.hpp fmt/core.h nlohmann/json.hpp xxhash.h
+    boost/math/distributions/students_t.hpp eigen3/Eigen/Core assimp/scene.h toml++/toml.h CLI/CLI.hpp fmt/core.h nlohmann/json.hpp xxhash.h
 )
 
 # at_least HAVE WANT: compares the first two numbers of two versions; no version is not enough.

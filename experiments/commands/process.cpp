@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output.hpp"
@@ -59,8 +60,8 @@ int status_of(pid_t child) {
 
 }  // namespace
 
-std::vector<std::string> lines_of_process(const std::filesystem::path& program,
-                                          const std::vector<std::string>& arguments, const std::filesystem::path& log) {
+ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                         const std::filesystem::path& log) {
     std::string path = program.string();
     std::vector<std::string> texts{path};
     texts.insert(texts.end(), arguments.begin(), arguments.end());
@@ -80,19 +81,23 @@ std::vector<std::string> lines_of_process(const std::filesystem::path& program,
     close(ends[0]);
     const int status = status_of(child);
     if (!WIFEXITED(status) || WEXITSTATUS(status) > 1)
-        throw aabb::input_error((path == "/proc/self/exe" ? "aabblab" : path) + " " + texts[1] +
+        throw aabb::input_error(program.filename().string() +
                                 (WIFEXITED(status) ? " ended with status " + std::to_string(WEXITSTATUS(status))
                                                    : " was ended by signal " + std::to_string(WTERMSIG(status))) +
                                 (log.empty() ? "" : ", see " + log.string()) +
                                 "; what is finished is kept, and the same command continues");
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(printed, line);) lines.push_back(line);
-    return lines;
+    ended_process result{WEXITSTATUS(status), {}};
+    for (std::string line; std::getline(printed, line);) result.lines.push_back(line);
+    return result;
 }
 
 std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments) {
     // Not by its name, which may be another build's by now.
-    return lines_of_process("/proc/self/exe", arguments, {});
+    ended_process ended = run_to_end("/proc/self/exe", arguments, {});
+    if (ended.status != 0 && ended.lines.empty())
+        throw aabb::input_error("a process of " + arguments[1] +
+                                " failed; what is finished is kept, and the same command continues");
+    return std::move(ended.lines);
 }
 
 std::filesystem::path own_folder() {

@@ -35,31 +35,56 @@ constexpr std::array configs = {"figure1", "figure2", "figure2_million", "table1
 struct reproduce_request {
     std::optional<std::string> out;
     bool quick = false;
+    bool judge = false;
 };
 
 /// The elementary tests of claim C6, timed by Google Benchmark in processes of their own. What is there of the same
-/// build stays.
-void time_tests(const std::filesystem::path& folder, bool quick) {
+/// build and size stays.
+/// @returns a sentence where they are wrong
+std::vector<std::string> time_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 3;
-    const std::filesystem::path build = folder / "build.json";
-    const auto written = [&] {
-        std::ifstream in(build, std::ios::binary);
-        return std::string{std::istreambuf_iterator<char>(in), {}};
-    };
-    if (written() != build_description()) std::filesystem::remove_all(folder);
+    const std::string repetitions = quick ? "3" : "9";
+    const std::string made = build_description() + "repetitions " + repetitions + "\n";
+    const std::filesystem::path maker = folder / "made_by.txt";
+    const auto file_of = [&](std::size_t process) { return folder / ("process-" + std::to_string(process) + ".json"); };
+    std::ifstream in(maker, std::ios::binary);
+    if (std::string{std::istreambuf_iterator<char>(in), {}} != made)
+        for (std::size_t process = 0; process < processes; ++process) std::filesystem::remove(file_of(process));
     std::filesystem::create_directories(folder);
-    if (written().empty()) std::ofstream(build, std::ios::binary) << build_description();
+    std::ofstream(maker, std::ios::binary) << made;
     for (std::size_t process = 0; process < processes; ++process) {
-        const std::filesystem::path file = folder / ("process-" + std::to_string(process) + ".json");
-        if (std::filesystem::exists(file)) continue;
-        const std::filesystem::path part = file.string() + ".part";
-        (void)lines_of_process(own_folder() / "aabblab_benchmarks",
-                               {"--benchmark_filter=^test/", "--benchmark_out_format=json",
-                                "--benchmark_out=" + part.string(), "--benchmark_enable_random_interleaving=true",
-                                quick ? "--benchmark_repetitions=3" : "--benchmark_repetitions=9"},
-                               folder / "benchmarks.log");
-        std::filesystem::rename(part, file);
+        if (std::filesystem::exists(file_of(process))) continue;
+        const std::filesystem::path part = file_of(process).string() + ".part";
+        const std::filesystem::path log = folder / "benchmarks.log";
+        const ended_process ended =
+            run_to_end(own_folder() / "aabblab_benchmarks",
+                       {"--benchmark_filter=^test/", "--benchmark_out_format=json", "--benchmark_out=" + part.string(),
+                        "--benchmark_enable_random_interleaving=true", "--benchmark_repetitions=" + repetitions},
+                       log);
+        if (ended.status != 0) return {"an elementary test of c6 is wrong; see " + log.string()};
+        std::filesystem::rename(part, file_of(process));
     }
+    return {};
+}
+
+/// Plays every experiment of the paper.
+/// @returns what is wrong
+std::vector<std::string> measure(const std::filesystem::path& folder, bool quick) {
+    std::vector<experiment> experiments;
+    for (const std::string config : configs)
+        experiments.push_back(
+            open_experiment((std::filesystem::path(AABBLAB_CONFIGS) / "paper" / (config + ".toml")).string(), quick));
+    std::vector<std::string> failures;
+    const auto add = [&](const std::vector<std::string>& found) {
+        failures.insert(failures.end(), found.begin(), found.end());
+    };
+    for (const experiment& e : experiments) {
+        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, experiments.size() + 1, e.name));
+        add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
+    }
+    note(fmt::format("experiment {0} of {0}: c6, the elementary tests", experiments.size() + 1));
+    add(time_tests(folder / "c6", quick));
+    return failures;
 }
 
 /// The verdicts as a terminal shows them.
@@ -74,19 +99,10 @@ int reproduce(const reproduce_request& request) {
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/reproduce-quick" : "results/reproduce");
     if (folder.empty()) throw aabb::input_error("--out has no name of a folder");
-    std::vector<experiment> experiments;
-    for (const std::string config : configs)
-        experiments.push_back(open_experiment(
-            (std::filesystem::path(AABBLAB_CONFIGS) / "paper" / (config + ".toml")).string(), request.quick));
-    std::vector<std::string> failures;
-    for (const experiment& e : experiments) {
-        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, experiments.size() + 1, e.name));
-        for (const std::string& failure :
-             play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing))
-            failures.push_back(failure);
-    }
-    note(fmt::format("experiment {0} of {0}: c6, the elementary tests", experiments.size() + 1));
-    time_tests(folder / "c6", request.quick);
+    if (request.judge && !std::filesystem::exists(folder / configs.front() / "results.csv"))
+        throw aabb::input_error("there are no results of a reproduction in " + folder.string());
+    const std::vector<std::string> failures =
+        request.judge ? std::vector<std::string>{} : measure(folder, request.quick);
     const reproduction all = judged(measurements(folder));
     write_reproduction(folder, all, failures);
     print(verdict_text(all));
@@ -102,6 +118,9 @@ void add_reproduce(CLI::App& program, int& status) {
     auto* command = program.add_subcommand("reproduce", "Every table, figure and claim of the paper, with a verdict");
     auto request = std::make_shared<reproduce_request>();
     command->add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of most of an hour");
+    command->add_flag("--judge", request->judge,
+                      "Measure nothing: judge the results that are there, of whatever build or machine, and write the "
+                      "report anew");
     command->add_option("--out", request->out, "Folder of results and report (default results/reproduce)")
         ->type_name("DIR");
     command->callback([request, &status] { status = reproduce(*request); });

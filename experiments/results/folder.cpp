@@ -6,6 +6,7 @@ module;
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -54,9 +55,12 @@ results_folder::results_folder(std::filesystem::path folder, const experiment& e
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
         replaced_ = refusal_to_resume(manifest, e);
-        // The table last: until it is gone, the next run finds them all to replace.
+        // Hours may be in them, so they are set aside. The table last: until it is gone, the next run finds them all to
+        // replace.
         if (!replaced_.empty())
-            for (const char* name : {"differences.csv", "results.csv"}) std::filesystem::remove(folder_ / name);
+            for (const char* name : {"differences.csv", "results.csv"})
+                if (std::filesystem::exists(folder_ / name))
+                    std::filesystem::rename(folder_ / name, folder_ / (std::string(name) + ".old"));
     }
     if (std::filesystem::exists(table)) {
         rows_ = read_rows(table);
@@ -93,17 +97,28 @@ void results_folder::add(const row& finished) {
     keys_.insert(finished.key());
 }
 
-void results_folder::drop(const scene_choice& scene, const contender_name& name) {
-    const auto dropped = std::erase_if(rows_, [&, parameters = parameters_text(scene)](const row& r) {
-        return r.scene == scene.kind && r.scene_parameters == parameters && r.name == name;
-    });
-    if (dropped == 0) return;
+void results_folder::drop_where(const std::function<bool(const row&)>& dropped) {
+    if (std::erase_if(rows_, dropped) == 0) return;
     keys_.clear();
-    for (const row& r : rows_) keys_.insert(r.key());
     std::string text = csv_header_of_rows();
-    for (const row& r : rows_) text += csv_of(r);
+    for (const row& r : rows_) {
+        keys_.insert(r.key());
+        text += csv_of(r);
+    }
     replace_file(folder_ / "results.csv", text);
     open_table();
+}
+
+void results_folder::drop(const scene_choice& scene, const contender_name& name) {
+    drop_where([&, parameters = parameters_text(scene)](const row& r) {
+        return r.scene == scene.kind && r.scene_parameters == parameters && r.name == name;
+    });
+}
+
+void results_folder::drop(const scene_choice& scene, std::uint64_t repeat) {
+    drop_where([&, parameters = parameters_text(scene)](const row& r) {
+        return r.scene == scene.kind && r.scene_parameters == parameters && r.repeat == repeat;
+    });
 }
 
 void results_folder::set_digest(const scene_choice& scene, const std::string& digest) {

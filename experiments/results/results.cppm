@@ -4,6 +4,7 @@ module;
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -82,7 +83,7 @@ struct difference {
 [[nodiscard]] std::vector<difference> read_differences(const std::filesystem::path& file);
 
 /// What is done with results that are there already: `replace` resumes those of the same config, build and machine and
-/// deletes others.
+/// sets others aside, as results.csv.old.
 enum class existing_results { refuse, resume, replace };
 
 /// The folder of a running experiment. What is written stays, whatever happens to the program afterwards.
@@ -106,6 +107,8 @@ public:
     void add(const row& finished);
     /// Deletes the rows of a contender in a scene.
     void drop(const scene_choice& scene, const contender_name& name);
+    /// Deletes those of a repeat.
+    void drop(const scene_choice& scene, std::uint64_t repeat);
     /// Notes the exact digest of a scene in the manifest.
     void set_digest(const scene_choice& scene, const std::string& digest);
     /// Replaces the differences of these contenders in this scene.
@@ -113,6 +116,7 @@ public:
                          std::span<const difference> found);
 
 private:
+    void drop_where(const std::function<bool(const row&)>& dropped);
     void open_table();
     void write_manifest() const;
     [[noreturn]] void fail_table() const;

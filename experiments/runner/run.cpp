@@ -72,6 +72,19 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
     return found;
 }
 
+/// Ratios are formed within a repeat, so one that was interrupted is played again, whole. It can only be the last.
+void drop_interrupted_repeat(const scene_choice& scene, const share_of_repeats& share, std::size_t contenders,
+                             results_folder& results) {
+    if (results.rows().empty()) return;
+    const row last = results.rows().back();
+    if (last.scene != scene.kind || last.scene_parameters != parameters_text(scene) || last.repeat < share.begin ||
+        last.repeat >= share.end)
+        return;
+    const std::vector<row> rows = rows_of(scene, results.rows());
+    const auto played = std::ranges::count(rows, last.repeat, &row::repeat);
+    if (static_cast<std::size_t>(played) < contenders) results.drop(scene, last.repeat);
+}
+
 std::vector<contender> unfinished(std::span<const contender> contenders, const share_of_repeats& share,
                                   std::span<const row> rows) {
     std::vector<contender> left;
@@ -142,6 +155,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
                                    std::span<const contender> contenders, results_folder& results,
                                    std::size_t process) {
     const share_of_repeats share(e, process);
+    drop_interrupted_repeat(scene, share, contenders.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
     const std::vector<contender> left = unfinished(contenders, share, rows);
     if (left.empty()) return {};

@@ -44,7 +44,7 @@ claim_result one_cut_a_box(const measurements& m) {
             const std::string span = value_of(c.of(), "span");
             const bool automatic = std::string(segments) == "auto";
             one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && automatic;
-            if (span.empty() || !automatic || one.log_ratio.draws.empty()) continue;
+            if (span.empty() || !automatic || !one.log_ratio.known()) continue;
             const endpoint e = endpoint_of(one, expectation::not_more);
             series& s = by_span[span];
             s.label = "edge " + span + " of the world";

@@ -40,7 +40,7 @@ table half_steps(const std::vector<condition>& conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{text_of(c.of())});
         for (std::size_t i = 1; i < methods().size(); ++i) {
             const candidate ratio = candidate_of(c, methods()[i].who, traditional, frame_ms());
-            cells.push_back(ratio.log_ratio.draws.empty() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
+            cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
         }
     }
     return t;

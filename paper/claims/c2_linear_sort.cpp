@@ -13,6 +13,7 @@ module aabblab.claims;
 
 import :measurements;
 import aabblab.figures;
+import aabblab.report;
 import aabblab.results;
 import aabblab.statistics;
 
@@ -52,6 +53,26 @@ metric per_element(std::string_view column) {
     };
 }
 
+/// "100 to 100000"
+std::string sizes_text(const std::vector<const condition*>& conditions) {
+    return value_of(conditions.front()->of(), "objects") + " to " + value_of(conditions.back()->of(), "objects");
+}
+
+/// "Almost ordered" is to mean the same at every size.
+table inversions_table(const std::map<std::string, std::vector<const condition*>>& by_displacement) {
+    table t{{{"displacement"}}, {}};
+    for (const condition* c : by_displacement.begin()->second)
+        t.columns.push_back({value_of(c->of(), "objects") + " elements"});
+    for (const auto& [displacement, conditions] : by_displacement) {
+        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{displacement});
+        for (const condition* c : conditions) {
+            const auto inversions = c->spread({"insertion", "", "", "", ""}, per_element("inversions"));
+            cells.push_back(inversions ? digits_of(inversions->median) : "-");
+        }
+    }
+    return t;
+}
+
 const std::vector<std::string>& sorts() {
     static const std::vector<std::string> all{"shell:gaps=ciura", "shell:gaps=tokuda", "shell:gaps=shell", "insertion"};
     return all;
@@ -77,12 +98,20 @@ claim_result linear_sort(const measurements& m) {
                     all.log_n.push_back(std::log10(number_of(c->of(), "objects")));
                     all.per_element.push_back(c->logs({sort, "", "", "", ""}, per_element(work)));
                 }
-                candidates.push_back(
-                    {{{"sort", sort}, {"displacement", displacement}, {"work", std::string(work)}},
-                     bootstrap(1, conditions.front()->seeds(), [&](const resample& d) { return all.growth(d); }),
-                     sort == "shell:gaps=ciura" && displacement == "0.1" && work == "comparisons"});
+                const cells& any = all.per_element.front();
+                candidates.push_back({{{"scene", "line"},
+                                       {"sort", sort},
+                                       {"displacement", displacement},
+                                       {"work", std::string(work)},
+                                       {"elements", sizes_text(conditions)}},
+                                      bootstrap(any.size(), [&](const resample& d) { return all.growth(d); }),
+                                      sort == "shell:gaps=ciura" && displacement == "0.1" && work == "comparisons",
+                                      {}});
             }
     judge(claim, std::move(candidates));
+    if (by_displacement.empty()) return claim;
+    claim.tables.push_back({"c2_inversions", "Inversions for each element, which are to be the same at every size.",
+                            inversions_table(by_displacement)});
     figure f{"c2",
              "Comparisons for each element against the number of elements, at a displacement of a tenth of an edge: a "
              "level line is O(N).",

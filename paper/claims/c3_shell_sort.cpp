@@ -72,13 +72,6 @@ claim_result shell_sort(const measurements& m) {
             one.primary =
                 gaps == "ciura" && scene == "brownian" && objects == 10000 && value_of(c.of(), "displacement") == "0.1";
             along[{scene, objects}].push_back({displacement, one.log_ratio.value});
-            if (gaps == "ciura" && scene == "brownian" && !one.log_ratio.draws.empty()) {
-                const support found = endpoint_of(one, expectation::less).found;
-                series& where = found == support::favours       ? shell_wins
-                                : found == support::contradicts ? insertion_wins
-                                                                : nobody;
-                where.points.push_back({objects, displacement, displacement, displacement});
-            }
             candidates.push_back(std::move(one));
         }
         series line{"begins to win, gaps " + gaps, series_style::line, {}};
@@ -88,8 +81,18 @@ claim_result shell_sort(const measurements& m) {
                     line.points.push_back({place.second, *at, *at, *at});
         f.lines.push_back(line);
     }
-    f.lines.insert(f.lines.end(), {shell_wins, insertion_wins, nobody});
     judge(claim, std::move(candidates));
+    std::vector<endpoint> decided = claim.secondary;
+    if (claim.has_primary) decided.push_back(claim.primary);
+    for (const endpoint& e : decided) {
+        if (value_of(e.where, "gaps") != "ciura" || value_of(e.where, "scene") != "brownian") continue;
+        series& where = e.found == support::favours       ? shell_wins
+                        : e.found == support::contradicts ? insertion_wins
+                                                          : nobody;
+        const double displacement = number_of(e.where, "displacement");
+        where.points.push_back({number_of(e.where, "objects"), displacement, displacement, displacement});
+    }
+    f.lines.insert(f.lines.end(), {shell_wins, insertion_wins, nobody});
     claim.figures.push_back(f);
     return claim;
 }

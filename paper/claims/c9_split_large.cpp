@@ -42,7 +42,7 @@ claim_result large_objects_split(const measurements& m) {
             candidate& one = candidates.back();
             const std::string span = value_of(c.of(), "span");
             one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && std::string(size) == "4";
-            if (span.empty() || std::string(size) != "4" || one.log_ratio.draws.empty()) continue;
+            if (span.empty() || std::string(size) != "4" || !one.log_ratio.known()) continue;
             const endpoint e = endpoint_of(one, expectation::less);
             series& s = by_span[span];
             s.label = "edge " + span + " of the world";

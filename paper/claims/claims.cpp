@@ -80,23 +80,31 @@ table endpoint_table(const claim_result& claim) {
 
 }  // namespace
 
-bool open_choice::flips() const {
-    return std::ranges::any_of(alternatives, [&](const alternative& a) {
-        return a.measured.found != support::open && a.measured.found != alternatives.front().measured.found;
-    });
+std::string dependence_of(const open_choice& choice) {
+    bool open = choice.alternatives.empty();
+    for (const open_choice::alternative& a : choice.alternatives) {
+        if (a.measured.found == support::open)
+            open = true;
+        else if (choice.alternatives.front().measured.found != support::open &&
+                 a.measured.found != choice.alternatives.front().measured.found)
+            return "yes";
+    }
+    return open ? "open" : "no";
 }
 
 endpoint endpoint_of(const candidate& c, expectation expected) {
     const interval range = c.log_ratio.range();
+    const expectation own = c.expected.value_or(expected);
     return {c.where,
             std::exp(c.log_ratio.value),
             {std::exp(range.low), std::exp(range.high)},
-            support_of(expected, decide(evidence_of(c.log_ratio)))};
+            support_of(own, decide(evidence_of(c.log_ratio, own)))};
 }
 
 void judge(claim_result& claim, std::vector<candidate> candidates) {
-    std::erase_if(candidates, [](const candidate& c) { return !std::isfinite(c.log_ratio.value); });
+    std::erase_if(candidates, [](const candidate& c) { return !c.log_ratio.known(); });
     std::vector<evidence> others;
+    std::vector<expectation> expected;
     for (const candidate& c : candidates) {
         const endpoint e = endpoint_of(c, claim.expected);
         if (c.primary && !claim.has_primary) {
@@ -105,12 +113,13 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
             continue;
         }
         claim.secondary.push_back(e);
-        others.push_back(evidence_of(c.log_ratio));
+        expected.push_back(c.expected.value_or(claim.expected));
+        others.push_back(evidence_of(c.log_ratio, expected.back()));
     }
     const std::vector<outcome> outcomes = decide_together(others);
     std::vector<support> supports;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        claim.secondary[i].found = support_of(claim.expected, outcomes[i]);
+        claim.secondary[i].found = support_of(expected[i], outcomes[i]);
         supports.push_back(claim.secondary[i].found);
     }
     if (claim.has_primary) {
@@ -119,8 +128,9 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
             std::vector<endpoint> all{claim.primary};
             all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
             claim.when = simplest_condition(all);
-            if (claim.when.empty())
-                claim.when = fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size());
+            claim.when = claim.when.empty()
+                             ? fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size())
+                             : "when " + claim.when;
         }
     }
     claim.because = sentence_of(claim);
@@ -198,8 +208,7 @@ std::string text_of(support found) {
 std::string text_of(const claim_result& claim) {
     switch (claim.verdict) {
         case verdict_kind::holds: return "holds";
-        case verdict_kind::holds_when:
-            return claim.when.starts_with("in ") ? "holds " + claim.when : "holds when " + claim.when;
+        case verdict_kind::holds_when: return "holds " + claim.when;
         case verdict_kind::no_difference: return "no difference";
         case verdict_kind::does_not_hold: return "does not hold";
         case verdict_kind::undecided: break;
@@ -240,11 +249,9 @@ table choice_table(const reproduction& all) {
     for (const open_choice& c : all.choices) {
         std::string ratios;
         for (const open_choice::alternative& a : c.alternatives)
-            ratios += (ratios.empty() ? "" : "; ") + a.label + " " + ratio_text(a.measured);
-        t.rows.push_back({c.question, c.choice, c.why, c.claim, ratios.empty() ? "not measured" : ratios,
-                          ratios.empty() ? "-"
-                          : c.flips()    ? "yes"
-                                         : "no"});
+            ratios += (ratios.empty() ? "At " + c.where + ": " : "; ") + a.label + " " + ratio_text(a.measured);
+        t.rows.push_back(
+            {c.question, c.choice, c.why, c.claim, ratios.empty() ? "not measured" : ratios, dependence_of(c)});
     }
     return t;
 }

@@ -1,5 +1,6 @@
 module;
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ struct claim_result {
     std::string measured;  ///< which ratio of what
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
-    std::string when;     ///< the conditions of "holds when"; empty otherwise
+    std::string when;     ///< of "holds when": "when objects is at least 10000", "in 3 of 8 conditions"
     std::string because;  ///< one sentence with the figure that decides
     bool has_primary = false;
     endpoint primary;
@@ -51,13 +52,15 @@ struct open_choice {
     std::string choice;
     std::string why;
     std::string claim;  ///< its id
+    std::string where;  ///< the condition that the ratios are of
     struct alternative {
         std::string label;
         endpoint measured;
     };
     std::vector<alternative> alternatives;  ///< ours first
-    [[nodiscard]] bool flips() const;
 };
+/// Whether the outcome depends on the choice: "no", "yes", or "open" where an alternative cannot be told.
+[[nodiscard]] std::string dependence_of(const open_choice& choice);
 
 /// All that the paper's experiments show.
 struct reproduction {
@@ -71,7 +74,7 @@ struct reproduction {
 
 /// The simplest condition on one or two factors that tells the endpoints that favour a claim from those that are
 /// decided otherwise: "objects is at least 10000", "sort is insertion or work is moves". Empty where there is none so
-/// simple.
+/// simple. Two factors need two endpoints on either side, lest some pair of them always fits.
 [[nodiscard]] std::string simplest_condition(std::span<const endpoint> all);
 
 /// "holds when objects is at least 10000", "no difference", …
@@ -99,6 +102,7 @@ struct candidate {
     factors where;
     estimate log_ratio;
     bool primary = false;
+    std::optional<expectation> expected;  ///< where it is not the claim's
 };
 
 /// Endpoint by its own 95 % interval.
@@ -121,6 +125,10 @@ void judge(claim_result& claim, std::vector<candidate> candidates);
 [[nodiscard]] std::string mesh_of(const condition& c);
 /// Triangles of one of its meshes.
 [[nodiscard]] double triangles_of(const condition& c);
+
+/// The conditions of primary endpoints, in the full and in the quick size.
+[[nodiscard]] bool is_primary_of_c7(const condition& c);
+[[nodiscard]] bool is_primary_of_c11(const condition& c);
 
 inline const selection traditional{"insertion", "none", "one_axis", "", ""};
 inline const selection improved{"shell", "axial_cut", "one_axis", "", ""};

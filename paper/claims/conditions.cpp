@@ -3,6 +3,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -71,6 +72,8 @@ std::string simplest_condition(std::span<const endpoint> all) {
     };
     for (const predicate& p : predicates)
         if (tells_apart(p.holds)) return p.text;
+    const auto favourable = std::ranges::count(decided, support::favours, &endpoint::found);
+    if (favourable < 2 || std::ssize(decided) - favourable < 2) return {};
     for (const predicate& p : predicates)
         for (const predicate& q : predicates) {
             if (&p >= &q) continue;

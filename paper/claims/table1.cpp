@@ -79,7 +79,7 @@ table cost_table(const condition& c) {
             if (rows.empty()) continue;
             const auto ratio = [&](const metric& of) {
                 const candidate found = candidate_of(c, built(one, build), built(layouts[0], "median"), of);
-                return found.log_ratio.draws.empty() ? "-" : ratio_text(endpoint_of(found, expectation::less));
+                return !found.log_ratio.known() ? "-" : ratio_text(endpoint_of(found, expectation::less));
             };
             t.rows.push_back({one.name, build, fmt::format("{:.2f}", tree_bytes()(*rows.front()).value_or(0)),
                               digits_of(100 * rows.front()->box_inflation.value_or(0)), ratio(build_ms()),

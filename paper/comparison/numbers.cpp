@@ -80,13 +80,15 @@ std::size_t compare_numbers(const shared_scene& in, const played_scenes& a, cons
             const std::vector<number> numbers_b = numbers_of(*of_b.front());
             columns.resize(numbers_a.size());
             for (std::size_t k = 0; k < columns.size(); ++k) {
-                if (!numbers_a[k].second || !numbers_b[k].second) continue;
+                const std::optional<std::uint64_t>& before = numbers_a[k].second;
+                const std::optional<std::uint64_t>& after = numbers_b[k].second;
+                if (!before || !after) continue;
                 sums& column = columns[k];
                 column.of.what = numbers_a[k].first;
-                column.of.in_a += *numbers_a[k].second;
-                column.of.in_b += *numbers_b[k].second;
+                column.of.in_a += *before;
+                column.of.in_b += *after;
                 column.compared = true;
-                column.differs = column.differs || numbers_a[k].second != numbers_b[k].second;
+                column.differs = column.differs || *before != *after;
             }
         }
         for (sums& column : columns) {

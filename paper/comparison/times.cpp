@@ -4,10 +4,8 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <random>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 module aabblab.comparison;
@@ -23,8 +21,8 @@ namespace {
 std::optional<double> log_ms(const row& r) {
     static const metric frame = frame_ms();
     if (!r.first_ms || !r.search_ms || !r.detect_ms) return std::nullopt;
-    const std::optional<double> ms = frame(r);
-    return std::isfinite(ms.value_or(0)) && ms.value_or(0) > 0 ? std::optional(std::log(*ms)) : std::nullopt;
+    const double ms = frame(r).value_or(0);
+    return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
 }
 
 std::optional<double> log_ms_in(const played_scenes::repeats& all, const row& same_repeat) {
@@ -39,21 +37,6 @@ std::size_t size_of(const cells& all) {
     for (std::size_t process = 0; process < all.processes(); ++process)
         for (std::size_t seed = 0; seed < all.seeds(); ++seed) count += all.at(process, seed).size();
     return count;
-}
-
-/// B's mean less A's. What is drawn of the one does not depend on what is drawn of the other, so that every draw of A
-/// may meet every draw of B; each meets `rounds` of them, taken at random.
-estimate change_of(const estimate& a, const estimate& b, std::size_t rounds) {
-    std::mt19937_64 random;  // gives the same numbers everywhere, which the library's shuffle does not
-    std::vector<double> of_b = b.draws;
-    estimate result{b.value - a.value, {}};
-    result.draws.reserve(rounds * of_b.size());
-    for (std::size_t round = 0; round < rounds; ++round) {
-        for (std::size_t i = of_b.size(); i > 1; --i) std::swap(of_b[i - 1], of_b[random() % i]);
-        for (std::size_t i = 0; i < of_b.size(); ++i) result.draws.push_back(of_b[i] - a.draws[i]);
-    }
-    std::ranges::sort(result.draws);
-    return result;
 }
 
 /// The chance that n values all lie above m others of the same distribution: no test may be surer than that. The
@@ -93,14 +76,12 @@ std::optional<contender_name> base_of(const shared_scene& in, const played_scene
 }
 
 std::vector<compared_time> judged(std::span<const two_sides> all) {
-    // Holm's rule asks of the first of many for a chance that 4,000 draws cannot show.
-    const std::size_t rounds = 1 + all.size() / 50;
     std::vector<compared_time> times;
     std::vector<evidence> evidences;
     for (const two_sides& line : all) {
         const estimate a = bootstrap(line.a);
         const estimate b = bootstrap(line.b);
-        const estimate change = change_of(a, b, rounds);
+        const estimate change = difference_of(b, a);
         const interval around = change.range();
         const double least = least_chance(size_of(line.a), size_of(line.b));
         evidence& shown = evidences.emplace_back(evidence_of(change));

@@ -130,16 +130,18 @@ void add_rule(page& out) {
     out.paragraph(
         "Each claim has one primary endpoint, fixed before anything was measured: the ratio of two compositions, or "
         "builds, or counts, formed within a repeat, so that what slows the machine slows both. Every composition is "
-        "compared with the exact answer, pair by pair and frame by frame, before it is timed. Intervals are 95 % "
-        "bootstrap intervals of the mean logarithm over processes, seeds and repeats: processes and seeds are drawn "
-        "crosswise, repeats within them. A ratio favours the claim when its interval lies below 0.95, contradicts it "
-        "above 1.05, and shows no difference within; what is left is open. Secondary endpoints are decided together, "
-        "with Holm's correction.");
+        "compared with the exact answer, pair by pair and frame by frame, before it is timed. The ratio is the mean "
+        "logarithm over processes and seeds of the median repeat. Its 95 % interval comes from a bootstrap: processes, "
+        "seeds and repeats are drawn anew in turn, and what each level adds counts with as many degrees of freedom as "
+        "it has, so that three processes that disagree make a wide interval. A ratio favours the claim when its "
+        "interval lies below 0.95, contradicts it above 1.05, and shows no difference within; what is left is open. "
+        "Secondary endpoints are decided together, with Holm's correction.");
     out.paragraph(
-        "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; it holds when "
-        "some condition is met, where they differ; else it does not hold, or makes no difference, as the primary "
-        "endpoint says, or is undecided where that is open. Claims that say \"not more\" (C2, C6, C10) are favoured by "
-        "no difference too. Times are compared within a table only, never between runs or machines.");
+        "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; where they "
+        "differ it holds when some condition is met, the simplest one that tells them apart; else it does not hold, or "
+        "makes no difference, as the primary endpoint says, or is undecided where that is open. Claims that say \"not "
+        "more\" (C2, C6, C10) are favoured by an interval below 1.05. Times are compared within a table only, never "
+        "between runs or machines.");
 }
 
 void add_choices(page& out, const reproduction& all) {
@@ -149,14 +151,15 @@ void add_choices(page& out, const reproduction& all) {
         out.raw("<dt>" + html_text(c.question) + "</dt><dd>" +
                 html_text("Here: " + c.choice + ". Why: " + c.why + ".") + "</dd>\n");
         if (c.alternatives.empty()) continue;
-        std::string ratios = c.claim + " under each choice: ";
+        std::string ratios = c.claim + " at " + c.where + ", under each choice: ";
         for (const open_choice::alternative& a : c.alternatives)
             ratios += (&a == c.alternatives.data() ? "" : "; ") + a.label + " " + ratio_text(a.measured) + " " +
                       text_of(a.measured.found);
-        out.raw(
-            "<dd class=\"soft\">" +
-            html_text(ratios + (c.flips() ? ". Its outcome depends on the choice." : ". Its outcome is the same.")) +
-            "</dd>\n");
+        const std::string dependence = dependence_of(c);
+        ratios += dependence == "yes"  ? ". Its outcome depends on the choice."
+                  : dependence == "no" ? ". Its outcome is the same."
+                                       : ". Whether its outcome is the same cannot be told.";
+        out.raw("<dd class=\"soft\">" + html_text(ratios) + "</dd>\n");
     }
     out.raw("</dl>\n");
 }
@@ -171,9 +174,10 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
         "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and twelve claims, "
         "tested.");
     out.paragraph(
-        fmt::format("{}, {} size. Commit {}, {}, {}. {} rows of {} scenes; {} processes, {} seeds, {} repeats.",
-                    made.date, made.size, made.commit, made.compiler, made.cpu, made.rows, made.scenes, made.processes,
-                    made.seeds, made.repeats),
+        fmt::format(
+            "{}, {} size. Commit {}, {}, {}. {} rows of {} scenes; up to {} processes, {} seeds and {} repeats in all.",
+            made.date, made.size, made.commit, made.compiler, made.cpu, made.rows, made.scenes, made.processes,
+            made.seeds, made.repeats),
         "soft");
     for (const std::string& failure : failures) out.paragraph("Wrong: " + failure + ".", "wrong");
     for (const std::string& note : made.notes) out.paragraph("Note: " + note + ".", "soft");

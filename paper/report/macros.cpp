@@ -78,8 +78,13 @@ void add_claim(macros& to, const claim_result& c) {
 
 }  // namespace
 
-std::string macros_of(const reproduction& all, const provenance& made) {
+std::string macros_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
     macros to;
+    // A layout that was wrong has no row in table 1.
+    for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
+        for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
+    for (const char* name : {"table1", "table1_builds", "c2_inversions", "c4_auto", "c11_stages"})
+        to.set(std::string("table.") + name + ".caption", "There are no measurements.");
     to.set("date", made.date);
     to.set("commit", made.commit);
     to.set("compiler", made.compiler);
@@ -96,7 +101,9 @@ std::string macros_of(const reproduction& all, const provenance& made) {
     to.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
     to.set("band.low", fmt::format("{:.2f}", 1 / (1 + equivalence_band)));
     to.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
-    to.set("draws", draws_of_an_estimate);
+    to.set("draws", draws_of_a_level);
+    to.set("failures",
+           failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
     for (const claim_result& c : all.claims) {
         add_claim(to, c);
         for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);

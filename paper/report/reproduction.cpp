@@ -139,7 +139,7 @@ void write_reproduction(const std::filesystem::path& folder, const reproduction&
     draw(folder / "figures", figures);
     write_text(folder / "verdicts.csv", to_csv(verdict_table(all)));
     write_text(folder / "endpoints.csv", to_csv(endpoints_of(all)));
-    write_text(folder / "macros.tex", macros_of(all, made));
+    write_text(folder / "macros.tex", macros_of(all, made, failures));
     write_text(folder / "report.md", markdown_of(all, made, failures));
     write_text(folder / "report.html", html_of(folder, all, made, failures));
 }

@@ -52,6 +52,7 @@ void write_text(const std::filesystem::path& file, const std::string& text);
                                       const std::vector<std::string>& failures);
 /// As paper/tex takes it: a tabular with rules, long texts in columns that break lines.
 [[nodiscard]] std::string paper_table(const table& t);
-[[nodiscard]] std::string macros_of(const reproduction& all, const provenance& made);
+[[nodiscard]] std::string macros_of(const reproduction& all, const provenance& made,
+                                    const std::vector<std::string>& failures);
 
 }  // namespace aabblab

@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -28,9 +29,12 @@ std::size_t pick(std::uint64_t& state, std::size_t count) {
     return static_cast<std::size_t>(next_random(state) % count);
 }
 
-std::vector<std::size_t> picks(std::uint64_t& state, std::size_t count) {
+/// 0 to `count` - 1, as they are or drawn with replacement.
+std::vector<std::size_t> places(std::size_t count, bool drawn, std::uint64_t& state) {
     std::vector<std::size_t> all(count);
-    for (std::size_t& one : all) one = pick(state, count);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    if (drawn)
+        for (std::size_t& one : all) one = pick(state, count);
     return all;
 }
 
@@ -41,22 +45,39 @@ double median_of(std::span<double> values) {
     return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
+/// Of the statistic, over draws of one level.
+double variance_of(const sample_size& size, level drawn, const std::function<double(const resample&)>& statistic) {
+    std::uint64_t state = 1;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < draws_of_a_level; ++i) {
+        const double value = statistic(resample(size.processes, size.seeds, drawn, next_random(state)));
+        // A draw may consist of empty cells only, where results are not complete.
+        if (std::isfinite(value)) values.push_back(value);
+    }
+    if (values.size() < 2) return 0;
+    const auto count = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+    double squares = 0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return squares / (count - 1);
+}
+
 }  // namespace
 
 bool cells::empty() const {
     return std::ranges::all_of(values_, [](const std::vector<double>& repeats) { return repeats.empty(); });
 }
 
-resample::resample(std::size_t processes, std::size_t seeds)
-    : processes_(processes), seeds_(seeds), as_measured_(true) {
-    std::iota(processes_.begin(), processes_.end(), std::size_t{0});
-    std::iota(seeds_.begin(), seeds_.end(), std::size_t{0});
+sample_size cells::size() const {
+    std::size_t repeats = 1;
+    for (const std::vector<double>& cell : values_) repeats = std::max(repeats, cell.size());
+    return {processes_, seeds_, repeats};
 }
 
-resample::resample(std::size_t processes, std::size_t seeds, std::uint64_t random)
-    : random_(random), as_measured_(false) {
-    processes_ = picks(random_, processes);
-    seeds_ = picks(random_, seeds);
+resample::resample(std::size_t processes, std::size_t seeds, level drawn, std::uint64_t random)
+    : drawn_(drawn), random_(random) {
+    processes_ = places(processes, drawn == level::processes, random_);
+    seeds_ = places(seeds, drawn == level::seeds, random_);
 }
 
 double resample::mean_of(const cells& measured) const {
@@ -66,10 +87,11 @@ double resample::mean_of(const cells& measured) const {
     std::vector<double> repeats;
     for (const std::size_t process : processes_)
         for (const std::size_t seed : seeds_) {
+            if (process >= measured.processes() || seed >= measured.seeds()) continue;
             const std::span<const double> cell = measured.at(process, seed);
             if (cell.empty()) continue;
             repeats.assign(cell.begin(), cell.end());
-            if (!as_measured_)
+            if (drawn_ == level::repeats)
                 for (double& value : repeats) value = cell[pick(random, cell.size())];
             sum += median_of(repeats);
             ++count;
@@ -77,31 +99,62 @@ double resample::mean_of(const cells& measured) const {
     return count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
-interval estimate::range(double miss) const {
-    const auto last = static_cast<double>(draws.size() - 1);
-    return {draws[static_cast<std::size_t>(std::floor(miss * last))],
-            draws[static_cast<std::size_t>(std::ceil((1 - miss) * last))]};
+bool estimate::known() const {
+    return std::isfinite(value);
 }
 
-estimate bootstrap(std::size_t processes, std::size_t seeds, const std::function<double(const resample&)>& statistic) {
-    estimate result{statistic(resample(processes, seeds)), {}};
-    const std::size_t fewest = processes < 2 ? seeds : seeds < 2 ? processes : std::min(processes, seeds);
-    const double widened = fewest < 2 ? 1 : std::sqrt(static_cast<double>(fewest) / static_cast<double>(fewest - 1));
-    std::uint64_t state = 1;
-    while (result.draws.size() < draws_of_an_estimate) {
-        const double drawn = statistic(resample(processes, seeds, next_random(state)));
-        // A draw may consist of empty cells only, where results are not complete.
-        if (std::isfinite(drawn))
-            result.draws.push_back(result.value + widened * (drawn - result.value));
-        else if (!std::isfinite(result.value))
-            return {result.value, {result.value}};
-    }
-    std::ranges::sort(result.draws);
+interval estimate::range(double miss) const {
+    if (!(error > 0)) return {value, value};
+    const double reach = error * quantile(complement(boost::math::students_t(degrees), miss));
+    return {value - reach, value + reach};
+}
+
+double estimate::chance_above(double limit) const {
+    if (!(error > 0)) return value >= limit ? 1 : 0;
+    return cdf(complement(boost::math::students_t(degrees), (limit - value) / error));
+}
+
+double estimate::chance_below(double limit) const {
+    if (!(error > 0)) return value <= limit ? 1 : 0;
+    return cdf(boost::math::students_t(degrees), (limit - value) / error);
+}
+
+estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic) {
+    estimate result{statistic(resample(size.processes, size.seeds, level::none, 0)), 0, 1};
+    const auto variance = [&](level drawn, std::size_t count) {
+        return count < 2
+                   ? 0
+                   : variance_of(size, drawn, statistic) * static_cast<double>(count) / static_cast<double>(count - 1);
+    };
+    const double noise = variance(level::repeats, size.repeats);
+    // Means of processes, and of seeds, differ by the noise of repeats too.
+    const double of_processes = variance(level::processes, size.processes);
+    const double of_seeds = variance(level::seeds, size.seeds);
+    const double by_process = std::max(0.0, of_processes - noise);
+    const double by_seed = std::max(0.0, of_seeds - noise);
+    const double sum = by_process + by_seed + noise;
+    if (!(sum > 0)) return result;
+    // What was subtracted was not known better for it, so degrees of freedom go by what was seen.
+    const auto share = [](double part, double seen, std::size_t degrees) {
+        return degrees > 0 && part > 0 ? seen * seen / static_cast<double>(degrees) : 0;
+    };
+    result.error = std::sqrt(sum);
+    result.degrees = sum * sum /
+                     (share(by_process, of_processes, size.processes - 1) + share(by_seed, of_seeds, size.seeds - 1) +
+                      share(noise, noise, size.processes * size.seeds * (size.repeats - 1)));
     return result;
 }
 
 estimate bootstrap(const cells& measured) {
-    return bootstrap(measured.processes(), measured.seeds(), [&](const resample& d) { return d.mean_of(measured); });
+    return bootstrap(measured.size(), [&](const resample& d) { return d.mean_of(measured); });
+}
+
+estimate difference_of(const estimate& a, const estimate& b) {
+    const double of_a = a.error * a.error;
+    const double of_b = b.error * b.error;
+    const double sum = of_a + of_b;
+    if (!(sum > 0)) return {a.value - b.value, 0, 1};
+    return {a.value - b.value, std::sqrt(sum), sum * sum / (of_a * of_a / a.degrees + of_b * of_b / b.degrees)};
 }
 
 }  // namespace aabblab

@@ -22,22 +22,15 @@ bool any_is(std::span<const support> all, support what) {
 
 }  // namespace
 
-evidence evidence_of(const estimate& log_ratio) {
+evidence evidence_of(const estimate& log_ratio, expectation expected) {
     const double high = std::log1p(equivalence_band);
     const double low = -high;
-    const std::vector<double>& draws = log_ratio.draws;
-    const auto chance = [&](std::size_t count) {
-        return static_cast<double>(count + 1) / static_cast<double>(draws.size() + 1);
-    };
-    const auto below = [&](double limit) {
-        return static_cast<std::size_t>(std::ranges::upper_bound(draws, limit) - draws.begin());
-    };
-    const auto above = [&](double limit) {
-        return static_cast<std::size_t>(draws.end() - std::ranges::lower_bound(draws, limit));
-    };
-    const std::array<evidence, 3> all{{{outcome::less, chance(above(low))},
-                                       {outcome::same, std::max(chance(above(high)), chance(below(low)))},
-                                       {outcome::more, chance(below(high))}}};
+    const evidence more{outcome::more, log_ratio.chance_below(high)};
+    const evidence same{outcome::same, expected == expectation::not_more
+                                           ? log_ratio.chance_above(high)
+                                           : std::max(log_ratio.chance_above(high), log_ratio.chance_below(low))};
+    const evidence less{outcome::less, log_ratio.chance_above(low)};
+    const std::array<evidence, 3> all{less, same, more};
     return *std::ranges::min_element(all, {}, &evidence::p);
 }
 

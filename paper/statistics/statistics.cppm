@@ -28,6 +28,13 @@ struct interval {
 /// is less sure. `values` must not be empty.
 [[nodiscard]] interval median_interval(std::vector<double> values);
 
+/// Of measurements: how many processes and seeds, and repeats in each cell of one of each.
+struct sample_size {
+    std::size_t processes;
+    std::size_t seeds;
+    std::size_t repeats;
+};
+
 /// Logarithms of ratios, in cells of one process and one seed: the repeats of a cell are alike but for noise. All seeds
 /// are played in every process, so the two are crossed.
 class cells {
@@ -43,6 +50,7 @@ public:
         return values_[process * seeds_ + seed];
     }
     [[nodiscard]] bool empty() const;
+    [[nodiscard]] sample_size size() const;
 
 private:
     std::size_t processes_;
@@ -50,42 +58,59 @@ private:
     std::vector<std::vector<double>> values_;
 };
 
-/// One draw with replacement of processes, of seeds, and of the repeats in every cell. The same draw serves several
-/// conditions of an experiment, whose cells share processes and seeds.
+/// What is drawn anew, with replacement.
+enum class level : unsigned char { none, processes, seeds, repeats };
+
+/// What was measured, with one level drawn anew. The same draw serves several conditions of an experiment, whose cells
+/// share processes and seeds.
 class resample {
 public:
-    /// What was measured, as it is.
-    resample(std::size_t processes, std::size_t seeds);
-    resample(std::size_t processes, std::size_t seeds, std::uint64_t random);
+    resample(std::size_t processes, std::size_t seeds, level drawn, std::uint64_t random);
 
-    /// The mean over the drawn cells of the median of their drawn repeats; empty cells have no part in it.
+    /// The mean over the cells of the median of their repeats; NaN where a condition was not measured. Of the seeds or
+    /// processes that miss, the others speak.
     [[nodiscard]] double mean_of(const cells& measured) const;
 
 private:
     std::vector<std::size_t> processes_;
     std::vector<std::size_t> seeds_;
-    std::uint64_t random_ = 0;
-    bool as_measured_;
+    level drawn_;
+    std::uint64_t random_;
 };
 
-/// A statistic with the distribution that resampling gives it.
+/// A statistic, and how far it may be off.
 struct estimate {
     double value = 0;
-    std::vector<double> draws;  ///< sorted
+    double error = 0;    ///< standard error
+    double degrees = 1;  ///< of freedom
 
-    /// @param miss the share of the draws that may lie below it, and above it
+    /// Whether it was measured.
+    [[nodiscard]] bool known() const;
+    /// By Student's t. @param miss the chance that the true value lies below it, and above it
     [[nodiscard]] interval range(double miss = 0.025) const;
+    /// One-sided p-values: how likely it is to see this if the true value were at the limit or above, or below.
+    [[nodiscard]] double chance_above(double limit) const;
+    [[nodiscard]] double chance_below(double limit) const;
 };
 
-inline constexpr std::size_t draws_of_an_estimate = 4000;
+inline constexpr std::size_t draws_of_a_level = 1000;
 
-/// Bootstrap with processes and seeds drawn crosswise (the "pigeonhole bootstrap", A. Owen, 2007) and repeats within.
-/// Few processes show too little of what differs between them, so deviations are widened by sqrt(n / (n - 1)), n the
-/// lesser number of processes and seeds above 1. The same data give the same draws.
-[[nodiscard]] estimate bootstrap(std::size_t processes, std::size_t seeds,
-                                 const std::function<double(const resample&)>& statistic);
+/// Bootstrap by level: processes, seeds and repeats are drawn in turn. What each level adds beyond the noise of repeats
+/// is a variance with as many degrees of freedom as there are processes or seeds, less one; the sum has
+/// Satterthwaite's. So three processes that disagree make a wide interval, and three that agree do not. The same data
+/// give the same estimate.
+[[nodiscard]] estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic);
 /// Of one condition's mean.
 [[nodiscard]] estimate bootstrap(const cells& measured);
+
+/// a - b, of two that know nothing of each other.
+[[nodiscard]] estimate difference_of(const estimate& a, const estimate& b);
+
+/// What a claim says of a ratio.
+enum class expectation : unsigned char {
+    less,     ///< it is less than 1
+    not_more  ///< it is not more than 1
+};
 
 /// Where the ratio of two things lies against the band of those that make no difference, 1/1.05 to 1.05.
 enum class outcome : unsigned char {
@@ -97,24 +122,19 @@ enum class outcome : unsigned char {
 
 inline constexpr double equivalence_band = 0.05;
 
-/// The outcome that is nearest to being shown, and the chance to see it by accident.
+/// The outcome that is nearest to being shown, and its p-value. Where no more is expected than not_more, `same` stands
+/// for all that is not more.
 struct evidence {
     outcome nearest;
     double p;
 };
 /// @param log_ratio of the logarithm of a ratio
-[[nodiscard]] evidence evidence_of(const estimate& log_ratio);
+[[nodiscard]] evidence evidence_of(const estimate& log_ratio, expectation expected = expectation::less);
 
 /// The nearest outcome where the 95 % interval shows it, else open.
 [[nodiscard]] outcome decide(const evidence& e);
 /// Several at once, by Holm's step-down rule: the chance that any outcome is wrong is kept below 5 %.
 [[nodiscard]] std::vector<outcome> decide_together(std::span<const evidence> all);
-
-/// What a claim says of a ratio.
-enum class expectation : unsigned char {
-    less,     ///< it is less than 1
-    not_more  ///< it is not more than 1
-};
 
 enum class support : unsigned char { favours, no_difference, contradicts, open };
 [[nodiscard]] support support_of(expectation expected, outcome found);

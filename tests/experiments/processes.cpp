@@ -1,5 +1,10 @@
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +14,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "program.hpp"
@@ -87,6 +93,57 @@ TEST_CASE("A run killed half-way and resumed ends with the rows of one that was 
         REQUIRE(resumed.status == 0);
         REQUIRE(answers(folder / "out") == whole);
     }
+}
+
+TEST_CASE("A run whose process is killed leaves no other behind, and is resumed") {
+    const temporary_folder folder;
+    std::string longer = config;
+    longer.replace(longer.find("objects = 60"), 12, "objects = 2000");
+    const std::string file = folder.write("shared.toml", longer).string();
+    const std::string out = (folder / "out").string();
+    std::vector<std::string> arguments{AABBLAB_UNDER_TEST, "run", file, "--out", out};
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    REQUIRE(posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ) == 0);
+    const auto size = [&] {
+        std::error_code error;
+        const auto bytes = std::filesystem::file_size(folder / "out/results.csv", error);
+        return error ? std::uintmax_t{0} : bytes;
+    };
+    // Some rows are there, and more are to come.
+    const std::size_t header = 2000;
+    while (size() < header && waitpid(child, nullptr, WNOHANG) == 0) usleep(1000);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    std::uintmax_t before = 0;
+    do {
+        before = size();
+        usleep(300'000);
+    } while (size() != before);
+    REQUIRE(run_program({"run", file, "--out", out, "--resume"}).status == 0);
+    const std::set<std::string> resumed = answers(folder / "out");
+    REQUIRE(run_program({"run", file, "--out", (folder / "whole").string()}).status == 0);
+    REQUIRE(resumed == answers(folder / "whole"));
+    REQUIRE(resumed.size() == 2 * 2 * 6);
+}
+
+TEST_CASE("A repeat that was interrupted is played again, whole") {
+    const temporary_folder folder;
+    const std::string file = folder.write("shared.toml", config).string();
+    const std::string out = (folder / "out").string();
+    REQUIRE(run_program({"run", file, "--out", out}).status == 0);
+    const std::vector<row> before = aabblab::read_rows(folder / "out/results.csv");
+    // Of the second repeat of the first scene one row is left.
+    cut_off(folder / "out/results.csv", 4);
+    REQUIRE(run_program({"run", file, "--out", out, "--resume"}).status == 0);
+    const std::vector<row> after = aabblab::read_rows(folder / "out/results.csv");
+    REQUIRE(after.size() == before.size());
+    for (std::size_t i = 0; i < 2; ++i) CHECK(after[i].search_ms == before[i].search_ms);
+    CHECK(after[2].repeat == 1);
+    // Six digits after the point hardly repeat themselves in both.
+    CHECK((after[2].search_ms != before[2].search_ms || after[2].build_ms != before[2].build_ms));
 }
 
 TEST_CASE("A quick run takes the seeds of quick, and no more processes than repeats") {
