@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@ module aabblab.claims;
 import :measurements;
 import aabblab.figures;
 import aabblab.report;
+import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -37,12 +39,18 @@ const std::vector<method>& methods() {
 table half_steps(const std::vector<condition>& conditions) {
     table t{{{"meshes", false}, {"objects"}}, {}};
     for (std::size_t i = 1; i < methods().size(); ++i) t.columns.push_back({methods()[i].label});
+    t.columns.push_back({"global search, % of traditional time"});
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{mesh_of(c), value_of(c.of(), "objects")});
         for (std::size_t i = 1; i < methods().size(); ++i) {
             const candidate ratio = candidate_of(c, methods()[i].who, methods()[0].who, frame_ms());
             cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
         }
+        const auto share = c.spread(methods()[0].who, [](const row& r) -> std::optional<double> {
+            const double global = r.update_ms.value_or(0) + r.search_ms.value_or(0);
+            return r.detect_ms ? std::optional(100 * global / (global + *r.detect_ms)) : std::nullopt;
+        });
+        cells.push_back(share ? digits_of(share->median) : "-");
     }
     return t;
 }

@@ -34,10 +34,11 @@ bool drifts_little(const condition& c) {
 
 /// Which half brings the gain: the ratio of every method to the traditional one.
 table half_steps(const std::vector<condition>& conditions) {
-    table t{{{"scene", false}}, {}};
+    const place_columns places(conditions);
+    table t{places.head(), {}};
     for (std::size_t i = 1; i < methods().size(); ++i) t.columns.push_back({methods()[i].label});
     for (const condition& c : conditions) {
-        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{text_of(c.of())});
+        std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         for (std::size_t i = 1; i < methods().size(); ++i) {
             const candidate ratio = candidate_of(c, methods()[i].who, traditional, frame_ms());
             cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));

@@ -64,15 +64,19 @@ figure figure_of(const std::string& name, const condition& c) {
 
 /// Segments need not be tiny: what the automatic choice leaves on the table.
 table automatic(const std::vector<condition>& conditions) {
-    table t{{{"scene", false}, {"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}}, {}};
+    const place_columns places(conditions);
+    table t{places.head(), {}};
+    t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
             const candidate ratio = candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms());
             const auto chosen = c.spread(cut_into(axes, "auto"), count_of("segments_got"));
             const auto limit = segments_got(c, axes, 256);
             if (!ratio.log_ratio.known() || !chosen || !limit) continue;
-            t.rows.push_back({text_of(c.of()), std::to_string(axes), digits_of(chosen->median / axes),
-                              digits_of(*limit), ratio_text(endpoint_of(ratio, expectation::less))});
+            std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
+            for (const std::string& cell : {std::to_string(axes), digits_of(chosen->median / axes), digits_of(*limit),
+                                            ratio_text(endpoint_of(ratio, expectation::less))})
+                cells.push_back(cell);
         }
     return t;
 }
@@ -95,16 +99,19 @@ claim_result more_segments(const measurements& m) {
                 const int wanted = segments_wanted()[i];
                 const int before = segments_wanted()[i - 1];
                 if (!is_finer(c, axes, wanted, before)) continue;
-                candidates.push_back(
-                    candidate_of(c, cut_into(axes, std::to_string(wanted)), cut_into(axes, std::to_string(before)),
-                                 frame_ms(), {{"axes", std::to_string(axes)}, {"segments", std::to_string(wanted)}}));
+                candidates.push_back(candidate_of(c, cut_into(axes, std::to_string(wanted)),
+                                                  cut_into(axes, std::to_string(before)), frame_ms(),
+                                                  {{"axes", std::to_string(axes)},
+                                                   {"segments", std::to_string(wanted)},
+                                                   {"over", std::to_string(before)}}));
                 candidates.back().primary = value_of(c.of(), "scene") == "brownian" && axes == 2 && wanted == 8;
             }
     // Segments need not be tiny: those that the automatic choice makes are as good as all that the limit allows.
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
-            candidates.push_back(candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms(),
-                                              {{"axes", std::to_string(axes)}, {"segments", "auto over the limit"}}));
+            candidates.push_back(
+                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms(),
+                             {{"axes", std::to_string(axes)}, {"segments", "auto"}, {"over", "the limit"}}));
             candidates.back().expected = expectation::not_more;
         }
     judge(claim, std::move(candidates));

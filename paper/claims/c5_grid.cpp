@@ -80,11 +80,13 @@ private:
 };
 
 table regrets(const std::vector<condition>& conditions) {
-    table t{{{"scene", false}, {"axial_cut"}}, {}};
+    const place_columns places(conditions);
+    table t{places.head(), {}};
+    t.columns.push_back({"axial_cut"});
     for (const std::string& size : cell_sizes()) t.columns.push_back({"cells of " + size});
     t.columns.push_back({"grid, auto"});
     for (const condition& c : conditions) {
-        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{text_of(c.of())});
+        std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         const auto add = [&](const selection& who) {
             const auto time = c.spread(who, frame_ms());
             cells.push_back(time ? digits_of(time->median) : "-");
@@ -108,7 +110,7 @@ void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& ca
         if (above.empty() || below.empty()) return;
         candidates.push_back(
             {{{"scene", "brownian"},
-              {"of", what},
+              {"comparison", what},
               {"density", value_of(over.of(), "density") + " over " + value_of(under.of(), "density")}},
              bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); }),
              false,
@@ -180,9 +182,11 @@ claim_result cut_against_grid(const measurements& m) {
     if (!conditions.empty()) {
         const scenes_and_cells all(conditions);
         const sample_size size = conditions.front().log_ratios(grid(cell_sizes().front()), cut, frame_ms()).size();
-        const auto add = [&](const std::string& of, auto log_ratio, bool primary, expectation expected) {
-            candidates.push_back(
-                {{{"scene", "the worst of all"}, {"of", of}}, bootstrap(size, log_ratio), primary, expected});
+        const auto add = [&](const std::string& comparison, auto log_ratio, bool primary, expectation expected) {
+            candidates.push_back({{{"scene", "the worst of all"}, {"comparison", comparison}},
+                                  bootstrap(size, log_ratio),
+                                  primary,
+                                  expected});
         };
         add(
             "axial_cut over the safest cell size",

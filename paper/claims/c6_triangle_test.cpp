@@ -129,7 +129,7 @@ claim_result triangle_for_box(const measurements& m) {
     for (const std::string frame : {std::string(), std::string(in_place)})
         for (const std::string test : {"triangle_box", "triangle_aabb"})
             if (const cells ratios = ratios_of(times, "test/" + test + frame, "test/box" + frame); !ratios.empty())
-                candidates.push_back({{{"of", "one test"},
+                candidates.push_back({{{"quantity", "one test"},
                                        {"leaf_test", test},
                                        {"leaf of", frame.empty() ? "B, carried into A's frame" : "A"}},
                                       bootstrap(ratios),
@@ -138,7 +138,7 @@ claim_result triangle_for_box(const measurements& m) {
         for (const char* test : {"triangle_box", "triangle_aabb", "none"}) {
             candidate one = candidate_of(c, {"", "", "", "", std::string("leafless:leaf_test=") + test},
                                          {"", "", "", "", "canonical"}, detect_ms());
-            one.where = {{"of", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
+            one.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
             candidates.push_back(std::move(one));
         }
     judge(claim, std::move(candidates));

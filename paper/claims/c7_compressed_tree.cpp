@@ -61,7 +61,7 @@ claim_result compressed_tree(const measurements& m) {
     for (const condition* c : all) {
         const auto add = [&](const char* what, const metric& of, const std::string& leaf_test) {
             candidates.push_back(candidate_of(*c, tree("compressed:leaf_test=" + leaf_test), tree("canonical"), of,
-                                              {{"of", what}, {"leaf_test", leaf_test}}));
+                                              {{"quantity", what}, {"leaf_test", leaf_test}}));
         };
         add("time", detect_ms(), "triangle_box");
         candidates.back().primary = is_primary_of_c7(*c);

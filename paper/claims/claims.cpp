@@ -32,6 +32,7 @@ std::size_t count_of(std::span<const endpoint> all, support what) {
 }
 
 std::string where_against_band(support found, expectation expected, double ratio) {
+    if (found == support::open && expected == expectation::not_more) return "is not shown to be below 1.05, nor above";
     if (found == support::open) return "cannot be told from the band of no difference, 0.95 to 1.05";
     if (found == support::no_difference) return "lies within the band of no difference, 0.95 to 1.05";
     if (found == support::favours && expected == expectation::not_more && ratio > 1 / (1 + equivalence_band))
@@ -58,19 +59,13 @@ table endpoint_table(const claim_result& claim) {
     std::vector<endpoint> all;
     if (claim.has_primary) all.push_back(claim.primary);
     all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
-    std::vector<std::string> names;
-    for (const endpoint& e : all)
-        for (const auto& [name, value] : e.where)
-            if (std::ranges::find(names, name) == names.end() &&
-                std::ranges::any_of(
-                    all, [&, n = name, v = value](const endpoint& other) { return value_of(other.where, n) != v; }))
-                names.push_back(name);
-    table t;
-    for (const std::string& name : names) t.columns.push_back({name, false});
+    std::vector<factors> places;
+    for (const endpoint& e : all) places.push_back(e.where);
+    const place_columns columns(places);
+    table t{columns.head(), {}};
     t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", false}});
     for (const endpoint& e : all) {
-        std::vector<std::string>& cells = t.rows.emplace_back();
-        for (const std::string& name : names) cells.push_back(grouped(value_of(e.where, name)));
+        std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(e.where));
         cells.push_back(digits_of(e.ratio));
         cells.push_back(digits_of(e.range.low) + " to " + digits_of(e.range.high));
         cells.push_back(text_of(e.found) + (&e == all.data() && claim.has_primary ? " (primary)" : ""));
@@ -79,6 +74,34 @@ table endpoint_table(const claim_result& claim) {
 }
 
 }  // namespace
+
+place_columns::place_columns(std::span<const factors> places) {
+    for (const factors& place : places)
+        for (const auto& [name, value] : place)
+            if (std::ranges::find(names_, name) == names_.end() &&
+                std::ranges::any_of(places,
+                                    [&, n = name, v = value](const factors& other) { return value_of(other, n) != v; }))
+                names_.push_back(name);
+}
+
+place_columns::place_columns(const std::vector<condition>& conditions)
+    : place_columns([&] {
+          std::vector<factors> places;
+          for (const condition& c : conditions) places.push_back(c.of());
+          return places;
+      }()) {}
+
+std::vector<column> place_columns::head() const {
+    std::vector<column> columns;
+    for (const std::string& name : names_) columns.push_back({name, false});
+    return columns;
+}
+
+std::vector<std::string> place_columns::cells(const factors& place) const {
+    std::vector<std::string> all;
+    for (const std::string& name : names_) all.push_back(grouped(value_of(place, name)));
+    return all;
+}
 
 std::string dependence_of(const open_choice& choice) {
     bool open = choice.alternatives.empty();
@@ -127,17 +150,24 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
         if (claim.verdict == verdict_kind::holds_when) {
             std::vector<endpoint> all{claim.primary};
             all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
-            claim.when = simplest_condition(all);
-            claim.when = claim.when.empty()
-                             ? fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size())
-                             : "when " + claim.when;
+            if (const std::string simplest = simplest_condition(all); !simplest.empty()) {
+                claim.when = "when " + simplest;
+            } else {
+                claim.when = fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size());
+                if (const std::string nearest = nearest_condition(all); !nearest.empty())
+                    claim.when += ", mostly when " + nearest;
+            }
         }
     }
     claim.because = sentence_of(claim);
     std::string name = claim.id;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    claim.tables.insert(claim.tables.begin(),
-                        {name, "Every endpoint of " + claim.id + ": " + claim.measured + ".", endpoint_table(claim)});
+    claim.tables.insert(
+        claim.tables.begin(),
+        {name,
+         "Every endpoint of " + claim.id + ": " + claim.measured +
+             ". Outcomes are by Holm's rule over all but the primary one, intervals are each one's own.",
+         endpoint_table(claim)});
 }
 
 candidate candidate_of(const condition& c, const selection& arm, const selection& base, const metric& of,
@@ -244,7 +274,7 @@ table choice_table(const reproduction& all) {
              {"why", false},
              {"claim", false},
              {"its ratio", false},
-             {"changes the outcome", false}},
+             {"changes it", false}},
             {}};
     for (const open_choice& c : all.choices) {
         std::string ratios;

@@ -77,6 +77,9 @@ struct reproduction {
 /// simple. Two factors need two endpoints on either side, lest some pair of them always fits.
 [[nodiscard]] std::string simplest_condition(std::span<const endpoint> all);
 
+/// One condition that tells most of them apart, and how many; empty where there is none.
+[[nodiscard]] std::string nearest_condition(std::span<const endpoint> all);
+
 /// "holds when objects is at least 10000", "no difference", …
 [[nodiscard]] std::string text_of(const claim_result& claim);
 [[nodiscard]] std::string text_of(support found);
@@ -111,6 +114,19 @@ struct candidate {
 /// Decides a claim: the primary candidate by its interval, all others together. Writes the sentence and the table of
 /// endpoints. Candidates without a finite ratio (a composition was wrong, an experiment has not run) are left out.
 void judge(claim_result& claim, std::vector<candidate> candidates);
+
+/// Columns of a table that say where its rows were measured: the factors in which they differ.
+class place_columns {
+public:
+    explicit place_columns(std::span<const factors> places);
+    explicit place_columns(const std::vector<condition>& conditions);
+
+    [[nodiscard]] std::vector<column> head() const;
+    [[nodiscard]] std::vector<std::string> cells(const factors& place) const;
+
+private:
+    std::vector<std::string> names_;
+};
 
 /// The ratio of two compositions in one condition.
 /// @param more factors beside the condition's own

@@ -54,28 +54,40 @@ void add_predicates(std::span<const endpoint> all, const std::string& name, std:
                              }});
 }
 
+/// Endpoints that are decided, and every condition on one factor that could tell them apart.
+struct told_apart {
+    explicit told_apart(std::span<const endpoint> all) {
+        for (const endpoint& e : all)
+            if (e.found != support::open) decided.push_back(e);
+        std::vector<std::string> names;
+        for (const endpoint& e : decided)
+            for (const auto& [name, value] : e.where)
+                if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+        for (const std::string& name : names) add_predicates(decided, name, predicates);
+    }
+
+    /// How many it says the right thing of.
+    template <class Holds>
+    [[nodiscard]] std::size_t right(Holds holds) const {
+        return static_cast<std::size_t>(std::ranges::count_if(
+            decided, [&](const endpoint& e) { return holds(e.where) == (e.found == support::favours); }));
+    }
+
+    std::vector<endpoint> decided;
+    std::vector<predicate> predicates;
+};
+
 }  // namespace
 
 std::string simplest_condition(std::span<const endpoint> all) {
-    std::vector<endpoint> decided;
-    for (const endpoint& e : all)
-        if (e.found != support::open) decided.push_back(e);
-    std::vector<std::string> names;
-    for (const endpoint& e : decided)
-        for (const auto& [name, value] : e.where)
-            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-    std::vector<predicate> predicates;
-    for (const std::string& name : names) add_predicates(decided, name, predicates);
-    const auto tells_apart = [&](auto holds) {
-        return std::ranges::all_of(decided,
-                                   [&](const endpoint& e) { return holds(e.where) == (e.found == support::favours); });
-    };
-    for (const predicate& p : predicates)
+    const told_apart found(all);
+    const auto tells_apart = [&](auto holds) { return found.right(holds) == found.decided.size(); };
+    for (const predicate& p : found.predicates)
         if (tells_apart(p.holds)) return p.text;
-    const auto favourable = std::ranges::count(decided, support::favours, &endpoint::found);
-    if (favourable < 2 || std::ssize(decided) - favourable < 2) return {};
-    for (const predicate& p : predicates)
-        for (const predicate& q : predicates) {
+    const auto favourable = std::ranges::count(found.decided, support::favours, &endpoint::found);
+    if (favourable < 2 || std::ssize(found.decided) - favourable < 2) return {};
+    for (const predicate& p : found.predicates)
+        for (const predicate& q : found.predicates) {
             if (&p >= &q) continue;
             if (tells_apart([&](const factors& where) { return p.holds(where) && q.holds(where); }))
                 return p.text + " and " + q.text;
@@ -83,6 +95,27 @@ std::string simplest_condition(std::span<const endpoint> all) {
                 return p.text + " or " + q.text;
         }
     return {};
+}
+
+std::string nearest_condition(std::span<const endpoint> all) {
+    constexpr double least_share = 0.8;
+    const told_apart found(all);
+    const auto favourable = static_cast<double>(std::ranges::count(found.decided, support::favours, &endpoint::found));
+    const auto others = static_cast<double>(found.decided.size()) - favourable;
+    // Of those that favour the claim, and of those that do not: a condition that nothing meets says nothing.
+    const auto share_right = [&](const predicate& p) {
+        double met = 0, rightly_not = 0;
+        for (const endpoint& e : found.decided) {
+            met += e.found == support::favours && p.holds(e.where);
+            rightly_not += e.found != support::favours && !p.holds(e.where);
+        }
+        return std::min(met / favourable, rightly_not / others);
+    };
+    if (favourable == 0 || others == 0) return {};
+    const auto best = std::ranges::max_element(found.predicates, {}, share_right);
+    if (best == found.predicates.end() || share_right(*best) < least_share) return {};
+    return best->text + " (right of " + std::to_string(found.right(best->holds)) + " of the " +
+           std::to_string(found.decided.size()) + " that are decided)";
 }
 
 }  // namespace aabblab

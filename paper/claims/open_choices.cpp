@@ -37,7 +37,7 @@ measured_choices of_search(const measurements& m,
                            const std::vector<std::pair<std::string, std::pair<selection, selection>>>& named) {
     measured_choices found;
     for (const condition& c : m.of("choices")) {
-        found.where = text_of(c.of());
+        found.where = text_of(c.of()) + " (a run of its own)";
         for (const auto& [label, arms] : named)
             add(found.all, label, candidate_of(c, arms.first, arms.second, frame_ms()));
     }
@@ -171,7 +171,7 @@ std::vector<open_choice> open_choices(const measurements& m) {
         choice("How far do objects move in a frame?", "up to a tenth of an edge",
                "\"only slightly from last time step\"", "C1", over_displacements(m)),
         choice("How do objects lie?", "drifting cubes, a tenth of the volume filled",
-               "the scene that most comparisons use", "C1", over_scenes(m)),
+               "the scene of Broadmark, which other systems are compared on", "C1", over_scenes(m)),
         choice("Does the first frame count?", "no: it is sorted by std::sort and timed apart",
                "nothing is almost sorted in it, and insertion sort would be quadratic", "C1", with_first_frame(m)),
         choice("What stands in for a leaf's box?",
@@ -188,8 +188,7 @@ std::vector<open_choice> open_choices(const measurements& m) {
                               {"mean", {tree("compressed", "mean"), canonical("mean")}},
                               {"sah", {tree("compressed", "sah"), canonical("sah")}}})),
         choice("What are \"different models\"?", "scanned animals in a crowd, and many small generated ones",
-               "the paper names none; the stages share the time otherwise with every number and size of models", "C11",
-               over_models(m)),
+               "the paper names none; with these nearly all of the time is local detection's", "C11", over_models(m)),
     };
 }
 

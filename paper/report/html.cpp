@@ -115,6 +115,10 @@ private:
 };
 
 void add_summary(page& out, const reproduction& all) {
+    out.paragraph(
+        "Each claim with its verdict and its primary ratio (95 % interval): below 1 favours the claim, whatever a "
+        "condition in the verdict adds.",
+        "soft");
     out.raw("<div class=\"claims\">\n");
     for (const claim_result& c : all.claims)
         out.raw(
@@ -139,8 +143,9 @@ void add_rule(page& out) {
     out.paragraph(
         "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; where they "
         "differ it holds when some condition is met, the simplest one that tells them apart; else it does not hold, or "
-        "makes no difference, as the primary endpoint says, or is undecided where that is open. Claims that say \"not "
-        "more\" (C2, C6, C10) are favoured by an interval below 1.05. Times are compared within a table only, never "
+        "makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not more\" is "
+        "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a "
+        "table only, never "
         "between runs or machines.");
 }
 

@@ -83,7 +83,7 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
     // A layout that was wrong has no row in table 1.
     for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
         for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
-    for (const char* name : {"table1", "table1_builds", "c2_inversions", "c4_auto", "c11_stages"})
+    for (const char* name : {"table1", "table1_builds", "c2_inversions", "c3_map", "c4_auto", "c11_stages"})
         to.set(std::string("table.") + name + ".caption", "There are no measurements.");
     to.set("date", made.date);
     to.set("commit", made.commit);

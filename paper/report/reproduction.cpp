@@ -43,16 +43,18 @@ table endpoints_of(const reproduction& all) {
 
 /// The primary ratio of every claim against the band of no difference.
 figure verdict_figure(const reproduction& all) {
-    figure f{"verdicts",
-             "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference.",
-             {"claim", false, {}},
-             {"ratio", true, {}},
-             {},
-             {}};
+    figure f{
+        "verdicts",
+        "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference. Ratios "
+        "below 0.2 are left out.",
+        {"claim", false, {}},
+        {"ratio", true, {}},
+        {},
+        {}};
     series ratios{"primary ratio, 95 % interval", series_style::points, {}};
     for (std::size_t i = 0; i < all.claims.size(); ++i) {
         f.x.names.emplace_back(static_cast<double>(i), all.claims[i].id);
-        if (!all.claims[i].has_primary) continue;
+        if (!all.claims[i].has_primary || all.claims[i].primary.ratio < 0.2) continue;
         const endpoint& e = all.claims[i].primary;
         ratios.points.push_back({static_cast<double>(i), e.ratio, e.range.low, e.range.high});
     }

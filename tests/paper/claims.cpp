@@ -58,14 +58,13 @@ aabblab::factors primary_of(const std::string& id, bool quick) {
         return {{"scene", "line"},
                 {"sort", "shell:gaps=ciura"},
                 {"displacement", "0.1"},
-                {"work", "comparisons"},
                 {"elements", quick ? "100 to 10000" : "100 to 100000"}};
     if (id == "C3") return with(drifting, {{"gaps", "ciura"}});
-    if (id == "C4") return with(drifting, {{"axes", "2"}, {"segments", "8"}});
-    if (id == "C5") return {{"scene", "the worst of all"}, {"of", "axial_cut over the safest cell size"}};
+    if (id == "C4") return with(drifting, {{"axes", "2"}, {"segments", "8"}, {"over", "4"}});
+    if (id == "C5") return {{"scene", "the worst of all"}, {"comparison", "axial_cut over the safest cell size"}};
     if (id == "C6")
-        return {{"of", "one test"}, {"leaf_test", "triangle_box"}, {"leaf of", "B, carried into A's frame"}};
-    if (id == "C7") return pair_of(quick ? "30000" : "100000", {{"of", "time"}, {"leaf_test", "triangle_box"}});
+        return {{"quantity", "one test"}, {"leaf_test", "triangle_box"}, {"leaf of", "B, carried into A's frame"}};
+    if (id == "C7") return pair_of(quick ? "30000" : "100000", {{"quantity", "time"}, {"leaf_test", "triangle_box"}});
     if (id == "C8") return pair_of(quick ? "5000" : "20000", {{"over", "mean"}});
     if (id == "C9") return with(huge, {{"split_large", "4"}});
     if (id == "C10") return with(huge, {{"segments", "auto"}});
@@ -191,6 +190,19 @@ TEST_CASE("The simplest condition tells endpoints apart") {
     // Too few to choose two factors by.
     CHECK(aabblab::simplest_condition(std::span(by_both).subspan(0, 2)) == "objects is at least 1000");
     CHECK(aabblab::simplest_condition(std::vector{by_both[0], by_both[1], by_both[3]}).empty());
+    std::vector<endpoint> with_exception{at("line", "10000", support::contradicts)};
+    for (const char* objects : {"10000", "20000", "30000", "40000", "50000"})
+        with_exception.push_back(at("brownian", objects, support::favours));
+    for (const char* objects : {"100", "200", "300", "400", "500"})
+        with_exception.push_back(at("brownian", objects, support::contradicts));
+    with_exception.push_back(at("still", "100", support::favours));
+    CHECK(aabblab::simplest_condition(with_exception).empty());
+    CHECK(aabblab::nearest_condition(with_exception) ==
+          "objects is at least 10000 (right of 10 of the 12 that are decided)");
+    // That no endpoint meets it would be right of nearly all.
+    std::vector<endpoint> rare(20, at("brownian", "100", support::contradicts));
+    rare.push_back(at("brownian", "100", support::favours));
+    CHECK(aabblab::nearest_condition(rare).empty());
     const std::vector<endpoint> in_none{at("brownian", "100", support::contradicts),
                                         at("brownian", "100", support::favours)};
     CHECK(aabblab::simplest_condition(in_none).empty());

@@ -167,6 +167,8 @@ inline void write_world(const std::filesystem::path& folder, double ratio, doubl
             if (const std::size_t at = p.who.partition.rfind('='); e.name == "c4" && at != std::string::npos)
                 count_in(r, "segments_got") =
                     p.who.partition.ends_with("auto") ? 8 : std::stoul(p.who.partition.substr(at + 1));
+            // The limit acts.
+            if (e.name == "c10" && p.has("limit=on")) scaled(count_in(r, "segments_got"), 0.5);
             // The work of an element grows with N where the claim is wrong.
             if (e.name == "c2" && ratio > 1)
                 for (const char* work : {"comparisons", "moves"})
