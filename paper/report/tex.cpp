@@ -31,7 +31,9 @@ std::string columns_of(const table& t) {
     double all = 0;
     const auto weight = [&](std::size_t k) {
         const std::size_t longest = longest_cell(t, k);
-        return longest > longest_unbroken ? std::sqrt(static_cast<double>(std::min<std::size_t>(longest, 400))) : 0;
+        // Neither so narrow that a word does not fit, nor so wide that the others are.
+        return longest > longest_unbroken ? std::sqrt(static_cast<double>(std::clamp<std::size_t>(longest, 80, 300)))
+                                          : 0;
     };
     for (std::size_t k = 0; k < t.columns.size(); ++k) all += weight(k);
     std::string spec;
