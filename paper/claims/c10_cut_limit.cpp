@@ -55,10 +55,9 @@ claim_result one_cut_a_box(const measurements& m) {
             const bool automatic = std::string(segments) == "auto";
             one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && automatic;
             if (span.empty() || !automatic || !one.log_ratio.known()) continue;
-            const endpoint e = endpoint_of(one, expectation::not_more);
             series& s = by_span[span];
             s.label = "edge " + span + " of the world";
-            s.points.push_back({number_of(c.of(), "huge"), e.ratio, e.range.low, e.range.high});
+            s.points.push_back(point_of(number_of(c.of(), "huge"), one));
         }
     judge(claim, std::move(candidates));
     for (const auto& [span, s] : by_span) f.lines.push_back(s);

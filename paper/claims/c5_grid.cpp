@@ -136,8 +136,7 @@ figure cell_figure(const std::vector<condition>& conditions) {
         for (const std::string& size : cell_sizes()) {
             const candidate ratio = candidate_of(c, grid(size), cut, frame_ms());
             if (!ratio.log_ratio.known()) continue;
-            const endpoint e = endpoint_of(ratio, expectation::less);
-            s.points.push_back({std::stod(size), e.ratio, e.range.low, e.range.high});
+            s.points.push_back(point_of(std::stod(size), ratio));
         }
         f.lines.push_back(s);
     }

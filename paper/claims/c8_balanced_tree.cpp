@@ -70,8 +70,7 @@ claim_result balanced_tree(const measurements& m) {
         for (std::size_t i = 0; i < conditions.size(); ++i) {
             const candidate ratio = candidate_of(conditions[i], canonical("median"), canonical(build), detect_ms());
             if (!ratio.log_ratio.known()) continue;
-            const endpoint e = endpoint_of(ratio, expectation::less);
-            s.points.push_back({static_cast<double>(i), e.ratio, e.range.low, e.range.high});
+            s.points.push_back(point_of(static_cast<double>(i), ratio));
         }
         f.lines.push_back(s);
     }

@@ -43,10 +43,9 @@ claim_result large_objects_split(const measurements& m) {
             const std::string span = value_of(c.of(), "span");
             one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && std::string(size) == "4";
             if (span.empty() || std::string(size) != "4" || !one.log_ratio.known()) continue;
-            const endpoint e = endpoint_of(one, expectation::less);
             series& s = by_span[span];
             s.label = "edge " + span + " of the world";
-            s.points.push_back({number_of(c.of(), "huge"), e.ratio, e.range.low, e.range.high});
+            s.points.push_back(point_of(number_of(c.of(), "huge"), one));
         }
     judge(claim, std::move(candidates));
     for (const auto& [span, s] : by_span) f.lines.push_back(s);

@@ -124,6 +124,11 @@ endpoint endpoint_of(const candidate& c, expectation expected) {
             support_of(own, decide(evidence_of(c.log_ratio, own)))};
 }
 
+figure_point point_of(double x, const candidate& c) {
+    const interval range = c.log_ratio.range();
+    return {x, std::exp(c.log_ratio.value), std::exp(range.low), std::exp(range.high)};
+}
+
 void judge(claim_result& claim, std::vector<candidate> candidates) {
     std::erase_if(candidates, [](const candidate& c) { return !c.log_ratio.known(); });
     std::vector<evidence> others;

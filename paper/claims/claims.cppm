@@ -133,6 +133,9 @@ private:
 [[nodiscard]] candidate candidate_of(const condition& c, const selection& arm, const selection& base, const metric& of,
                                      factors more = {});
 
+/// A ratio with its 95 % interval as a point of a figure.
+[[nodiscard]] figure_point point_of(double x, const candidate& c);
+
 /// A series of medians over the conditions of an experiment, in the order of x.
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
                                const std::string& x, const selection& who, const metric& of);

@@ -199,8 +199,5 @@ const measurements::experiment_results& measurements::read(const std::string& ex
 const std::vector<condition>& measurements::of(const std::string& experiment) const {
     return read(experiment).conditions;
 }
-const std::vector<row>& measurements::rows_of(const std::string& experiment) const {
-    return read(experiment).rows;
-}
 
 }  // namespace aabblab

@@ -91,7 +91,6 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     /// The conditions of an experiment in the order of its config; none where it has no results.
     [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const;
-    [[nodiscard]] const std::vector<row>& rows_of(const std::string& experiment) const;
 
 private:
     struct experiment_results {
