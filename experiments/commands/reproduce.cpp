@@ -28,9 +28,9 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::array configs = {"figure1", "figure2", "figure2_million", "table1", "c2",  "c3",
-                                "c4",      "c5",      "c5_world",        "c9",     "c10", "c11",
-                                "choices"};
+constexpr std::array configs = {"figure1", "figure2",     "figure2_million", "table1", "c2",  "c3",
+                                "c4",      "c5",          "c5_world",        "c9",     "c10", "c11",
+                                "choices", "null_control"};
 
 struct reproduce_request {
     std::optional<std::string> out;

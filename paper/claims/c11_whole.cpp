@@ -79,17 +79,17 @@ claim_result whole_algorithm(const measurements& m) {
     if (conditions.empty()) return claim;
     claim.tables.push_back(
         {"c11_stages", "Time a frame of both stages over that of the traditional method.", half_steps(conditions)});
-    std::vector<const condition*> small;
+    std::vector<const condition*> sparse;
     for (const condition& c : conditions)
-        if (mesh_of(c) == mesh_of(conditions.back())) small.push_back(&c);
+        if (mesh_of(c) == mesh_of(conditions.back())) sparse.push_back(&c);
     figure f{"c11",
-             "Time of both stages against the number of objects, many small models: traditional, improved, and each "
-             "stage improved alone; medians and quartiles.",
+             "Time of both stages against the number of objects, simple models far apart: traditional, improved, and "
+             "each stage improved alone; medians and quartiles.",
              {"objects", true, {}},
              {"time a frame (ms)", true, {}},
              {},
              {}};
-    for (const method& one : methods()) f.lines.push_back(series_of(one.label, small, "objects", one.who, frame_ms()));
+    for (const method& one : methods()) f.lines.push_back(series_of(one.label, sparse, "objects", one.who, frame_ms()));
     claim.figures.push_back(f);
     return claim;
 }

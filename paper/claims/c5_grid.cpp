@@ -26,7 +26,7 @@ selection grid(const std::string& cell) {
 }
 
 const std::vector<std::string>& cell_sizes() {
-    static const std::vector<std::string> all{"2", "4", "8", "16", "32", "64"};
+    static const std::vector<std::string> all{"2", "4", "8", "16", "32", "64", "128", "256"};
     return all;
 }
 

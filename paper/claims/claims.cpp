@@ -4,6 +4,7 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -54,11 +55,9 @@ std::string sentence_of(const claim_result& claim) {
                       count_of(claim.secondary, support::no_difference), count_of(claim.secondary, support::open));
 }
 
-/// The factors in which endpoints differ are columns.
-table endpoint_table(const claim_result& claim) {
-    std::vector<endpoint> all;
-    if (claim.has_primary) all.push_back(claim.primary);
-    all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
+}  // namespace
+
+table endpoint_table(std::span<const endpoint> all, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> places;
     for (const endpoint& e : all) places.push_back(e.where);
     const place_columns columns(places);
@@ -68,12 +67,10 @@ table endpoint_table(const claim_result& claim) {
         std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(e.where));
         cells.push_back(digits_of(e.ratio));
         cells.push_back(digits_of(e.range.low) + " to " + digits_of(e.range.high));
-        cells.push_back(text_of(e.found) + (&e == all.data() && claim.has_primary ? " (primary)" : ""));
+        cells.push_back(outcome(e));
     }
     return t;
 }
-
-}  // namespace
 
 place_columns::place_columns(std::span<const factors> places) {
     for (const factors& place : places)
@@ -150,11 +147,12 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
         claim.secondary[i].found = support_of(expected[i], outcomes[i]);
         supports.push_back(claim.secondary[i].found);
     }
+    std::vector<endpoint> all;
+    if (claim.has_primary) all.push_back(claim.primary);
+    all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
     if (claim.has_primary) {
         claim.verdict = verdict_of(claim.primary.found, supports);
         if (claim.verdict == verdict_kind::holds_when) {
-            std::vector<endpoint> all{claim.primary};
-            all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
             if (const std::string simplest = simplest_condition(all); !simplest.empty()) {
                 claim.when = "when " + simplest;
             } else {
@@ -172,7 +170,9 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
         {name,
          "Every endpoint of " + claim.id + ": " + claim.measured +
              ". Outcomes are by Holm's rule over all but the primary one, intervals are each one's own.",
-         endpoint_table(claim)});
+         endpoint_table(all, [&](const endpoint& e) {
+             return text_of(e.found) + (&e == all.data() && claim.has_primary ? " (primary)" : "");
+         })});
 }
 
 candidate candidate_of(const condition& c, const selection& arm, const selection& base, const metric& of,
@@ -209,6 +209,7 @@ reproduction judged(const measurements& m) {
                   large_objects_split(m), one_cut_a_box(m),    whole_algorithm(m), fewer_box_tests(m)};
     all.choices = open_choices(m);
     all.tables = table1(m);
+    all.null_control = null_control(m);
     return all;
 }
 

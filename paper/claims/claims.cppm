@@ -1,5 +1,6 @@
 module;
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -68,6 +69,7 @@ struct reproduction {
     std::vector<open_choice> choices;
     std::vector<named_table> tables;  ///< table 1
     std::vector<figure> figures;      ///< figures 1 and 2
+    named_table null_control;         ///< ratios where there is nothing to be found
 };
 /// @param results the folder with those of every experiment
 [[nodiscard]] reproduction judged(const measurements& results);
@@ -114,6 +116,10 @@ struct candidate {
 /// Decides a claim: the primary candidate by its interval, all others together. Writes the sentence and the table of
 /// endpoints. Candidates without a finite ratio (a composition was wrong, an experiment has not run) are left out.
 void judge(claim_result& claim, std::vector<candidate> candidates);
+
+/// Endpoints a row each, the factors in which they differ as columns.
+[[nodiscard]] table endpoint_table(std::span<const endpoint> all,
+                                   const std::function<std::string(const endpoint&)>& outcome);
 
 /// Columns of a table that say where its rows were measured: the factors in which they differ.
 class place_columns {
@@ -167,5 +173,6 @@ inline const selection improved{"shell", "axial_cut", "one_axis", "", ""};
 
 [[nodiscard]] std::vector<open_choice> open_choices(const measurements& m);
 [[nodiscard]] std::vector<named_table> table1(const measurements& m);
+[[nodiscard]] named_table null_control(const measurements& m);
 
 }  // namespace aabblab

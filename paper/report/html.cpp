@@ -129,24 +129,12 @@ void add_summary(page& out, const reproduction& all) {
     out.raw("</div>\n");
 }
 
-void add_rule(page& out) {
+void add_rule(page& out, const reproduction& all) {
     out.heading("rule", "How a verdict comes about");
-    out.paragraph(
-        "Each claim has one primary endpoint, fixed before anything was measured: the ratio of two compositions, or "
-        "builds, or counts, formed within a repeat, so that what slows the machine slows both. Every composition is "
-        "compared with the exact answer, pair by pair and frame by frame, before it is timed. The ratio is the mean "
-        "logarithm over processes and seeds of the median repeat. Its 95 % interval comes from a bootstrap: processes, "
-        "seeds and repeats are drawn anew in turn, and what each level adds counts with as many degrees of freedom as "
-        "it has, so that three processes that disagree make a wide interval. A ratio favours the claim when its "
-        "interval lies below 0.95, contradicts it above 1.05, and shows no difference within; what is left is open. "
-        "Secondary endpoints are decided together, with Holm's correction.");
-    out.paragraph(
-        "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; where they "
-        "differ it holds when some condition is met, the simplest one that tells them apart; else it does not hold, or "
-        "makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not more\" is "
-        "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a "
-        "table only, never "
-        "between runs or machines.");
+    for (const std::string_view text : rule_text) out.paragraph(std::string(text));
+    out.paragraph(all.null_control.caption);
+    out.folded("Every ratio of the null control",
+               "<div class=\"wide\">" + to_html(all.null_control.content) + "</div>");
 }
 
 void add_choices(page& out, const reproduction& all) {
@@ -188,7 +176,7 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
     for (const std::string& note : made.notes) out.paragraph("Note: " + note + ".", "soft");
     add_summary(out, all);
     for (const figure& f : all.figures) out.add(f);
-    add_rule(out);
+    add_rule(out, all);
     for (const claim_result& c : all.claims) {
         out.heading(c.id, c.id + ": " + c.claim);
         out.raw(fmt::format("<p class=\"verdict\">Verdict: {}.</p>\n", html_text(text_of(c))));

@@ -109,6 +109,7 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
         for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);
         for (const named_table& t : c.tables) to.set("table." + t.name + ".caption", t.caption);
     }
+    to.set("table.null_control.caption", all.null_control.caption);
     for (const figure& f : all.figures) to.set("figure." + f.name + ".caption", f.caption);
     for (const named_table& t : all.tables) {
         to.set("table." + t.name + ".caption", t.caption);

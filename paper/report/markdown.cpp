@@ -1,5 +1,6 @@
 module;
 #include <string>
+#include <string_view>
 #include <vector>
 
 module aabblab.reproduction;
@@ -27,6 +28,9 @@ std::string markdown_of(const reproduction& all, const provenance& made, const s
         for (const figure& f : c.figures) add_figure(f);
         for (const named_table& t : c.tables) add_table(t);
     }
+    text += "## How a verdict comes about\n\n";
+    for (const std::string_view paragraph : rule_text) text += std::string(paragraph) + "\n\n";
+    add_table(all.null_control);
     text += "## Table 1\n\n";
     for (const named_table& t : all.tables) add_table(t);
     return text + "## What the paper leaves open\n\n" + to_markdown(choice_table(all));

@@ -92,7 +92,8 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
             if (std::ranges::find(experiments, experiment) == experiments.end() &&
                 std::filesystem::exists(folder / experiment / "manifest.json"))
                 experiments.push_back(experiment);
-    if (std::filesystem::exists(folder / "choices" / "manifest.json")) experiments.emplace_back("choices");
+    for (const char* experiment : {"choices", "null_control"})
+        if (std::filesystem::exists(folder / experiment / "manifest.json")) experiments.emplace_back(experiment);
     for (const std::string& experiment : experiments) {
         const std::string text = text_of_file(folder / experiment / "manifest.json");
         const nlohmann::json manifest = nlohmann::json::parse(text);
@@ -131,6 +132,7 @@ void write_reproduction(const std::filesystem::path& folder, const reproduction&
     std::filesystem::create_directories(folder / "tables");
     std::vector<named_table> tables = all.tables;
     tables.push_back({"verdicts", "The verdicts.", verdict_table(all)});
+    tables.push_back(all.null_control);
     tables.push_back({"open", "What the paper leaves open.", choice_table(all)});
     std::vector<figure> figures = all.figures;
     for (const claim_result& c : all.claims) {

@@ -1,7 +1,9 @@
 module;
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// The reproduction as files: tables, figures, a page, and what the LaTeX report takes its numbers from.
@@ -42,6 +44,22 @@ struct provenance {
     std::vector<config> configs;
 };
 [[nodiscard]] provenance provenance_of(const std::filesystem::path& folder, const reproduction& all);
+
+/// How a verdict comes about, a paragraph each.
+inline constexpr std::array<std::string_view, 2> rule_text = {
+    "Each claim has one primary endpoint, fixed before anything was measured: the ratio of two compositions, or "
+    "builds, or counts, formed within a repeat, so that what slows the machine slows both. Every composition is "
+    "compared with the exact answer, pair by pair and frame by frame, before it is timed. The ratio is the mean "
+    "logarithm over processes and seeds of the median repeat. Its 95 % interval comes from a bootstrap: processes, "
+    "seeds and repeats are drawn anew in turn, and what each level adds counts with as many degrees of freedom as "
+    "it has, so that three processes that disagree make a wide interval. A ratio favours the claim when its "
+    "interval lies below 0.95, contradicts it above 1.05, and shows no difference within; what is left is open. "
+    "Secondary endpoints are decided together, with Holm's correction.",
+    "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; where they "
+    "differ it holds when some condition is met, the simplest one that tells them apart; else it does not hold, or "
+    "makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not more\" is "
+    "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a table "
+    "only, never between runs or machines."};
 
 void write_text(const std::filesystem::path& file, const std::string& text);
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <regex>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../experiments/temporary_folder.hpp"
@@ -137,6 +139,26 @@ TEST_CASE("Where nothing differs there is no difference, and what is to be not m
         else
             CHECK(c.id + " " + verdict == c.id + " no difference");
     }
+}
+
+TEST_CASE("The null control finds nothing where there is nothing, and says so where it finds something") {
+    const auto outcomes = [](double of_second_name) {
+        const auto slower = [&](const worlds::played& p, aabblab::row& r) {
+            if (p.has("gaps=ciura")) r.search_ms = of_second_name;
+        };
+        const aabblab::named_table control = reproduction_where("null_control", slower).null_control;
+        std::map<std::string, int> counts;
+        for (const std::vector<std::string>& cells : control.content.rows) ++counts[cells.back()];
+        return std::pair(counts, control.caption);
+    };
+    const auto [same, nothing] = outcomes(1);
+    REQUIRE(same.size() == 1);
+    CHECK(same.at("no difference") > 4);
+    CHECK(nothing.find(" 0 do not hold 1") != std::string::npos);
+    const auto [half, something] = outcomes(4);
+    CHECK(half.at("a difference") == half.at("no difference"));
+    CHECK(something.find(" " + std::to_string(half.at("a difference")) + " are decided as a difference") !=
+          std::string::npos);
 }
 
 TEST_CASE("Where noise hides everything, what is timed is undecided") {

@@ -1,0 +1,57 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+module aabblab.claims;
+
+import :measurements;
+import aabblab.report;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// A composition, and the same with a default written out.
+struct twins {
+    selection plain;
+    selection written_out;
+};
+const std::vector<twins>& compositions() {
+    static const std::vector<twins> all{{traditional, {"insertion", "none", "one_axis:axis=auto", "", ""}},
+                                        {improved, {"shell:gaps=ciura", "axial_cut", "one_axis", "", ""}}};
+    return all;
+}
+
+}  // namespace
+
+named_table null_control(const measurements& m) {
+    std::vector<endpoint> found;
+    for (const condition& c : m.of("null_control"))
+        for (const auto& [plain, written_out] : compositions()) {
+            const candidate ratio = candidate_of(c, written_out, plain, frame_ms(),
+                                                 {{"composition", plain.sort + " + " + plain.partition}});
+            if (ratio.log_ratio.known()) found.push_back(endpoint_of(ratio, expectation::less));
+        }
+    const auto is_difference = [](const endpoint& e) {
+        return e.found == support::favours || e.found == support::contradicts;
+    };
+    const table t = endpoint_table(
+        found, [&](const endpoint& e) { return is_difference(e) ? std::string("a difference") : text_of(e.found); });
+    if (found.empty()) return {"null_control", "There are no measurements of a null control.", t};
+    const auto without_one =
+        std::ranges::count_if(found, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
+    return {"null_control",
+            fmt::format("Null control: time a frame of a composition under two names. Of {} intervals {} do not hold "
+                        "1, where one in twenty is to be expected; {} are decided as a difference, {} as none, and {} "
+                        "are open.",
+                        found.size(), without_one, std::ranges::count_if(found, is_difference),
+                        std::ranges::count(found, support::no_difference, &endpoint::found),
+                        std::ranges::count(found, support::open, &endpoint::found)),
+            t};
+}
+
+}  // namespace aabblab
