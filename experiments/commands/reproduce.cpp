@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +20,7 @@
 import aabb;
 import aabblab.claims;
 import aabblab.config;
+import aabblab.files;
 import aabblab.report;
 import aabblab.reproduction;
 import aabblab.results;
@@ -28,9 +29,14 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::array configs = {"figure1", "figure2",     "figure2_million", "table1", "c2",  "c3",
-                                "c4",      "c5",          "c5_world",        "c9",     "c10", "c11",
-                                "choices", "null_control"};
+/// Configs of the paper's experiments.
+std::vector<std::filesystem::path> configs() {
+    std::vector<std::filesystem::path> all;
+    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "paper"))
+        if (file.path().extension() == ".toml") all.push_back(file.path());
+    std::ranges::sort(all);
+    return all;
+}
 
 struct reproduce_request {
     std::optional<std::string> out;
@@ -71,9 +77,8 @@ std::vector<std::string> time_tests(const std::filesystem::path& folder, bool qu
 /// @returns what is wrong
 std::vector<std::string> measure(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
-    for (const std::string config : configs)
-        experiments.push_back(
-            open_experiment((std::filesystem::path(AABBLAB_CONFIGS) / "paper" / (config + ".toml")).string(), quick));
+    for (const std::filesystem::path& config : configs())
+        experiments.push_back(open_experiment(config.string(), quick));
     std::vector<std::string> failures;
     const auto add = [&](const std::vector<std::string>& found) {
         failures.insert(failures.end(), found.begin(), found.end());
@@ -84,6 +89,24 @@ std::vector<std::string> measure(const std::filesystem::path& folder, bool quick
     }
     note(fmt::format("experiment {0} of {0}: c6, the elementary tests", experiments.size() + 1));
     add(time_tests(folder / "c6", quick));
+    return failures;
+}
+
+/// What was wrong stands beside the results, a sentence a line, since a later judgement has to say it too.
+std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
+    return folder / "failures.txt";
+}
+void keep_failures(const std::filesystem::path& folder, const std::vector<std::string>& failures) {
+    std::string text;
+    for (const std::string& failure : failures) text += failure + "\n";
+    output_file out(file_of_failures(folder));
+    out.write(text);
+    out.commit();
+}
+std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
+    std::vector<std::string> failures;
+    std::ifstream in(file_of_failures(folder));
+    for (std::string line; std::getline(in, line);) failures.push_back(line);
     return failures;
 }
 
@@ -99,10 +122,13 @@ int reproduce(const reproduce_request& request) {
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/reproduce-quick" : "results/reproduce");
     if (folder.empty()) throw aabb::input_error("--out has no name of a folder");
-    if (request.judge && !std::filesystem::exists(folder / configs.front() / "results.csv"))
+    const auto is_there = [&](const std::filesystem::path& config) {
+        return std::filesystem::exists(folder / config.stem() / "results.csv");
+    };
+    if (request.judge && std::ranges::none_of(configs(), is_there))
         throw aabb::input_error("there are no results of a reproduction in " + folder.string());
-    const std::vector<std::string> failures =
-        request.judge ? std::vector<std::string>{} : measure(folder, request.quick);
+    if (!request.judge) keep_failures(folder, measure(folder, request.quick));
+    const std::vector<std::string> failures = kept_failures(folder);
     const reproduction all = judged(measurements(folder));
     write_reproduction(folder, all, failures);
     print(verdict_text(all));
@@ -117,7 +143,7 @@ int reproduce(const reproduce_request& request) {
 void add_reproduce(CLI::App& program, int& status) {
     auto* command = program.add_subcommand("reproduce", "Every table, figure and claim of the paper, with a verdict");
     auto request = std::make_shared<reproduce_request>();
-    command->add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of most of an hour");
+    command->add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of half an hour");
     command->add_flag("--judge", request->judge,
                       "Measure nothing: judge the results that are there, of whatever build or machine, and write the "
                       "report anew");

@@ -25,18 +25,18 @@ selection grid(const std::string& cell) {
     return {"insertion", "uniform_grid:cell_size=" + cell, "one_axis", "", ""};
 }
 
-const std::vector<std::string>& cell_sizes() {
-    static const std::vector<std::string> all{"2", "4", "8", "16", "32", "64", "128", "256"};
-    return all;
+metric all_bytes() {
+    return bytes_of({"projections", "partition", "sweep"});
 }
 
 /// Times of every cell size over that of the axial cut, scene by scene.
 class scenes_and_cells {
 public:
-    explicit scenes_and_cells(const std::vector<condition>& conditions) {
+    scenes_and_cells(const std::vector<condition>& conditions, const std::vector<std::string>& sizes)
+        : sizes_(sizes.size()) {
         for (const condition& c : conditions) {
             std::vector<cells>& ratios = over_cut_.emplace_back();
-            for (const std::string& size : cell_sizes()) ratios.push_back(c.log_ratios(grid(size), cut, frame_ms()));
+            for (const std::string& size : sizes) ratios.push_back(c.log_ratios(grid(size), cut, frame_ms()));
         }
     }
 
@@ -60,7 +60,7 @@ public:
     /// That of the cell size whose worst scene is the least bad.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
         double least = worst_regret(0, d);
-        for (std::size_t size = 1; size < cell_sizes().size(); ++size) least = std::min(least, worst_regret(size, d));
+        for (std::size_t size = 1; size < sizes_; ++size) least = std::min(least, worst_regret(size, d));
         return least;
     }
 
@@ -76,14 +76,15 @@ private:
         return found;
     }
 
+    std::size_t sizes_;
     std::vector<std::vector<cells>> over_cut_;
 };
 
-table regrets(const std::vector<condition>& conditions) {
+table times(const std::vector<condition>& conditions, const std::vector<std::string>& sizes) {
     const place_columns places(conditions);
     table t{places.head(), {}};
     t.columns.push_back({"axial_cut"});
-    for (const std::string& size : cell_sizes()) t.columns.push_back({"cells of " + size});
+    for (const std::string& size : sizes) t.columns.push_back({"cells of " + size});
     t.columns.push_back({"grid, auto"});
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
@@ -92,13 +93,14 @@ table regrets(const std::vector<condition>& conditions) {
             cells.push_back(time ? digits_of(time->median) : "-");
         };
         add(cut);
-        for (const std::string& size : cell_sizes()) add(grid(size));
+        for (const std::string& size : sizes) add(grid(size));
         add({"insertion", "uniform_grid:cell_size=auto", "one_axis", "", ""});
     }
     return t;
 }
 
-/// How time and bytes grow with the world: a grid's with cells of one size do, the cut's do not.
+/// How time and bytes grow with the world: a grid's are said to, the cut's not. The times are of several scenes, so
+/// they are not of one repeat as others are.
 void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& candidates) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
@@ -116,14 +118,16 @@ void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& ca
              false,
              expected});
     };
-    const metric bytes = bytes_of({"projections", "partition", "sweep"});
+    const metric bytes = all_bytes();
     add("time of a grid, cells of 2", frame_ms(), small, large, grid("2"), expectation::less);
     add("bytes of a grid, cells of 2", bytes, small, large, grid("2"), expectation::less);
+    add("time of a grid, cells chosen anew", frame_ms(), small, large, grid("auto"), expectation::less);
+    add("bytes of a grid, cells chosen anew", bytes, small, large, grid("auto"), expectation::less);
     add("time of axial_cut", frame_ms(), large, small, cut, expectation::not_more);
     add("bytes of axial_cut", bytes, large, small, cut, expectation::not_more);
 }
 
-figure cell_figure(const std::vector<condition>& conditions) {
+figure cell_figure(const std::vector<condition>& conditions, const std::vector<std::string>& sizes) {
     figure f{"c5",
              "Time of global search against the size of a grid's cells, over that of the axial cut in the same repeat "
              "(the level 1), scene by scene; 95 % intervals.",
@@ -133,7 +137,7 @@ figure cell_figure(const std::vector<condition>& conditions) {
              {}};
     for (const condition& c : conditions) {
         series s{value_of(c.of(), "scene"), series_style::line, {}};
-        for (const std::string& size : cell_sizes()) {
+        for (const std::string& size : sizes) {
             const candidate ratio = candidate_of(c, grid(size), cut, frame_ms());
             if (!ratio.log_ratio.known()) continue;
             s.points.push_back(point_of(std::stod(size), ratio));
@@ -144,22 +148,24 @@ figure cell_figure(const std::vector<condition>& conditions) {
     return f;
 }
 
-figure world_figure(const std::vector<condition>& worlds) {
-    figure f{"c5_world",
-             "Memory of global search against the side of the world, for the same 2,000 cubes: a grid of one cell "
-             "size, one that chooses it anew, and the axial cut.",
+/// How something grows with the world, of a grid and of the cut.
+figure world_figure(const std::string& name, const std::string& what, const std::string& axis,
+                    const std::vector<condition>& worlds, const metric& of) {
+    figure f{name,
+             what +
+                 " of global search against the side of the world, for the same 2,000 cubes: a grid of one cell "
+                 "size, one that chooses it anew, and the axial cut; medians and quartiles.",
              {"side of the world (edges)", true, {}},
-             {"bytes", true, {}},
+             {axis, true, {}},
              {},
              {}};
-    const metric bytes = bytes_of({"projections", "partition", "sweep"});
     const std::pair<const char*, selection> all[] = {
         {"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
     for (const auto& [label, who] : all) {
         series s{label, series_style::line, {}};
         for (const condition& c : worlds) {
             const double side = std::cbrt(number_of(c.of(), "objects") / number_of(c.of(), "density"));
-            if (const auto point = c.point(side, who, bytes)) s.points.push_back(*point);
+            if (const auto point = c.point(side, who, of)) s.points.push_back(*point);
         }
         f.lines.push_back(s);
     }
@@ -178,9 +184,10 @@ claim_result cut_against_grid(const measurements& m) {
     claim.experiments = {"c5", "c5_world"};
     const std::vector<condition>& conditions = m.of("c5");
     std::vector<candidate> candidates;
-    if (!conditions.empty()) {
-        const scenes_and_cells all(conditions);
-        const sample_size size = conditions.front().log_ratios(grid(cell_sizes().front()), cut, frame_ms()).size();
+    const std::vector<std::string> sizes = numbers_after("uniform_grid:cell_size=", conditions);
+    if (!sizes.empty()) {
+        const scenes_and_cells all(conditions, sizes);
+        const sample_size size = conditions.front().log_ratios(grid(sizes.front()), cut, frame_ms()).size();
         const auto add = [&](const std::string& comparison, auto log_ratio, bool primary, expectation expected) {
             candidates.push_back({{{"scene", "the worst of all"}, {"comparison", comparison}},
                                   bootstrap(size, log_ratio),
@@ -198,10 +205,12 @@ claim_result cut_against_grid(const measurements& m) {
             "axial_cut over each scene's best cell size", [&](const resample& d) { return all.worst_regret_of_cut(d); },
             false, expectation::not_more);
     }
-    add_growth(m.of("c5_world"), candidates);
+    const std::vector<condition>& worlds = m.of("c5_world");
+    add_growth(worlds, candidates);
     judge(claim, std::move(candidates));
-    claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", regrets(conditions)});
-    claim.figures = {cell_figure(conditions), world_figure(m.of("c5_world"))};
+    claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(conditions, sizes)});
+    claim.figures = {cell_figure(conditions, sizes), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
+                     world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, frame_ms())};
     return claim;
 }
 

@@ -5,8 +5,10 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@ module aabblab.claims;
 import :measurements;
 import aabblab.figures;
 import aabblab.report;
+import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -62,7 +65,7 @@ table endpoint_table(std::span<const endpoint> all, const std::function<std::str
     for (const endpoint& e : all) places.push_back(e.where);
     const place_columns columns(places);
     table t{columns.head(), {}};
-    t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", false}});
+    t.columns.insert(t.columns.end(), {{"measured ratio"}, {"95 %"}, {"outcome", false}});
     for (const endpoint& e : all) {
         std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(e.where));
         cells.push_back(digits_of(e.ratio));
@@ -195,6 +198,19 @@ series series_of(const std::string& label, std::span<const condition* const> con
     return s;
 }
 
+std::vector<std::string> numbers_after(std::string_view prefix, std::span<const condition> conditions) {
+    std::set<std::pair<double, std::string>> found;
+    for (const condition& c : conditions)
+        for (const row* r : c.rows())
+            if (r->name.partition.starts_with(prefix)) {
+                const std::string text = r->name.partition.substr(prefix.size());
+                if (const double number = number_of({{"", text}}, ""); !std::isnan(number)) found.emplace(number, text);
+            }
+    std::vector<std::string> all;
+    for (const auto& [number, text] : found) all.push_back(text);
+    return all;
+}
+
 std::string mesh_of(const condition& c) {
     return value_of(c.of(), "meshes");
 }
@@ -207,6 +223,9 @@ reproduction judged(const measurements& m) {
     all.claims = {improved_search(m),     linear_sort(m),      shell_sort(m),      more_segments(m),
                   cut_against_grid(m),    triangle_for_box(m), compressed_tree(m), balanced_tree(m),
                   large_objects_split(m), one_cut_a_box(m),    whole_algorithm(m), fewer_box_tests(m)};
+    for (claim_result& claim : all.claims)
+        for (const std::string& experiment : claim.experiments)
+            for (const condition& c : m.of(experiment)) claim.scenes.push_back(c.of());
     all.choices = open_choices(m);
     all.tables = table1(m);
     all.null_control = null_control(m);

@@ -4,6 +4,7 @@ module;
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// The claims of the paper, one a file, each decided from measurements by the rule of aabblab.statistics.
@@ -43,6 +44,7 @@ struct claim_result {
     endpoint primary;
     std::vector<endpoint> secondary;
     std::vector<std::string> experiments;  ///< whose configs made it
+    std::vector<factors> scenes;           ///< of these experiments
     std::vector<named_table> tables;
     std::vector<figure> figures;
 };
@@ -68,15 +70,16 @@ struct reproduction {
     std::vector<claim_result> claims;
     std::vector<open_choice> choices;
     std::vector<named_table> tables;  ///< table 1
-    std::vector<figure> figures;      ///< figures 1 and 2
+    std::vector<figure> figures;      ///< of all claims together
     named_table null_control;         ///< ratios where there is nothing to be found
 };
 /// @param results the folder with those of every experiment
 [[nodiscard]] reproduction judged(const measurements& results);
 
 /// The simplest condition on one or two factors that tells the endpoints that favour a claim from those that are
-/// decided otherwise: "objects is at least 10000", "sort is insertion or work is moves". Empty where there is none so
-/// simple. Two factors need two endpoints on either side, lest some pair of them always fits.
+/// decided otherwise: "objects is at least 10000", "sort is insertion or displacement is 1". None that is met by an
+/// endpoint which is open among many, but against the claim when taken alone. Empty where there is none so simple. Two
+/// factors need two endpoints on either side, lest some pair of them always fits.
 [[nodiscard]] std::string simplest_condition(std::span<const endpoint> all);
 
 /// One condition that tells most of them apart, and how many; empty where there is none.
@@ -145,6 +148,9 @@ private:
 /// A series of medians over the conditions of an experiment, in the order of x.
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
                                const std::string& x, const selection& who, const metric& of);
+
+/// What stands for N in the partitions "PREFIXN" of some conditions, in ascending order.
+[[nodiscard]] std::vector<std::string> numbers_after(std::string_view prefix, std::span<const condition> conditions);
 
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);

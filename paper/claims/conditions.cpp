@@ -54,11 +54,12 @@ void add_predicates(std::span<const endpoint> all, const std::string& name, std:
                              }});
 }
 
-/// Endpoints that are decided, and every condition on one factor that could tell them apart.
+/// Endpoints that are decided, or open among many but against the claim when taken alone, and every condition on one
+/// factor that could tell them apart.
 struct told_apart {
     explicit told_apart(std::span<const endpoint> all) {
         for (const endpoint& e : all)
-            if (e.found != support::open) decided.push_back(e);
+            if (e.found != support::open || e.range.low > 1 + equivalence_band) decided.push_back(e);
         std::vector<std::string> names;
         for (const endpoint& e : decided)
             for (const auto& [name, value] : e.where)
@@ -114,8 +115,8 @@ std::string nearest_condition(std::span<const endpoint> all) {
     if (favourable == 0 || others == 0) return {};
     const auto best = std::ranges::max_element(found.predicates, {}, share_right);
     if (best == found.predicates.end() || share_right(*best) < least_share) return {};
-    return best->text + " (right of " + std::to_string(found.right(best->holds)) + " of the " +
-           std::to_string(found.decided.size()) + " that are decided)";
+    return best->text + " (right in " + std::to_string(found.right(best->holds)) + " of " +
+           std::to_string(found.decided.size()) + ")";
 }
 
 }  // namespace aabblab

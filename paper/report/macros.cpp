@@ -32,13 +32,11 @@ private:
     std::string text_ = "% Written by ./aabblab reproduce: every number that the report names.\n";
 };
 
-/// The values of every factor over all endpoints: "scene brownian, still; objects 100, 1000."
+/// The values of every factor over all scenes: "scene brownian, still; objects 100, 1000."
 std::string setup_of(const claim_result& c) {
-    std::vector<endpoint> all{c.primary};
-    all.insert(all.end(), c.secondary.begin(), c.secondary.end());
     std::vector<std::pair<std::string, std::vector<std::string>>> values;
-    for (const endpoint& e : all)
-        for (const auto& [name, value] : e.where) {
+    for (const factors& scene : c.scenes)
+        for (const auto& [name, value] : scene) {
             auto known = std::ranges::find(values, name, &std::pair<std::string, std::vector<std::string>>::first);
             if (known == values.end()) known = values.insert(known, {name, {}});
             if (std::ranges::find(known->second, value) == known->second.end()) known->second.push_back(value);

@@ -13,8 +13,9 @@ namespace aabblab {
 
 std::string markdown_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
     std::string text = "# The paper, reproduced\n\n" + made.date + ", commit " + made.commit + ", " + made.compiler +
-                       ", " + made.cpu + "; " + made.size + " size, " + std::to_string(made.rows) + " rows, " +
-                       std::to_string(made.processes) + " processes, " + std::to_string(made.seeds) + " seeds.\n\n";
+                       ", " + made.cpu + "; " + made.size + " size, " + std::to_string(made.rows) + " rows, up to " +
+                       std::to_string(made.processes) + " processes, up to " + std::to_string(made.seeds) +
+                       " seeds.\n\n";
     for (const std::string& failure : failures) text += "**Wrong:** " + failure + ".\n\n";
     for (const std::string& note : made.notes) text += "Note: " + note + ".\n\n";
     text += to_markdown(verdict_table(all)) + "\n";

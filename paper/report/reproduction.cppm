@@ -47,8 +47,10 @@ struct provenance {
 
 /// How a verdict comes about, a paragraph each.
 inline constexpr std::array<std::string_view, 2> rule_text = {
-    "Each claim has one primary endpoint, fixed before anything was measured: the ratio of two compositions, or "
-    "builds, or counts, formed within a repeat, so that what slows the machine slows both. Every composition is "
+    "Each claim has one primary endpoint, fixed in the program and the same for every run: the ratio of two "
+    "compositions, or builds, or counts. Ratios of times are formed within a repeat, so that what slows the machine "
+    "slows both; but for C6, whose elementary tests are interleaved by Google Benchmark, and how times grow with the "
+    "world in C5. Every composition is "
     "compared with the exact answer, pair by pair and frame by frame, before it is timed. The ratio is the mean "
     "logarithm over processes and seeds of the median repeat. Its 95 % interval comes from a bootstrap: processes, "
     "seeds and repeats are drawn anew in turn, and what each level adds counts with as many degrees of freedom as "
@@ -58,7 +60,8 @@ inline constexpr std::array<std::string_view, 2> rule_text = {
     "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; where they "
     "differ it holds when some condition is met, the simplest one that tells them apart; else it does not hold, or "
     "makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not more\" is "
-    "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a table "
+    "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a "
+    "table "
     "only, never between runs or machines."};
 
 void write_text(const std::filesystem::path& file, const std::string& text);
