@@ -65,7 +65,7 @@ table endpoint_table(std::span<const endpoint> all, const std::function<std::str
     for (const endpoint& e : all) places.push_back(e.where);
     const place_columns columns(places);
     table t{columns.head(), {}};
-    t.columns.insert(t.columns.end(), {{"measured ratio"}, {"95 %"}, {"outcome", false}});
+    t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
     for (const endpoint& e : all) {
         std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(e.where));
         cells.push_back(digits_of(e.ratio));
