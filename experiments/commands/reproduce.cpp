@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
@@ -73,25 +74,6 @@ std::vector<std::string> time_tests(const std::filesystem::path& folder, bool qu
     return {};
 }
 
-/// Plays every experiment of the paper.
-/// @returns what is wrong
-std::vector<std::string> measure(const std::filesystem::path& folder, bool quick) {
-    std::vector<experiment> experiments;
-    for (const std::filesystem::path& config : configs())
-        experiments.push_back(open_experiment(config.string(), quick));
-    std::vector<std::string> failures;
-    const auto add = [&](const std::vector<std::string>& found) {
-        failures.insert(failures.end(), found.begin(), found.end());
-    };
-    for (const experiment& e : experiments) {
-        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, experiments.size() + 1, e.name));
-        add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
-    }
-    note(fmt::format("experiment {0} of {0}: c6, the elementary tests", experiments.size() + 1));
-    add(time_tests(folder / "c6", quick));
-    return failures;
-}
-
 /// What was wrong stands beside the results, a sentence a line, since a later judgement has to say it too.
 std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
     return folder / "failures.txt";
@@ -108,6 +90,27 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     std::ifstream in(file_of_failures(folder));
     for (std::string line; std::getline(in, line);) failures.push_back(line);
     return failures;
+}
+
+/// Plays every experiment of the paper, and keeps what is wrong as soon as it is found.
+void measure(const std::filesystem::path& folder, bool quick) {
+    std::vector<experiment> experiments;
+    for (const std::filesystem::path& config : configs())
+        experiments.push_back(open_experiment(config.string(), quick));
+    std::vector<std::string> failures;
+    const auto add = [&](const std::vector<std::string>& found) {
+        failures.insert(failures.end(), found.begin(), found.end());
+        keep_failures(folder, failures);
+    };
+    // What cannot be written is said by the first experiment, which makes the folder.
+    std::error_code ignored;
+    std::filesystem::remove(file_of_failures(folder), ignored);
+    for (const experiment& e : experiments) {
+        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, experiments.size() + 1, e.name));
+        add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
+    }
+    note(fmt::format("experiment {0} of {0}: c6, the elementary tests", experiments.size() + 1));
+    add(time_tests(folder / "c6", quick));
 }
 
 /// The verdicts as a terminal shows them.
@@ -127,7 +130,7 @@ int reproduce(const reproduce_request& request) {
     };
     if (request.judge && std::ranges::none_of(configs(), is_there))
         throw aabb::input_error("there are no results of a reproduction in " + folder.string());
-    if (!request.judge) keep_failures(folder, measure(folder, request.quick));
+    if (!request.judge) measure(folder, request.quick);
     const std::vector<std::string> failures = kept_failures(folder);
     const reproduction all = judged(measurements(folder));
     write_reproduction(folder, all, failures);

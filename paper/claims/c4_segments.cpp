@@ -17,16 +17,13 @@ namespace aabblab {
 
 namespace {
 
-selection cut_into(int axes, const std::string& segments) {
-    return {"insertion", "axial_cut:axes=" + std::to_string(axes) + ",segments=" + segments, "one_axis", "", ""};
+const std::vector<int>& segments_wanted() {
+    static const std::vector<int> all{2, 4, 8, 16, 32, 64, 256};
+    return all;
 }
 
-/// In ascending order.
-std::vector<int> segments_wanted(const std::vector<condition>& conditions) {
-    std::vector<int> all;
-    for (const std::string& segments : numbers_after("axial_cut:axes=1,segments=", conditions))
-        all.push_back(std::stoi(segments));
-    return all;
+selection cut_into(int axes, const std::string& segments) {
+    return {"insertion", "axial_cut:axes=" + std::to_string(axes) + ",segments=" + segments, "one_axis", "", ""};
 }
 
 /// Segments on each axis that was cut; empty where it was not measured.
@@ -42,7 +39,7 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
     return now && then && *now > 1.1 * *then;
 }
 
-figure figure_of(const std::string& name, const condition& c, const std::vector<int>& segments) {
+figure figure_of(const std::string& name, const condition& c) {
     figure f{name,
              "Time of global search against the segments wanted on each axis, with one, two and three axes cut, on " +
                  value_of(c.of(), "scene") +
@@ -53,28 +50,28 @@ figure figure_of(const std::string& name, const condition& c, const std::vector<
              {}};
     for (int axes = 1; axes <= 3; ++axes) {
         series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes"), series_style::line, {}};
-        for (const int wanted : segments)
+        for (const int wanted : segments_wanted())
             if (const auto point = c.point(wanted, cut_into(axes, std::to_string(wanted)), frame_ms()))
                 s.points.push_back(*point);
         f.lines.push_back(s);
-        if (const auto limit = segments_got(c, axes, segments.back())) f.marks.push_back({*limit, "limit, " + s.label});
+        if (const auto limit = segments_got(c, axes, segments_wanted().back()))
+            f.marks.push_back({*limit, "limit, " + s.label});
     }
-    if (const auto uncut = c.point(segments.front(), traditional, frame_ms()))
+    if (const auto uncut = c.point(segments_wanted().front(), traditional, frame_ms()))
         f.lines.push_back({"no cut", series_style::level, {*uncut}});
     return f;
 }
 
 /// Segments need not be tiny: what the automatic choice leaves on the table.
-table automatic(const std::vector<condition>& conditions, int most) {
+table automatic(const std::vector<condition>& conditions) {
     const place_columns places(conditions);
     table t{places.head(), {}};
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
-            const candidate ratio =
-                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, std::to_string(most)), frame_ms());
+            const candidate ratio = candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms());
             const auto chosen = c.spread(cut_into(axes, "auto"), count_of("segments_got"));
-            const auto limit = segments_got(c, axes, most);
+            const auto limit = segments_got(c, axes, 256);
             if (!ratio.log_ratio.known() || !chosen || !limit) continue;
             std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
             for (const std::string& cell : {std::to_string(axes), digits_of(chosen->median / axes), digits_of(*limit),
@@ -95,17 +92,12 @@ claim_result more_segments(const measurements& m) {
         "over that at the limit";
     claim.experiments = {"c4"};
     const std::vector<condition>& conditions = m.of("c4");
-    const std::vector<int> segments = segments_wanted(conditions);
-    if (segments.empty()) {
-        judge(claim, {});
-        return claim;
-    }
     std::vector<candidate> candidates;
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes)
-            for (std::size_t i = 1; i < segments.size(); ++i) {
-                const int wanted = segments[i];
-                const int before = segments[i - 1];
+            for (std::size_t i = 1; i < segments_wanted().size(); ++i) {
+                const int wanted = segments_wanted()[i];
+                const int before = segments_wanted()[i - 1];
                 if (!is_finer(c, axes, wanted, before)) continue;
                 candidates.push_back(candidate_of(c, cut_into(axes, std::to_string(wanted)),
                                                   cut_into(axes, std::to_string(before)), frame_ms(),
@@ -118,16 +110,16 @@ claim_result more_segments(const measurements& m) {
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
             candidates.push_back(
-                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, std::to_string(segments.back())), frame_ms(),
+                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms(),
                              {{"axes", std::to_string(axes)}, {"segments", "auto"}, {"over", "the limit"}}));
             candidates.back().expected = expectation::not_more;
         }
     judge(claim, std::move(candidates));
+    if (conditions.empty()) return claim;
     claim.tables.push_back({"c4_auto", "Segments on each axis, and time, with the automatic choice and at the limit.",
-                            automatic(conditions, segments.back())});
+                            automatic(conditions)});
     for (const condition& c : conditions)
-        claim.figures.push_back(
-            figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c, segments));
+        claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
     return claim;
 }
 

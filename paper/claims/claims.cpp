@@ -5,10 +5,8 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,7 +15,6 @@ module aabblab.claims;
 import :measurements;
 import aabblab.figures;
 import aabblab.report;
-import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -118,10 +115,8 @@ std::string dependence_of(const open_choice& choice) {
 endpoint endpoint_of(const candidate& c, expectation expected) {
     const interval range = c.log_ratio.range();
     const expectation own = c.expected.value_or(expected);
-    return {c.where,
-            std::exp(c.log_ratio.value),
-            {std::exp(range.low), std::exp(range.high)},
-            support_of(own, decide(evidence_of(c.log_ratio, own)))};
+    const support alone = support_of(own, decide(evidence_of(c.log_ratio, own)));
+    return {c.where, std::exp(c.log_ratio.value), {std::exp(range.low), std::exp(range.high)}, alone, alone};
 }
 
 figure_point point_of(double x, const candidate& c) {
@@ -196,19 +191,6 @@ series series_of(const std::string& label, std::span<const condition* const> con
     }
     std::ranges::sort(s.points, {}, &figure_point::x);
     return s;
-}
-
-std::vector<std::string> numbers_after(std::string_view prefix, std::span<const condition> conditions) {
-    std::set<std::pair<double, std::string>> found;
-    for (const condition& c : conditions)
-        for (const row* r : c.rows())
-            if (r->name.partition.starts_with(prefix)) {
-                const std::string text = r->name.partition.substr(prefix.size());
-                if (const double number = number_of({{"", text}}, ""); !std::isnan(number)) found.emplace(number, text);
-            }
-    std::vector<std::string> all;
-    for (const auto& [number, text] : found) all.push_back(text);
-    return all;
 }
 
 std::string mesh_of(const condition& c) {

@@ -4,7 +4,6 @@ module;
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 /// The claims of the paper, one a file, each decided from measurements by the rule of aabblab.statistics.
@@ -23,6 +22,7 @@ struct endpoint {
     double ratio = 0;
     interval range{};  ///< 95 %, of this endpoint alone
     support found = support::open;
+    support alone = support::open;  ///< what its own interval says, as if there were no others
 };
 
 /// A table of a report.
@@ -78,8 +78,9 @@ struct reproduction {
 
 /// The simplest condition on one or two factors that tells the endpoints that favour a claim from those that are
 /// decided otherwise: "objects is at least 10000", "sort is insertion or displacement is 1". None that is met by an
-/// endpoint which is open among many, but against the claim when taken alone. Empty where there is none so simple. Two
-/// factors need two endpoints on either side, lest some pair of them always fits.
+/// endpoint which is open among many, but decided otherwise when taken alone. Empty where there is none so simple. Two
+/// factors need two endpoints on either side, lest some pair of them always fits, and no single factor that is nearly
+/// right.
 [[nodiscard]] std::string simplest_condition(std::span<const endpoint> all);
 
 /// One condition that tells most of them apart, and how many; empty where there is none.
@@ -148,9 +149,6 @@ private:
 /// A series of medians over the conditions of an experiment, in the order of x.
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
                                const std::string& x, const selection& who, const metric& of);
-
-/// What stands for N in the partitions "PREFIXN" of some conditions, in ascending order.
-[[nodiscard]] std::vector<std::string> numbers_after(std::string_view prefix, std::span<const condition> conditions);
 
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);

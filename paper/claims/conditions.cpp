@@ -23,6 +23,7 @@ namespace {
 struct predicate {
     std::string text;
     std::function<bool(const factors&)> holds;
+    std::string excludes_of{};  ///< the factor of which it only excludes a value
 };
 
 /// Values of a factor where it has any.
@@ -48,18 +49,21 @@ void add_predicates(std::span<const endpoint> all, const std::string& name, std:
     }
     for (const std::string& value : values)
         if (!is_number(value))
-            found.push_back({name + " is not " + value, [=](const factors& where) {
+            found.push_back({name + " is not " + value,
+                             [=](const factors& where) {
                                  const std::string there = value_of(where, name);
                                  return !there.empty() && there != value;
-                             }});
+                             },
+                             name});
 }
 
-/// Endpoints that are decided, or open among many but against the claim when taken alone, and every condition on one
+/// Endpoints that are decided, or open among many but decided otherwise when taken alone, and every condition on one
 /// factor that could tell them apart.
 struct told_apart {
     explicit told_apart(std::span<const endpoint> all) {
         for (const endpoint& e : all)
-            if (e.found != support::open || e.range.low > 1 + equivalence_band) decided.push_back(e);
+            if (e.found != support::open || (e.alone != support::open && e.alone != support::favours))
+                decided.push_back(e);
         std::vector<std::string> names;
         for (const endpoint& e : decided)
             for (const auto& [name, value] : e.where)
@@ -85,11 +89,15 @@ std::string simplest_condition(std::span<const endpoint> all) {
     const auto tells_apart = [&](auto holds) { return found.right(holds) == found.decided.size(); };
     for (const predicate& p : found.predicates)
         if (tells_apart(p.holds)) return p.text;
+    // Nearly right and simple is better than right by an exception, which another run may not have.
+    if (!nearest_condition(all).empty()) return {};
     const auto favourable = std::ranges::count(found.decided, support::favours, &endpoint::found);
     if (favourable < 2 || std::ssize(found.decided) - favourable < 2) return {};
     for (const predicate& p : found.predicates)
         for (const predicate& q : found.predicates) {
             if (&p >= &q) continue;
+            // Exceptions one by one are no condition.
+            if (!p.excludes_of.empty() && p.excludes_of == q.excludes_of) continue;
             if (tells_apart([&](const factors& where) { return p.holds(where) && q.holds(where); }))
                 return p.text + " and " + q.text;
             if (tells_apart([&](const factors& where) { return p.holds(where) || q.holds(where); }))
@@ -115,8 +123,8 @@ std::string nearest_condition(std::span<const endpoint> all) {
     if (favourable == 0 || others == 0) return {};
     const auto best = std::ranges::max_element(found.predicates, {}, share_right);
     if (best == found.predicates.end() || share_right(*best) < least_share) return {};
-    return best->text + " (right in " + std::to_string(found.right(best->holds)) + " of " +
-           std::to_string(found.decided.size()) + ")";
+    return best->text + " (right in " + std::to_string(found.right(best->holds)) + " of the " +
+           std::to_string(found.decided.size()) + " that speak for or against it)";
 }
 
 }  // namespace aabblab

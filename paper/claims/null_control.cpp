@@ -45,12 +45,13 @@ named_table null_control(const measurements& m) {
     const auto without_one =
         std::ranges::count_if(found, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
     return {"null_control",
-            fmt::format("Null control: time a frame of a composition under two names. Of {} intervals {} do not hold "
-                        "1, where one in twenty is to be expected; {} are decided as a difference, {} as none, and {} "
-                        "are open.",
-                        found.size(), without_one, std::ranges::count_if(found, is_difference),
-                        std::ranges::count(found, support::no_difference, &endpoint::found),
-                        std::ranges::count(found, support::open, &endpoint::found)),
+            fmt::format(
+                "Null control: time a frame of a composition under two names. Of {} intervals {} miss 1, where one in "
+                "twenty would be expected to. Each taken alone, {} are decided as a difference, {} as none, "
+                "and {} are open.",
+                found.size(), without_one, std::ranges::count_if(found, is_difference),
+                std::ranges::count(found, support::no_difference, &endpoint::found),
+                std::ranges::count(found, support::open, &endpoint::found)),
             t};
 }
 

@@ -29,18 +29,14 @@ void add(alternatives& to, const std::string& label, const candidate& measured) 
 struct measured_choices {
     std::string where;
     alternatives all;
+    std::string ours;  ///< the label of what we chose
 };
-
-/// The choice that we made stands first.
-void put_first(alternatives& all, const std::string& ours) {
-    std::ranges::stable_partition(all, [&](const alternative& a) { return a.label == ours; });
-}
 
 /// Claim C1 in the one condition of the experiment on choices: time of Shell sort with a cut over insertion sort
 /// without.
 measured_choices of_search(const measurements& m,
                            const std::vector<std::pair<std::string, std::pair<selection, selection>>>& named) {
-    measured_choices found;
+    measured_choices found{"", {}, named.front().first};
     for (const condition& c : m.of("choices")) {
         found.where = text_of(c.of()) + " (a run of its own)";
         for (const auto& [label, arms] : named)
@@ -58,17 +54,16 @@ bool is_drifting(const condition& c, const std::string& objects) {
 }
 
 measured_choices over_displacements(const measurements& m) {
-    measured_choices found{"brownian, objects 10,000", {}};
+    measured_choices found{"brownian, objects 10,000", {}, "0.1"};
     for (const condition& c : m.of("figure1"))
         if (is_drifting(c, "10000"))
             add(found.all, value_of(c.of(), "displacement"), candidate_of(c, improved, traditional, frame_ms()));
-    put_first(found.all, "0.1");
     return found;
 }
 
 /// Other scenes of that displacement beside the drifting one that is nearest to them in size.
 measured_choices over_scenes(const measurements& m) {
-    measured_choices found{"displacement 0.1 of the extent", {}};
+    measured_choices found{"displacement 0.1 of the extent", {}, ""};
     const auto is_slow = [](const condition& c) { return value_of(c.of(), "displacement") == "0.1"; };
     std::vector<const condition*> others;
     for (const condition& c : m.of("figure1"))
@@ -83,15 +78,19 @@ measured_choices over_scenes(const measurements& m) {
         if (is_slow(c) && value_of(c.of(), "scene") == "brownian" &&
             (drifting == nullptr || distance(c) < distance(*drifting)))
             drifting = &c;
-    if (drifting != nullptr) others.insert(others.begin(), drifting);
-    for (const condition* c : others)
-        add(found.all, value_of(c->of(), "scene") + " of " + value_of(c->of(), "objects"),
-            candidate_of(*c, improved, traditional, frame_ms()));
+    const auto label_of = [](const condition& c) {
+        return value_of(c.of(), "scene") + " of " + value_of(c.of(), "objects");
+    };
+    if (drifting != nullptr) {
+        others.insert(others.begin(), drifting);
+        found.ours = label_of(*drifting);
+    }
+    for (const condition* c : others) add(found.all, label_of(*c), candidate_of(*c, improved, traditional, frame_ms()));
     return found;
 }
 
 measured_choices over_leaf_tests(const measurements& m) {
-    measured_choices found;
+    measured_choices found{"", {}, "triangle_box"};
     for (const condition& c : m.of("figure2")) {
         if (!is_primary_of_c7(c)) continue;
         found.where = text_of(c.of());
@@ -106,7 +105,7 @@ measured_choices over_leaf_tests(const measurements& m) {
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
 measured_choices over_trees(const measurements& m,
                             const std::vector<std::pair<std::string, std::pair<std::string, std::string>>>& named) {
-    measured_choices found;
+    measured_choices found{"", {}, named.front().first};
     for (const condition& c : m.of("table1")) {
         if (!mesh_of(c).starts_with("noise_sphere")) continue;
         found.where = text_of(c.of());
@@ -122,20 +121,18 @@ measured_choices over_models(const measurements& m) {
     arm.tree = "compressed:leaf_test=triangle_box";
     selection base = traditional;
     base.tree = "canonical";
-    measured_choices found{"displacement 0.05", {}};
-    std::string ours;
+    measured_choices found{"displacement 0.05", {}, ""};
     for (const condition& c : m.of("c11")) {
         const std::string label =
             value_of(c.of(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.of(), "density");
-        if (is_primary_of_c11(c)) ours = label;
+        if (is_primary_of_c11(c)) found.ours = label;
         add(found.all, label, candidate_of(c, arm, base, frame_ms()));
     }
-    put_first(found.all, ours);
     return found;
 }
 
 measured_choices with_first_frame(const measurements& m) {
-    measured_choices found;
+    measured_choices found{"", {}, "without it"};
     for (const condition& c : m.of("figure1"))
         if (is_drifting(c, "10000") && value_of(c.of(), "displacement") == "0.1") {
             found.where = text_of(c.of());
@@ -145,10 +142,13 @@ measured_choices with_first_frame(const measurements& m) {
     return found;
 }
 
-/// Ours is decided by itself, the others together, as the endpoints of a claim are.
+/// Ours stands first and is decided by itself, the others together, as the endpoints of a claim are. Where ours was not
+/// measured, there is nothing to hold the others against.
 open_choice choice(const std::string& question, const std::string& ours, const std::string& why,
-                   const std::string& claim, const measured_choices& measured) {
+                   const std::string& claim, measured_choices measured) {
     open_choice made{question, ours, why, claim, measured.where, {}};
+    std::ranges::stable_partition(measured.all, [&](const alternative& a) { return a.label == measured.ours; });
+    if (measured.all.empty() || measured.all.front().label != measured.ours) return made;
     std::vector<evidence> others;
     for (const alternative& a : measured.all) {
         if (!made.alternatives.empty()) others.push_back(evidence_of(a.measured.log_ratio));

@@ -47,10 +47,9 @@ struct provenance {
 
 /// How a verdict comes about, a paragraph each.
 inline constexpr std::array<std::string_view, 2> rule_text = {
-    "Each claim has one primary endpoint, fixed in the program and the same for every run: the ratio of two "
+    "Each claim has one primary endpoint, fixed in the program for full runs and for quick ones: the ratio of two "
     "compositions, or builds, or counts. Ratios of times are formed within a repeat, so that what slows the machine "
-    "slows both; but for C6, whose elementary tests are interleaved by Google Benchmark, and how times grow with the "
-    "world in C5. Every composition is "
+    "slows both, except those of C6, whose elementary tests Google Benchmark interleaves. Every composition is "
     "compared with the exact answer, pair by pair and frame by frame, before it is timed. The ratio is the mean "
     "logarithm over processes and seeds of the median repeat. Its 95 % interval comes from a bootstrap: processes, "
     "seeds and repeats are drawn anew in turn, and what each level adds counts with as many degrees of freedom as "
