@@ -151,7 +151,10 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
     if (claim.has_primary) {
         claim.verdict = verdict_of(claim.primary.found, supports);
         if (claim.verdict == verdict_kind::holds_when) {
-            if (const std::string simplest = simplest_condition(all); !simplest.empty()) {
+            if (count_of(all, support::favours) + count_of(all, support::open) == all.size()) {
+                claim.when = fmt::format("in {} of {} conditions, the others are open", count_of(all, support::favours),
+                                         all.size());
+            } else if (const std::string simplest = simplest_condition(all); !simplest.empty()) {
                 claim.when = "when " + simplest;
             } else {
                 claim.when = fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size());

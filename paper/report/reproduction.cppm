@@ -56,8 +56,9 @@ inline constexpr std::array<std::string_view, 2> rule_text = {
     "it has, so that three processes that disagree make a wide interval. A ratio favours the claim when its "
     "interval lies below 0.95, contradicts it above 1.05, and shows no difference within; what is left is open. "
     "Secondary endpoints are decided together, with Holm's correction.",
-    "A claim holds when its primary endpoint favours it and no secondary one is decided otherwise; where they "
-    "differ it holds when some condition is met, the simplest one that tells them apart; else it does not hold, or "
+    "A claim holds when its primary endpoint and all secondary ones favour it; where only some do it holds in some "
+    "conditions, or when one is met, the simplest that tells them from those that are decided otherwise; else it does "
+    "not hold, or "
     "makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not more\" is "
     "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a "
     "table "

@@ -64,8 +64,8 @@ support support_of(expectation expected, outcome found) {
 verdict_kind verdict_of(support primary, std::span<const support> secondary) {
     if (primary == support::open) return verdict_kind::undecided;
     if (primary == support::favours) {
-        const bool otherwise = any_is(secondary, support::contradicts) || any_is(secondary, support::no_difference);
-        return otherwise ? verdict_kind::holds_when : verdict_kind::holds;
+        const bool everywhere = std::ranges::all_of(secondary, [](support s) { return s == support::favours; });
+        return everywhere ? verdict_kind::holds : verdict_kind::holds_when;
     }
     if (any_is(secondary, support::favours)) return verdict_kind::holds_when;
     return primary == support::contradicts ? verdict_kind::does_not_hold : verdict_kind::no_difference;

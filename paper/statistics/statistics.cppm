@@ -141,9 +141,9 @@ enum class support : unsigned char { favours, no_difference, contradicts, open }
 
 enum class verdict_kind : unsigned char { holds, holds_when, no_difference, does_not_hold, undecided };
 
-/// The rule. The primary endpoint decides; where a secondary one is otherwise, the claim holds only under conditions:
+/// The rule. The primary endpoint decides; where a secondary one does not agree, the claim holds only under conditions:
 /// - primary open: undecided;
-/// - primary favours: holds, if no secondary contradicts or shows no difference, else holds when;
+/// - primary favours: holds, if every secondary does, else holds when: what is open has not been shown;
 /// - primary otherwise: holds when, if a secondary favours, else no difference or does not hold, as the primary says.
 [[nodiscard]] verdict_kind verdict_of(support primary, std::span<const support> secondary);
 

@@ -191,7 +191,8 @@ TEST_CASE("The verdict is the primary endpoint's, and depends on conditions wher
     using enum support;
     const auto verdict = [](support primary, std::vector<support> others) { return verdict_of(primary, others); };
     CHECK(verdict(favours, {}) == verdict_kind::holds);
-    CHECK(verdict(favours, {favours, open}) == verdict_kind::holds);
+    CHECK(verdict(favours, {favours, favours}) == verdict_kind::holds);
+    CHECK(verdict(favours, {favours, open}) == verdict_kind::holds_when);
     CHECK(verdict(favours, {favours, contradicts}) == verdict_kind::holds_when);
     CHECK(verdict(favours, {no_difference}) == verdict_kind::holds_when);
     CHECK(verdict(contradicts, {contradicts, open}) == verdict_kind::does_not_hold);
