@@ -58,11 +58,9 @@ inline constexpr std::array<std::string_view, 2> rule_text = {
     "Secondary endpoints are decided together, with Holm's correction.",
     "A claim holds when its primary endpoint and all secondary ones favour it; where only some do it holds in some "
     "conditions, or when one is met, the simplest that tells them from those that are decided otherwise; else it does "
-    "not hold, or "
-    "makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not more\" is "
-    "claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared within a "
-    "table "
-    "only, never between runs or machines."};
+    "not hold, or makes no difference, as the primary endpoint says, or is undecided where that is open. Where \"not "
+    "more\" is claimed (C2, C6, C10, and parts of C4 and C5) an interval below 1.05 favours it. Times are compared "
+    "within a table only, never between runs or machines."};
 
 void write_text(const std::filesystem::path& file, const std::string& text);
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
