@@ -49,14 +49,13 @@ struct reproduce_request {
 /// build and size stays.
 /// @returns a sentence where they are wrong
 std::vector<std::string> time_tests(const std::filesystem::path& folder, bool quick) {
-    constexpr std::size_t processes = 3;
+    const std::size_t processes = quick ? 3 : 5;
     const std::string repetitions = quick ? "3" : "9";
     const std::string made = build_description() + "repetitions " + repetitions + "\n";
     const std::filesystem::path maker = folder / "made_by.txt";
     const auto file_of = [&](std::size_t process) { return folder / ("process-" + std::to_string(process) + ".json"); };
     std::ifstream in(maker, std::ios::binary);
-    if (std::string{std::istreambuf_iterator<char>(in), {}} != made)
-        for (std::size_t process = 0; process < processes; ++process) std::filesystem::remove(file_of(process));
+    if (std::string{std::istreambuf_iterator<char>(in), {}} != made) std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     std::ofstream(maker, std::ios::binary) << made;
     for (std::size_t process = 0; process < processes; ++process) {
@@ -146,7 +145,7 @@ int reproduce(const reproduce_request& request) {
 void add_reproduce(CLI::App& program, int& status) {
     auto* command = program.add_subcommand("reproduce", "Every table, figure and claim of the paper, with a verdict");
     auto request = std::make_shared<reproduce_request>();
-    command->add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of half an hour");
+    command->add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of most of an hour");
     command->add_flag("--judge", request->judge,
                       "Measure nothing: judge the results that are there, of whatever build or machine, and write the "
                       "report anew");

@@ -53,7 +53,7 @@ inline constexpr std::array<std::string_view, 2> rule_text = {
     "compared with the exact answer, pair by pair and frame by frame, before it is timed. The ratio is the mean "
     "logarithm over processes and seeds of the median repeat. Its 95 % interval comes from a bootstrap: processes, "
     "seeds and repeats are drawn anew in turn, and what each level adds counts with as many degrees of freedom as "
-    "it has, so that three processes that disagree make a wide interval. A ratio favours the claim when its "
+    "it has, so that processes that disagree make a wide interval. A ratio favours the claim when its "
     "interval lies below 0.95, contradicts it above 1.05, and shows no difference within; what is left is open. "
     "Secondary endpoints are decided together, with Holm's correction.",
     "A claim holds when its primary endpoint and all secondary ones favour it; where only some do it holds in some "
