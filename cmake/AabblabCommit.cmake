@@ -1,4 +1,5 @@
 # cmake -DSOURCE=folder -DHEADER=file -P AabblabCommit.cmake: writes which commit the sources are at.
+cmake_minimum_required(VERSION 3.28)
 set(commit "unknown")
 set(dirty "false")
 find_program(git git)

@@ -82,7 +82,11 @@ public:
             fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} open", compared_,
                         what, changed_, same_, 100 * equivalence_band, open_);
         if (too_few_ > 0) text += fmt::format(", {} of them for too few repeats", too_few_);
-        return text + "\n";
+        text += "\n";
+        if (open_ > 0)
+            text += "open: their intervals reach beyond 5 %, or show a change only without Holm's correction for all " +
+                    std::string(what) + "; --all lists them\n";
+        return text;
     }
 
 private:

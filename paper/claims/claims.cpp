@@ -34,11 +34,11 @@ std::size_t count_of(std::span<const endpoint> all, support what) {
 
 std::string where_against_band(support found, expectation expected, double ratio) {
     if (found == support::open && expected == expectation::not_more) return "is not shown to be below 1.05, nor above";
-    if (found == support::open) return "cannot be told from the band of no difference, 0.95 to 1.05";
-    if (found == support::no_difference) return "lies within the band of no difference, 0.95 to 1.05";
+    if (found == support::open) return "cannot be told from the band of no difference, 0.952 to 1.05";
+    if (found == support::no_difference) return "lies within the band of no difference, 0.952 to 1.05";
     if (found == support::favours && expected == expectation::not_more && ratio > 1 / (1 + equivalence_band))
         return "is not above 1.05";
-    return found == support::favours ? "is below 0.95" : "is above 1.05";
+    return found == support::favours ? "is below 0.952" : "is above 1.05";
 }
 
 std::string sentence_of(const claim_result& claim) {
@@ -220,7 +220,7 @@ reproduction judged(const measurements& m) {
 std::string digits_of(double value) {
     const double size = std::abs(value);
     if (size == 0) return "0";
-    return fmt::format("{:.{}f}", value, size < 0.01 ? 4 : size < 1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0);
+    return fmt::format("{:.{}f}", value, size < 0.01 ? 4 : size < 10 ? 3 : size < 100 ? 1 : 0);
 }
 
 std::string ratio_text(const endpoint& e) {

@@ -93,7 +93,7 @@ struct reproduction {
 [[nodiscard]] std::string text_of(const factors& where);
 /// "0.334 (0.328 to 0.341)"
 [[nodiscard]] std::string ratio_text(const endpoint& e);
-/// Three digits that count.
+/// Three decimals, so that 1.048 is not taken for the band's edge; four below 0.01, fewer from 10 on.
 [[nodiscard]] std::string digits_of(double value);
 
 /// Claim by claim: verdict, primary ratio with its interval, and where it was measured.

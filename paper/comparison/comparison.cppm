@@ -42,7 +42,7 @@ struct compared_time {
     double in_b = 0;
     double change = 1;              ///< B's over A's
     interval around{};              ///< of the change, 95 %, of this one alone
-    outcome found = outcome::open;  ///< of the change, by Holm's rule over all that are compared with it
+    outcome found = outcome::open;  ///< a change by Holm's rule over all compared with it; `same` alone
     bool too_few = false;           ///< no change, however large, could be told from accident with these repeats
 };
 

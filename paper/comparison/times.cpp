@@ -94,7 +94,10 @@ std::vector<compared_time> judged(std::span<const two_sides> all) {
         time.too_few = decide({outcome::more, least * static_cast<double>(all.size())}) == outcome::open;
     }
     const std::vector<outcome> outcomes = decide_together(evidences);
-    for (std::size_t i = 0; i < times.size(); ++i) times[i].found = outcomes[i];
+    // Only a change needs the correction: hundreds of lines without one would else all be open.
+    for (std::size_t i = 0; i < times.size(); ++i)
+        times[i].found =
+            outcomes[i] == outcome::open && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
     return times;
 }
 

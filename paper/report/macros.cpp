@@ -59,7 +59,7 @@ void add_claim(macros& to, const claim_result& c) {
     set("verdict", text_of(c));
     set("because", c.because);
     set("setup", setup_of(c));
-    set("favourable", c.expected == expectation::less ? "below 0.95" : "below 1.05");
+    set("favourable", c.expected == expectation::less ? "below 0.952" : "below 1.05");
     set("condition", c.has_primary ? text_of(c.primary.where) : "-");
     set("ratio", c.has_primary ? digits_of(c.primary.ratio) : "-");
     set("low", c.has_primary ? digits_of(c.primary.range.low) : "-");
@@ -97,7 +97,7 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
     to.set("repeats", made.repeats);
     to.set_tex("confidence", "95\\,\\%");
     to.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
-    to.set("band.low", fmt::format("{:.2f}", 1 / (1 + equivalence_band)));
+    to.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
     to.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
     to.set("draws", draws_of_a_level);
     to.set("failures",

@@ -97,7 +97,7 @@ inline constexpr std::size_t draws_of_a_level = 1000;
 
 /// Bootstrap by level: processes, seeds and repeats are drawn in turn. What each level adds beyond the noise of repeats
 /// is a variance with as many degrees of freedom as there are processes or seeds, less one; the sum has
-/// Satterthwaite's. So three processes that disagree make a wide interval, and three that agree do not. The same data
+/// Satterthwaite's. So processes that disagree make a wide interval, and those that agree do not. The same data
 /// give the same estimate.
 [[nodiscard]] estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic);
 /// Of one condition's mean.

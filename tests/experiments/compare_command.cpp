@@ -154,6 +154,23 @@ TEST_CASE("One change among hundreds of lines is found") {
     REQUIRE(std::ranges::count(found, outcome::same) == 301);
 }
 
+TEST_CASE("What is the same by its own interval is so among hundreds of lines, and the noise changes none") {
+    measured a{.noise = 0.05};
+    for (int i = 0; i < 300; ++i) a.sorts.emplace_back("sort" + std::to_string(i), 1);
+    measured b = a;
+    b.hour = 2;
+    const auto found = compare(run_of(a), run_of(b), aabblab::compared::ratios);
+    std::size_t same = 0;
+    for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
+        const bool within = time.around.low > 1 / 1.05 && time.around.high < 1.05;
+        CHECK((time.found == outcome::same) == within);
+        CHECK((time.found == outcome::same || time.found == outcome::open));
+        same += within;
+    }
+    CHECK(same > 0);
+    CHECK(same < 302);
+}
+
 TEST_CASE("The base is the first in A that both have, and what only one has is counted") {
     aabblab::run_results a = run_of({});
     for (row& r : a.rows)

@@ -246,7 +246,7 @@ TEST_CASE("The whole algorithm is judged where global search counts, too") {
     });
     const claim_result& c11 = all.claims[10];
     CHECK(text_of(c11) == "holds when density is at most 0.005");
-    CHECK(c11.tables.back().content.rows.front().back() == "2.00");
+    CHECK(c11.tables.back().content.rows.front().back() == "2.000");
     CHECK(c11.tables.back().content.rows.back().back() == "66.7");
     CHECK(c11.figures.front().lines.front().points.size() > 1);
 }
