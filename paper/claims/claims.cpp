@@ -65,8 +65,8 @@ table endpoint_table(std::span<const endpoint> all, const std::function<std::str
     t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
     for (const endpoint& e : all) {
         std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(e.where));
-        cells.push_back(digits_of(e.ratio));
-        cells.push_back(digits_of(e.range.low) + " to " + digits_of(e.range.high));
+        cells.push_back(ratio_digits_of(e.ratio));
+        cells.push_back(ratio_digits_of(e.range.low) + " to " + ratio_digits_of(e.range.high));
         cells.push_back(outcome(e));
     }
     return t;
@@ -220,11 +220,16 @@ reproduction judged(const measurements& m) {
 std::string digits_of(double value) {
     const double size = std::abs(value);
     if (size == 0) return "0";
-    return fmt::format("{:.{}f}", value, size < 0.01 ? 4 : size < 10 ? 3 : size < 100 ? 1 : 0);
+    return fmt::format("{:.{}f}", value, size < 0.01 ? 4 : size < 1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0);
+}
+
+std::string ratio_digits_of(double ratio) {
+    return ratio >= 1 && ratio < 10 ? fmt::format("{:.3f}", ratio) : digits_of(ratio);
 }
 
 std::string ratio_text(const endpoint& e) {
-    return fmt::format("{} ({} to {})", digits_of(e.ratio), digits_of(e.range.low), digits_of(e.range.high));
+    return fmt::format("{} ({} to {})", ratio_digits_of(e.ratio), ratio_digits_of(e.range.low),
+                       ratio_digits_of(e.range.high));
 }
 
 std::string text_of(const factors& where) {
@@ -269,9 +274,10 @@ table verdict_table(const reproduction& all) {
             {}};
     for (const claim_result& c : all.claims) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c)});
-        cells.push_back(c.has_primary ? digits_of(c.primary.ratio) : "-");
-        cells.push_back(c.has_primary ? digits_of(c.primary.range.low) + " to " + digits_of(c.primary.range.high)
-                                      : "-");
+        cells.push_back(c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
+        cells.push_back(c.has_primary
+                            ? ratio_digits_of(c.primary.range.low) + " to " + ratio_digits_of(c.primary.range.high)
+                            : "-");
         for (const support what : {support::favours, support::contradicts, support::no_difference, support::open})
             cells.push_back(std::to_string(count_of(c.secondary, what)));
     }

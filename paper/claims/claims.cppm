@@ -93,7 +93,9 @@ struct reproduction {
 [[nodiscard]] std::string text_of(const factors& where);
 /// "0.334 (0.328 to 0.341)"
 [[nodiscard]] std::string ratio_text(const endpoint& e);
-/// Three decimals, so that 1.048 is not taken for the band's edge; four below 0.01, fewer from 10 on.
+/// Three decimals, so that 1.048 is not taken for the band's edge; fewer from 10 on, four below 0.01.
+[[nodiscard]] std::string ratio_digits_of(double ratio);
+/// Three digits that count.
 [[nodiscard]] std::string digits_of(double value);
 
 /// Claim by claim: verdict, primary ratio with its interval, and where it was measured.

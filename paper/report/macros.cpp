@@ -61,9 +61,9 @@ void add_claim(macros& to, const claim_result& c) {
     set("setup", setup_of(c));
     set("favourable", c.expected == expectation::less ? "below 0.952" : "below 1.05");
     set("condition", c.has_primary ? text_of(c.primary.where) : "-");
-    set("ratio", c.has_primary ? digits_of(c.primary.ratio) : "-");
-    set("low", c.has_primary ? digits_of(c.primary.range.low) : "-");
-    set("high", c.has_primary ? digits_of(c.primary.range.high) : "-");
+    set("ratio", c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
+    set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
+    set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
     to.set(c.id + ".endpoints", c.secondary.size());
     const auto count = [&](const char* key, support what) {
         to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(c.secondary, what, &endpoint::found)));

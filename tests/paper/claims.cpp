@@ -246,7 +246,7 @@ TEST_CASE("The whole algorithm is judged where global search counts, too") {
     });
     const claim_result& c11 = all.claims[10];
     CHECK(text_of(c11) == "holds when density is at most 0.005");
-    CHECK(c11.tables.back().content.rows.front().back() == "2.000");
+    CHECK(c11.tables.back().content.rows.front().back() == "2.00");
     CHECK(c11.tables.back().content.rows.back().back() == "66.7");
     CHECK(c11.figures.front().lines.front().points.size() > 1);
 }
@@ -386,4 +386,9 @@ TEST_CASE(
         for (const aabblab::named_table& t : c.tables)
             for (const char* ending : {".csv", ".md", ".tex"})
                 CHECK(std::filesystem::exists(folder / ("tables/" + t.name + ending)));
+}
+
+TEST_CASE("A ratio near the edge of the band is not rounded to the edge") {
+    CHECK(ratio_text(endpoint{.where = {}, .ratio = 1.075, .range = {1.0479, 1.1027}}) == "1.075 (1.048 to 1.103)");
+    CHECK(ratio_text(endpoint{.where = {}, .ratio = 0.0182, .range = {0.0099, 12.34}}) == "0.018 (0.0099 to 12.3)");
 }
