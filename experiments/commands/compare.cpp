@@ -84,8 +84,10 @@ public:
         if (too_few_ > 0) text += fmt::format(", {} of them for too few repeats", too_few_);
         text += "\n";
         if (open_ > 0)
-            text += "open: their intervals reach beyond 5 %, or show a change only without Holm's correction for all " +
-                    std::string(what) + "; --all lists them\n";
+            text += fmt::format(
+                "open: their intervals reach beyond {:.0f} %, or show a change only without Holm's correction for all "
+                "{}; --all lists them\n",
+                100 * equivalence_band, what);
         return text;
     }
 

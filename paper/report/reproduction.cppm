@@ -61,9 +61,9 @@ inline constexpr std::array<std::string_view, 2> rule_text = {
     "A claim whose primary endpoint is open is undecided, whatever the others say. It holds when all endpoints favour "
     "it. Where some do and others not, it holds when a condition is met, the simplest that tells those that favour it "
     "from those decided otherwise, together or alone: on one factor, or on two where no single one is right in four "
-    "of five of both kinds. One that is stands as mostly when, after the number of conditions in which the claim "
-    "holds. Endpoints that are open are counted beside the verdict, and a condition promises nothing of them. Where "
-    "none favours it, the claim does not hold or makes no difference, as the primary endpoint says. Times are "
+    "of five of both kinds. Where one is, the verdict says in how many conditions the claim holds, and that it is "
+    "mostly there. Endpoints that are open are counted beside the verdict, and a condition promises nothing of them. "
+    "Where none favours it, the claim does not hold or makes no difference, as the primary endpoint says. Times are "
     "compared within a table only, never between runs or machines."};
 
 void write_text(const std::filesystem::path& file, const std::string& text);

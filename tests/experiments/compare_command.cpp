@@ -239,6 +239,12 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     const program_result all = run_program({"compare", a, b, "--all"});
     CHECK(has(all.out, "\nshell "));
     CHECK(has(all.out, " same\n"));
+    CHECK_FALSE(has(all.out, "\nopen: "));
+    const std::string noisy = write_results(folder / "noisy", rows_of({.noise = 0.3, .hour = 3}));
+    CHECK(
+        has(run_program({"compare", a, noisy}).out,
+            " 2 open\nopen: their intervals reach beyond 5 %, or show a change only without Holm's correction for all "
+            "ratios; --all lists them\n"));
     const program_result itself = run_program({"compare", a, a});
     CHECK(itself.status == 0);
     CHECK(has(itself.out,
