@@ -9,7 +9,7 @@ module;
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <ios>
 #include <string>
 #include <utility>
 #include <vector>
@@ -130,8 +130,10 @@ experiment read_experiment(const std::filesystem::path& file, experiment_size si
     if (!std::filesystem::exists(file)) throw aabb::input_error(file.string() + " is not there; expected a config");
     if (std::filesystem::is_directory(file)) throw aabb::input_error(file.string() + " is a folder; expected a config");
     std::ifstream in(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (!in.good()) throw aabb::input_error(file.string() + " cannot be read");
+    std::string text(longest_config + 1, ' ');  // one byte more shows that it is too long
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (!in.good() && !in.eof()) throw aabb::input_error(file.string() + " cannot be read");
     return parse_experiment(text, file.string(), size);
 }
 

@@ -1,15 +1,20 @@
 module;
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
-#include <sstream>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "toml.hpp"
 
 module aabblab.config;
 
@@ -19,6 +24,9 @@ import aabb;
 namespace aabblab {
 
 namespace {
+
+constexpr std::size_t most_parts = 16;  // of a dotted key; a config needs two
+constexpr std::size_t most_products = 100'000;
 
 std::string shortest(double value) {
     std::array<char, 32> text{};
@@ -68,6 +76,61 @@ std::string_view name_of(node_kind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
+/// The first line without which no assertion of the library fails.
+int line_of_failed_assertion(std::string_view text) {
+    const auto fails = [&](std::size_t end) {
+        try {
+            (void)toml::parse(text.substr(0, end));
+        } catch (const failed_toml_assertion&) {
+            return true;
+        } catch (const toml::parse_error&) {
+            return false;
+        }
+        return false;
+    };
+    std::vector<std::size_t> ends;  // of lines
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string_view::npos;) ends.push_back(++at);
+    const auto first = std::ranges::partition_point(ends, [&](std::size_t end) { return !fails(end); });
+    return static_cast<int>(first - ends.begin()) + 1;
+}
+
+/// Where the string that begins here ends: at its last quote, or where the text breaks off.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+    const std::string_view quote = text.substr(begin, 1);
+    const std::string triple(3, quote[0]);
+    const bool lines = text.substr(begin).starts_with(triple);
+    const std::string_view closing = lines ? triple : quote;
+    for (std::size_t at = begin + closing.size(); at < text.size(); ++at) {
+        if (text[at] == '\\' && quote == "\"")
+            ++at;
+        else if (text.substr(at).starts_with(closing))
+            return at + closing.size() - 1;
+        else if (text[at] == '\n' && !lines)
+            return at - 1;
+    }
+    return text.size();
+}
+
+/// The line of a key of too many parts; 0 where there is none. Each part is a table in the one before, and the library
+/// follows them by recursion, however many there are.
+int line_of_long_key(std::string_view text) {
+    const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
+    std::size_t parts = 1;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '.') {
+            if (++parts > most_parts) return static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1;
+        } else if (c == '"' || c == '\'') {
+            at = end_of_string(text, at);
+        } else if (c == '#') {
+            at = std::min(text.find('\n', at), text.size()) - 1;
+        } else if (!joins(static_cast<unsigned char>(c))) {
+            parts = 1;
+        }
+    }
+    return 0;
+}
+
 }  // namespace
 
 const node* node::find(std::string_view wanted) const {
@@ -76,12 +139,19 @@ const node* node::find(std::string_view wanted) const {
 }
 
 document::document(const std::string& text, std::string file) : file_(std::move(file)) {
+    if (text.size() > longest_config)
+        throw aabb::input_error(file_ + " is longer than " + std::to_string(longest_config) +
+                                " bytes, the most that a config may have");
+    if (const int line = line_of_long_key(text))
+        fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
         root_ = converted(toml::parse(text, file_));
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
         throw aabb::input_error(file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
                                 ": this is not TOML: " + std::string(error.description()));
+    } catch (const failed_toml_assertion&) {
+        fail(line_of_failed_assertion(text), "this is not TOML");
     }
 }
 
@@ -135,13 +205,28 @@ std::vector<located_text> document::alternatives_of(const std::string& key, cons
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
     if (value.items.empty()) fail(value.line, key + " is an empty list; expected at least one value");
     std::vector<located_text> all;
+    std::set<std::string_view> seen;
     for (const node& item : value.items) {
         if (!item.is_scalar()) fail_type("an entry of " + key, item, "a value");
-        if (std::ranges::find(all, item.text, &located_text::text) != all.end())
-            fail(item.line, key + " lists '" + item.text + "' twice");
+        if (!seen.insert(item.text).second) fail(item.line, key + " lists '" + item.text + "' twice");
         all.push_back({item.text, item.line});
     }
     return all;
+}
+
+void document::require_few(int line, std::string_view of, std::span<const std::size_t> factors,
+                           std::size_t more) const {
+    auto all = static_cast<double>(more);
+    all += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
+    if (all > static_cast<double>(most_products))
+        fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(of) +
+                       ", the most that a config may have");
+}
+
+std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys) {
+    std::vector<std::size_t> sizes;
+    for (const auto& [key, values] : keys) sizes.push_back(values.size());
+    return sizes;
 }
 
 std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys) {

@@ -1,5 +1,8 @@
 module;
+#include <cstddef>
 #include <cstdint>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +14,9 @@ module aabblab.config:document;
 import aabb;
 
 namespace aabblab {
+
+/// In bytes.
+inline constexpr std::size_t longest_config = 262'144;
 
 enum class node_kind { text, integer, real, boolean, date, list, table };
 
@@ -35,7 +41,7 @@ struct located_text {
 /// A config on its way from text to an experiment: makes its messages.
 class document {
 public:
-    /// @throws aabb::input_error with line and column on malformed TOML.
+    /// @throws aabb::input_error with line and column on malformed TOML, or text longer or keys deeper than any config.
     document(const std::string& text, std::string file);
 
     [[nodiscard]] const node& root() const { return root_; }
@@ -63,15 +69,41 @@ public:
     [[nodiscard]] std::vector<located_text> texts_of(const std::string& key, const node& value) const;
     /// What a key multiplies by: a scalar, or the scalars of a list.
     [[nodiscard]] std::vector<located_text> alternatives_of(const std::string& key, const node& value) const;
+    /// Refuses lists that multiply to more than an experiment may have, before anything is made of them: a short text
+    /// can ask for more than any machine holds.
+    /// @param of what they multiply to, as in "compositions"
+    /// @param factors how long the lists are
+    /// @param more that are there already
+    void require_few(int line, std::string_view of, std::span<const std::size_t> factors, std::size_t more) const;
 
 private:
     std::string file_;
     node root_;
 };
 
+/// What a config lists, in its order, each once.
+template <class T>
+class each_once {
+public:
+    /// @param text equal for equal ones
+    /// @returns false where it is there already
+    bool add(const T& one, const std::string& text) {
+        if (!texts_.insert(text).second) return false;
+        all_.push_back(one);
+        return true;
+    }
+    [[nodiscard]] const std::vector<T>& all() const { return all_; }
+
+private:
+    std::vector<T> all_;
+    std::set<std::string> texts_;
+};
+
 /// A key with what it multiplies by.
 using alternatives = std::pair<std::string, std::vector<located_text>>;
 
+/// How many alternatives each key has.
+[[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys);
 /// Every choice of one alternative a key; the first key varies slowest.
 [[nodiscard]] std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys);
 

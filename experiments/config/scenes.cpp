@@ -4,6 +4,7 @@ module;
 #include <bit>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -95,37 +96,40 @@ void add_meshes(aabb::digest& digest, std::span<const aabb::mesh> meshes) {
     }
 }
 
-void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size, experiment& e,
-                aabb::digest& meshes_made) {
+/// A scene of the config, before anything is made of it.
+struct written_scene {
+    scene_choice choice;
+    bool has_meshes;
+    int line;
+};
+
+void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size,
+                std::vector<std::string>& notes, each_once<written_scene>& scenes) {
     doc.require_table("scene", written);
     const node scene = sized(doc, written, size);
     const node* kinds = scene.find("kind");
     if (!kinds)
         doc.fail(written.line, "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
-    for (const located_text& kind : doc.alternatives_of("kind", *kinds)) {
-        const scene_info& info = info_of(doc, kind);
-        require_known_keys(doc, written, info);
-        const std::vector<std::string> meshes = meshes_of(doc, scene, e.notes);
-        std::vector<alternatives> keys;
-        for (const node& entry : scene.items)
-            if (std::ranges::find(own_keys, entry.key) == std::end(own_keys))
-                keys.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
-        const node* own_seed = scene.find("seed");
-        const std::vector<std::uint64_t> seeds = seeds_of(doc, own_seed ? own_seed : seed);
+    const std::vector<located_text> names = doc.alternatives_of("kind", *kinds);
+    for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
+    std::vector<alternatives> keys;
+    for (const node& entry : scene.items)
+        if (std::ranges::find(own_keys, entry.key) == std::end(own_keys))
+            keys.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
+    const node* own_seed = scene.find("seed");
+    const std::vector<std::uint64_t> seeds = seeds_of(doc, own_seed ? own_seed : seed);
+    std::vector<std::size_t> factors = sizes_of(keys);
+    factors.insert(factors.end(), {names.size(), seeds.size()});
+    doc.require_few(written.line, "scenes", factors, scenes.all().size());
+    for (const located_text& kind : names) {
+        const bool has_meshes = info_of(doc, kind).has_meshes;
+        const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
         for (const std::vector<aabb::setting>& settings : multiplied(keys))
             for (const std::uint64_t one : seeds) {
                 const scene_choice choice{kind.text, settings, meshes, one};
-                for (const scene_choice& other : e.scenes)
-                    if (other.kind == choice.kind && parameters_text(other) == parameters_text(choice))
-                        doc.fail(written.line,
-                                 "this scene is listed twice: " + choice.kind + " " + parameters_text(choice));
-                doc.at(written.line, [&] {
-                    if (info.has_meshes)
-                        add_meshes(meshes_made, make_mesh_scene(choice)->meshes);
-                    else
-                        (void)make_box_scene(choice);
-                });
-                e.scenes.push_back(choice);
+                const std::string text = choice.kind + " " + parameters_text(choice);
+                if (!scenes.add({choice, has_meshes, written.line}, text))
+                    doc.fail(written.line, "this scene is listed twice: " + text);
             }
     }
 }
@@ -147,11 +151,21 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node* scenes = doc.root().find("scene");
     if (!scenes) doc.fail(1, "this config has no scene; expected at least one [[scene]]");
     if (scenes->kind != node_kind::list) doc.fail(scenes->line, "scene must stand in double brackets: [[scene]]");
-    aabb::digest meshes_made;
     const node* seed = seed_of(doc, size);
-    for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e, meshes_made);
+    each_once<written_scene> written;
+    for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e.notes, written);
+    if (written.all().empty()) doc.fail(scenes->line, "this config has no scene; expected at least one [[scene]]");
+    aabb::digest meshes_made;
+    for (const auto& [choice, has_meshes, line] : written.all()) {
+        doc.at(line, [&] {
+            if (has_meshes)
+                add_meshes(meshes_made, make_mesh_scene(choice)->meshes);
+            else
+                (void)make_box_scene(choice);
+        });
+        e.scenes.push_back(choice);
+    }
     e.mesh_digest = meshes_made.text();
-    if (e.scenes.empty()) doc.fail(scenes->line, "this config has no scene; expected at least one [[scene]]");
 }
 
 }  // namespace aabblab

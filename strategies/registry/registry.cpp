@@ -4,6 +4,7 @@ module;
 #include <charconv>
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -50,9 +51,9 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     const std::vector<std::string> names = strategy_names(kind);
     if (std::ranges::find(names, choice.name) == names.end())
         throw input_error(unknown_name(name_of(kind), choice.name, names));
+    std::set<std::string_view> seen;
     for (const setting& s : choice.settings)
-        if (std::ranges::count(choice.settings, s.name, &setting::name) > 1)
-            throw input_error(choice.name + ": " + s.name + " is given twice");
+        if (!seen.insert(s.name).second) throw input_error(choice.name + ": " + s.name + " is given twice");
     registry::check_settings(kind, choice);
 }
 

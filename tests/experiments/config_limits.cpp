@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <cstddef>
+#include <string>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.config;
+import aabblab.scenes;
+
+using aabblab::experiment_size;
+
+namespace {
+
+const std::string head = "name = \"test\"\n";
+const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
+
+std::string refusal_of(const std::string& text) {
+    try {
+        (void)aabblab::parse_experiment(text, "test.toml", experiment_size::full);
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+/// `what` so many times, with `between`.
+std::string repeated(const std::string& what, std::size_t times, const std::string& between) {
+    std::string text = what;
+    for (std::size_t i = 1; i < times; ++i) text += between + what;
+    return text;
+}
+
+/// "KEY = [1, 2, …]"
+std::string list_of(const std::string& key, std::size_t values) {
+    std::string text = key + " = [1";
+    for (std::size_t i = 2; i <= values; ++i) text += ", " + std::to_string(i);
+    return text + "]\n";
+}
+
+}  // namespace
+
+TEST_CASE("What the TOML library asserts is malformed TOML, with its line") {
+    const std::string value = GENERATE("[}", "[,", "[=", "[#", "[[}", "[1,}", "{a=}", "{=", "[{]", "[\n\n}");
+    const std::string sentence = refusal_of(head + "a = " + value);
+    INFO(value << "\n" << sentence);
+    const auto line = 2 + std::count(value.begin(), value.end(), '\n');
+    REQUIRE(sentence.starts_with("test.toml:" + std::to_string(line) + ":"));
+    REQUIRE(sentence.find(": this is not TOML") != std::string::npos);
+}
+
+TEST_CASE("Keys and values that go deep are refused before the library follows them") {
+    const std::size_t parts = GENERATE(17, 30'000);
+    const std::string key = repeated("a", parts, GENERATE(".", " . ", ".\"b\\\"\".", ".'='."));
+    const std::string before = GENERATE("", "text = \"a#b\"\n", "text = '''a\n\"'''\n", "# '\n");
+    const std::string line = before.starts_with("text = ''") ? ":4" : before.empty() ? ":2" : ":3";
+    CHECK(refusal_of(head + before + key + " = 1\n") == "test.toml" + line + ": a key has more than 16 parts");
+    CHECK(refusal_of(head + before + "[" + key + "]\n") == "test.toml" + line + ": a key has more than 16 parts");
+    CHECK(refusal_of(head + before + "a = {" + key + " = 1}\n") ==
+          "test.toml" + line + ": a key has more than 16 parts");
+    CHECK(refusal_of(head + "a = " + std::string(parts, '[')).find("maximum nested value depth") != std::string::npos);
+}
+
+TEST_CASE("Dots that join no parts of a key do not count") {
+    const std::string many = repeated("a", 100, ".");
+    const std::string sizes = "displacement = [" + repeated("0.5", 30, ", ") + "]\n";
+    CHECK(refusal_of(head + "# " + many + "\n" + scene) == "accepted");
+    CHECK(refusal_of(head + scene + sizes).find("displacement lists '0.5' twice") != std::string::npos);
+    CHECK(refusal_of(head + "engines = \"" + many + "\"\n" + scene).find("unknown engine") != std::string::npos);
+    CHECK(refusal_of(head + "engines = '" + many + "'\n" + scene).find("unknown engine") != std::string::npos);
+    CHECK(refusal_of(head + "engines = \"\"\"\n" + many + "\"\"\"\n" + scene).find("unknown engine") !=
+          std::string::npos);
+}
+
+TEST_CASE("A config is no longer than its limit") {
+    const std::string text = head + scene;
+    const std::string longest = text + std::string(262'144 - text.size(), '#');
+    CHECK(refusal_of(longest) == "accepted");
+    CHECK(refusal_of(longest + "#") == "test.toml is longer than 262144 bytes, the most that a config may have");
+    const temporary_folder folder;
+    REQUIRE_NOTHROW(aabblab::read_experiment(folder.write("a.toml", longest), experiment_size::full));
+    REQUIRE_THROWS_AS(aabblab::read_experiment("/dev/zero", experiment_size::full), aabb::input_error);
+}
+
+TEST_CASE("Lists that multiply are counted before anything is made of them") {
+    const std::string most = "the lists multiply to more than 100000 ";
+    const auto cuts = [&](std::size_t segments) {
+        std::string list = list_of("segments", segments);
+        list.pop_back();
+        return "{ name = \"axial_cut\", axes = [1, 2, 3], limit = [\"on\", \"off\"], " + list + " }";
+    };
+    CHECK(refusal_of(head + scene + "[compose]\npartition = " + cuts(20'000) + "\n") ==
+          "test.toml:6: " + most + "choices of partition, the most that a config may have");
+    // Each list is short enough; together they are not.
+    const std::string splits = list_of("split_large", 100);
+    CHECK(refusal_of(head + scene + "[compose]\npartition = " + cuts(200) + "\n" + splits) ==
+          "test.toml:5: " + most + "compositions, the most that a config may have");
+    // Nor are several tables.
+    const std::string half = "[[compose]]\npartition = " + cuts(100) + "\n" + splits;
+    const std::string first = half + "sort = \"insertion\"\n";
+    CHECK(refusal_of(head + scene + first + half + "sort = \"std\"\n").starts_with("test.toml:9: " + most));
+    CHECK(refusal_of(head + "[[scene]]\nkind = [\"brownian\", \"still\"]\n" + list_of("seed", 400) +
+                     list_of("objects", 400)) == "test.toml:2: " + most + "scenes, the most that a config may have");
+}
+
+TEST_CASE("Names are checked before lists are multiplied, and every scene's before the first is made") {
+    CHECK(refusal_of(head + scene + "[compose]\n" + list_of("split_large", 20'000) +
+                     "partition = \"none\"\ntree = [\"canonical\", \"leafles\"]\ntriangle = \"exact\"\n") ==
+          "test.toml:8: unknown tree 'leafles'; did you mean 'leafless'?");
+    CHECK(refusal_of(head + scene + "[compose]\nsort = { name = [\"std\", \"shel\"], a = [1, 2] }\n") ==
+          "test.toml:6: unknown sort 'shel'; did you mean 'shell'?");
+    // A scene of so many objects does not fit into memory.
+    CHECK(refusal_of(head + "[[scene]]\nkind = [\"brownian\", \"stil\"]\nobjects = 4000000000\n") ==
+          "test.toml:3: unknown scene 'stil'; did you mean 'still'?");
+}
