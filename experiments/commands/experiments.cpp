@@ -105,6 +105,7 @@ experiment open_experiment(const std::string& config, bool quick) {
 std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
                                          existing_results existing, const std::string& resume_with, printed shown) {
     const interruption said(resume_with);
+    const folder_lock alone(folder);
     for (const scene_choice& scene : e.scenes) note_idle_engines(e, scene);
     {
         results_folder results(folder, e, existing);

@@ -124,12 +124,12 @@ std::string verdict_text(const reproduction& all) {
 int reproduce(const reproduce_request& request) {
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/reproduce-quick" : "results/reproduce");
-    if (folder.empty()) throw aabb::input_error("--out has no name of a folder");
     const auto is_there = [&](const std::filesystem::path& config) {
         return std::filesystem::exists(folder / config.stem() / "results.csv");
     };
     if (request.judge && std::ranges::none_of(configs(), is_there))
         throw aabb::input_error("there are no results of a reproduction in " + folder.string());
+    const folder_lock alone(folder);
     if (!request.judge) measure(folder, request.quick);
     const std::vector<std::string> failures = kept_failures(folder);
     const reproduction all = judged(measurements(folder));

@@ -5,44 +5,29 @@ module;
 #include <string_view>
 #include <vector>
 
-/// Lines of comma-separated values: a field with a comma or a quote stands in quotes, a quote in it is doubled.
+/// Comma-separated values as RFC 4180 says, but that lines end in a line feed alone: a field with a comma, a quote or
+/// the end of a line stands in quotes, and a quote in it is doubled.
 export module aabblab.results:csv;
 
 export namespace aabblab {
 
-/// With the newline.
-[[nodiscard]] inline std::string csv_line(std::span<const std::string> fields) {
-    std::string line;
-    for (const std::string& field : fields) {
-        if (&field != fields.data()) line += ',';
-        if (field.find_first_of(",\"") == std::string::npos) {
-            line += field;
-            continue;
-        }
-        line += '"';
-        for (const char c : field) line += c == '"' ? "\"\"" : std::string(1, c);
-        line += '"';
-    }
-    return line + '\n';
-}
+/// With the line feed.
+[[nodiscard]] std::string csv_line(std::span<const std::string> fields);
 
-/// The inverse, without the newline.
-[[nodiscard]] inline std::vector<std::string> csv_fields(std::string_view line) {
-    std::vector<std::string> fields(1);
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '"') {
-            if (quoted && i + 1 < line.size() && line[i + 1] == '"')
-                fields.back() += line[++i];
-            else
-                quoted = !quoted;
-        } else if (line[i] == ',' && !quoted) {
-            fields.emplace_back();
-        } else {
-            fields.back() += line[i];
-        }
-    }
-    return fields;
-}
+struct csv_record {
+    std::vector<std::string> fields;
+    std::size_t line;  ///< in which it begins, from 1
+};
+
+struct csv_text {
+    std::vector<csv_record> records;
+    std::size_t bytes = 0;  ///< of the text up to the end of the last record
+};
+
+/// The inverse, also of lines that end in carriage return and line feed. A last record that was cut off in the middle
+/// of being written is left out.
+/// @param file for messages
+/// @throws aabb::input_error with file and line where quotes are not as above.
+[[nodiscard]] csv_text read_csv(std::string_view text, const std::string& file);
 
 }  // namespace aabblab

@@ -1,15 +1,16 @@
 module;
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -24,13 +25,12 @@ namespace aabblab {
 
 namespace {
 
-/// A line that was cut off while it was written goes.
-void drop_torn_line(const std::filesystem::path& file) {
+/// A row that was cut off while it was written goes.
+void drop_torn_row(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
-    std::uintmax_t complete = 0;
-    for (std::string line; std::getline(in, line) && !in.eof();) complete += line.size() + 1;
-    in.close();
-    if (complete != std::filesystem::file_size(file)) std::filesystem::resize_file(file, complete);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::size_t complete = read_csv(text, file.string()).bytes;
+    if (complete != text.size()) std::filesystem::resize_file(file, complete);
 }
 
 void replace_file(const std::filesystem::path& file, const std::string& text) {
@@ -47,11 +47,8 @@ std::string scene_key(const scene_choice& scene) {
 
 results_folder::results_folder(std::filesystem::path folder, const experiment& e, existing_results existing)
     : folder_(std::move(folder)), experiment_(e), date_(date_now()) {
-    if (folder_.empty()) throw aabb::input_error("the folder of the results has no name");
+    make_folder(folder_);
     const std::filesystem::path table = folder_ / "results.csv";
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw aabb::input_error("the folder " + folder_.string() + " cannot be made: " + error.message());
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
         replaced_ = refusal_to_resume(manifest, e);
@@ -68,7 +65,7 @@ results_folder::results_folder(std::filesystem::path folder, const experiment& e
         if (!rows_.empty() && existing == existing_results::refuse)
             throw aabb::input_error("results are already in " + folder_.string() +
                                     "; --resume continues them, --out DIR puts new ones elsewhere");
-        drop_torn_line(table);
+        drop_torn_row(table);
     }
     if (!rows_.empty()) {
         resumed_manifest before = resume_manifest(manifest, e);

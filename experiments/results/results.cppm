@@ -67,8 +67,8 @@ struct row {
     [[nodiscard]] std::string key() const;
 };
 
-/// Rows of a results.csv. A last line that was cut off in the middle of being written is left out.
-/// @throws aabb::input_error with file and line where it is not a results.csv.
+/// Rows of a results.csv. A last one that was cut off in the middle of being written is left out.
+/// @throws aabb::input_error with file and line where it is not a results.csv, or two rows are of the same measurement.
 [[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file);
 
 /// A line of differences.csv: how many pairs of one class a contender missed or invented in a scene.
@@ -82,11 +82,26 @@ struct difference {
 };
 [[nodiscard]] std::vector<difference> read_differences(const std::filesystem::path& file);
 
+/// Keeps other processes from writing results into a folder, which it creates, as long as it lives, or a process that
+/// was started meanwhile.
+class folder_lock {
+public:
+    /// @throws aabb::input_error where another process has it, or the folder cannot be made.
+    explicit folder_lock(const std::filesystem::path& folder);
+    folder_lock(const folder_lock&) = delete;
+    folder_lock& operator=(const folder_lock&) = delete;
+    ~folder_lock();
+
+private:
+    int descriptor_;
+};
+
 /// What is done with results that are there already: `replace` resumes those of the same config, build and machine and
 /// sets others aside, as results.csv.old.
 enum class existing_results { refuse, resume, replace };
 
-/// The folder of a running experiment. What is written stays, whatever happens to the program afterwards.
+/// The folder of a running experiment, which holds its lock, or was started by a process that does. What is written
+/// stays, whatever happens to the program afterwards.
 class results_folder {
 public:
     /// Creates the folder and its manifest, or takes up what is there. The experiment must outlive the folder.
@@ -151,6 +166,8 @@ struct manifest_summary {
 namespace aabblab {
 
 using scene_digests = std::map<std::string, std::string>;  // by scene and parameters
+
+void make_folder(const std::filesystem::path& folder);
 
 [[nodiscard]] std::string csv_header_of_rows();
 [[nodiscard]] std::string csv_of(const row& r);

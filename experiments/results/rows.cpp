@@ -1,15 +1,15 @@
 module;
 #include <array>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 module aabblab.results;
@@ -123,29 +123,21 @@ std::string line_of(const Row& r, Columns columns) {
     return csv_line(fields);
 }
 
-/// Complete lines only.
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
+/// @param taken_in sees each row and the line that it begins in
+template <class Row, class Columns, class TakenIn>
+std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, TakenIn taken_in) {
     std::ifstream in(file, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     if (!in.good()) throw aabb::input_error(file.string() + " cannot be read");
-    std::vector<std::string> lines;
-    for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
-        lines.push_back(text.substr(at, end - at));
-    return lines;
-}
-
-template <class Row, class Columns>
-std::vector<Row> read_table(const std::filesystem::path& file, Columns columns) {
-    const std::vector<std::string> lines = lines_of(file);
+    const std::vector<csv_record> records = read_csv(text, file.string()).records;
     std::vector<Row> rows;
-    if (lines.empty()) return rows;
+    if (records.empty()) return rows;
     const std::string header = header_of<Row>(columns);
-    if (lines[0] + "\n" != header)
+    if (csv_line(records[0].fields) != header)
         throw aabb::input_error(file.string() + ":1: these are not the columns of this version; expected " +
                                 header.substr(0, header.size() - 1));
-    for (std::size_t i = 1; i < lines.size(); ++i) {
-        const std::vector<std::string> fields = csv_fields(lines[i]);
-        const std::string place = file.string() + ":" + std::to_string(i + 1) + ": ";
+    for (const auto& [fields, line] : std::span(records).subspan(1)) {
+        const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         std::size_t at = 0;
         columns(rows.emplace_back(), [&](const std::string& name, auto& value) {
             if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
@@ -154,6 +146,7 @@ std::vector<Row> read_table(const std::filesystem::path& file, Columns columns) 
             ++at;
         });
         if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
+        taken_in(rows.back(), line);
     }
     return rows;
 }
@@ -179,15 +172,18 @@ std::string csv_of(std::span<const difference> differences) {
 }
 
 std::vector<row> read_rows(const std::filesystem::path& file) {
-    std::vector<row> rows = read_table<row>(file, columns_of_row);
-    for (const row& r : rows)
+    std::map<std::string, std::size_t> lines;  // by key
+    return read_table<row>(file, columns_of_row, [&](const row& r, std::size_t line) {
+        const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         if (r.status != "exact" && r.status != "inexact")
-            throw aabb::input_error(file.string() + ": a row has the status '" + r.status +
-                                    "'; expected exact or inexact");
-    return rows;
+            throw aabb::input_error(place + "the status is '" + r.status + "'; expected exact or inexact");
+        if (const auto [before, is_new] = lines.emplace(r.key(), line); !is_new)
+            throw aabb::input_error(place + "the measurement of line " + std::to_string(before->second) +
+                                    " stands here again, so two runs have written into one folder");
+    });
 }
 std::vector<difference> read_differences(const std::filesystem::path& file) {
-    return read_table<difference>(file, columns_of_difference);
+    return read_table<difference>(file, columns_of_difference, [](const difference&, std::size_t) {});
 }
 
 }  // namespace aabblab

@@ -65,12 +65,6 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
                 .columns.empty());
 }
 
-TEST_CASE("CSV fields survive commas and quotes") {
-    const std::vector<std::string> fields{"a", "", "b,c", "say \"x\"", "\""};
-    const std::string line = aabblab::csv_line(fields);
-    REQUIRE(line.back() == '\n');
-    REQUIRE(aabblab::csv_fields(line.substr(0, line.size() - 1)) == fields);
-}
 
 TEST_CASE("A summary has medians per frame after frame 0, ratios to the first line, and names what differs") {
     const std::vector<row> rows{repeat_of("std", 0, 2), repeat_of("insertion", 0, 8), repeat_of("std", 1, 4),

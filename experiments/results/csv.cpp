@@ -1,0 +1,103 @@
+module;
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.results;
+
+import :csv;
+import aabb;
+
+namespace aabblab {
+
+namespace {
+
+/// A walk through a text, field by field.
+class csv_reader {
+public:
+    csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+    /// False where the text ends before the record does.
+    bool take(csv_record& record) {
+        record.line = line_;
+        do {
+            std::string& field = record.fields.emplace_back();
+            if (next_is("\"")) {
+                if (!take_quoted(field)) return false;
+            } else {
+                take_plain(field);
+            }
+        } while (skip(","));
+        if (at_ == text_.size()) return false;
+        if (!skip("\n") && !skip("\r\n")) fail("expected a comma or the end of the line after a closing quote");
+        ++line_;
+        return true;
+    }
+
+    [[nodiscard]] std::size_t at() const { return at_; }
+
+private:
+    [[nodiscard]] bool next_is(std::string_view what) const { return text_.substr(at_).starts_with(what); }
+    bool skip(std::string_view what) {
+        const bool there = next_is(what);
+        if (there) at_ += what.size();
+        return there;
+    }
+
+    void take_plain(std::string& field) {
+        while (at_ < text_.size() && !next_is(",") && !next_is("\n") && !next_is("\r\n")) {
+            if (next_is("\"")) fail("a quote stands in a field that does not begin with one");
+            field += text_[at_++];
+        }
+    }
+
+    bool take_quoted(std::string& field) {
+        for (++at_; at_ < text_.size(); ++at_) {
+            if (skip("\"") && !next_is("\"")) return true;  // of two, the second is the field's
+            if (text_[at_] == '\n') ++line_;
+            field += text_[at_];
+        }
+        return false;
+    }
+
+    [[noreturn]] void fail(const char* sentence) const {
+        throw aabb::input_error(file_ + ":" + std::to_string(line_) + ": " + sentence);
+    }
+
+    std::string_view text_;
+    const std::string& file_;
+    std::size_t at_ = 0;
+    std::size_t line_ = 1;
+};
+
+}  // namespace
+
+std::string csv_line(std::span<const std::string> fields) {
+    std::string line;
+    for (const std::string& field : fields) {
+        if (&field != fields.data()) line += ',';
+        if (field.find_first_of(",\"\r\n") == std::string::npos) {
+            line += field;
+            continue;
+        }
+        line += '"';
+        for (const char c : field) line += c == '"' ? "\"\"" : std::string(1, c);
+        line += '"';
+    }
+    return line + '\n';
+}
+
+csv_text read_csv(std::string_view text, const std::string& file) {
+    csv_text all;
+    csv_reader reader(text, file);
+    for (csv_record record; reader.take(record); record = {}) {
+        all.records.push_back(std::move(record));
+        all.bytes = reader.at();
+    }
+    return all;
+}
+
+}  // namespace aabblab

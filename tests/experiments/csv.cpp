@@ -1,0 +1,63 @@
+#include <rapidcheck.h>
+
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+import aabb;
+import aabblab.results;
+
+using aabblab::csv_line;
+using aabblab::read_csv;
+
+namespace {
+
+using table = std::vector<std::vector<std::string>>;
+
+table fields_of(const std::string& text) {
+    table all;
+    for (const auto& record : read_csv(text, "t.csv").records) all.push_back(record.fields);
+    return all;
+}
+
+std::string refusal_of(const std::string& text) {
+    try {
+        (void)read_csv(text, "t.csv");
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("CSV is read and written as RFC 4180 says") {
+    CHECK(csv_line(std::vector<std::string>{"a", "", "b c"}) == "a,,b c\n");
+    CHECK(csv_line(std::vector<std::string>{"a,b", "\"", "c\nd", "\r"}) == "\"a,b\",\"\"\"\",\"c\nd\",\"\r\"\n");
+    CHECK(fields_of("a,b\r\nc,\"d\r\ne\"\r\n") == table{{"a", "b"}, {"c", "d\r\ne"}});
+    CHECK(fields_of("\"a\",\"\"\n,\n\n") == table{{"a", ""}, {"", ""}, {""}});
+    CHECK(read_csv("\"a\nb\",c\nd\n", "t.csv").records[1].line == 3);
+    CHECK(refusal_of("a\nb,c\"d\n") == "t.csv:2: a quote stands in a field that does not begin with one");
+    CHECK(refusal_of("a,\"b\n\"c\n") == "t.csv:2: expected a comma or the end of the line after a closing quote");
+}
+
+TEST_CASE("Whatever is written as CSV is read back, and a record that is cut off anywhere is left out") {
+    REQUIRE(rc::check([] {
+        const auto character = rc::gen::element(',', '"', '\n', '\r', 'a', ' ');
+        const auto record =
+            rc::gen::nonEmpty(rc::gen::container<std::vector<std::string>>(rc::gen::container<std::string>(character)));
+        const table written = *rc::gen::container<table>(record);
+        std::string text;
+        std::vector<std::size_t> ends{0};
+        for (const auto& fields : written) ends.push_back((text += csv_line(fields)).size());
+        RC_ASSERT(fields_of(text) == written);
+        const auto cut = *rc::gen::inRange<std::size_t>(0, text.size() + 1);
+        std::size_t complete = 0;
+        while (complete + 1 < ends.size() && ends[complete + 1] <= cut) ++complete;
+        const auto left = read_csv(text.substr(0, cut), "t.csv");
+        RC_ASSERT(left.records.size() == complete);
+        RC_ASSERT(left.bytes == ends[complete]);
+    }));
+}

@@ -1,0 +1,100 @@
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.results;
+
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+/// A mesh whose name holds all that means something in CSV.
+const std::string mesh_name = "two\nlines, \"one\"\rname.off";
+
+std::string config_of(const std::string& mesh) {
+    std::string name;
+    for (const char c : mesh) name += c == '\n' ? "\\n" : c == '\r' ? "\\r" : c == '"' ? "\\\"" : std::string(1, c);
+    return "name = \"odd\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"" + name +
+           "\", \"icosphere:triangles=20\"]\nframes = 2\n[measure]\nrepeats = 3\n";
+}
+
+}  // namespace
+
+TEST_CASE("Two runs do not write into one folder at once") {
+    const temporary_folder folder;
+    const std::string out = (folder / "out").string();
+    const std::string config =
+        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n").string();
+    auto held = std::make_unique<aabblab::folder_lock>(folder / "out");
+    CHECK_THROWS_WITH(aabblab::folder_lock(folder / "out"),
+                      StartsWith("another aabblab writes into ") && EndsWith("with --out"));
+    for (const std::string& command : {std::string("run"), std::string("reproduce")}) {
+        const program_result second = command == "run" ? run_program({"run", config, "--out", out})
+                                                       : run_program({"reproduce", "--quick", "--out", out});
+        INFO(second.err);
+        CHECK(second.status == 2);
+        CHECK(is_one_sentence(second.err));
+        CHECK(second.err.find("another aabblab writes into " + out) != std::string::npos);
+    }
+    CHECK(std::filesystem::is_empty(folder / "out"));
+    held.reset();
+    CHECK(run_program({"run", config, "--out", out}).status == 0);
+    CHECK(run_program({"run", config, "--out", out, "--resume"}).status == 0);
+}
+
+TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines") {
+    const temporary_folder folder;
+    const std::string out = (folder / "out").string();
+    const std::string config =
+        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n").string();
+    REQUIRE(run_program({"run", config, "--out", out}).status == 0);
+    const std::string text = bytes_of_file(folder / "out/results.csv");
+    const std::size_t second_line = text.find('\n') + 1;
+    std::ofstream(folder / "out/results.csv", std::ios::app)
+        << text.substr(second_line, text.find('\n', second_line) + 1 - second_line);
+    const std::string said = "/results.csv:11: the measurement of line 2 stands here again";
+    for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out, "--resume"},
+                                  std::vector<std::string>{"compare", out, out}}) {
+        const program_result refused = run_program(arguments);
+        INFO(refused.err);
+        CHECK(refused.status == 2);
+        CHECK(is_one_sentence(refused.err));
+        CHECK(refused.err.find(said) != std::string::npos);
+    }
+}
+
+TEST_CASE("A mesh may have any name: its results are read back, resumed after any cut, and compared") {
+    const temporary_folder folder;
+    const std::string mesh =
+        folder.write(mesh_name, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+            .string();
+    const std::string config = folder.write("odd.toml", config_of(mesh)).string();
+    const std::string out = (folder / "out").string();
+    const program_result ran = run_program({"run", config, "--out", out});
+    INFO(ran.err);
+    REQUIRE(ran.status == 0);
+    const std::filesystem::path table = folder / "out/results.csv";
+    const auto whole = aabblab::read_rows(table);
+    REQUIRE(whole.size() == 3);
+    CHECK(whole[0].scene_parameters.find(mesh_name) != std::string::npos);
+    CHECK(run_program({"compare", out, out}).status == 0);
+    // In the middle of the name of the last row, which stands in two lines.
+    const std::string text = bytes_of_file(table);
+    std::filesystem::resize_file(table, text.rfind("\n", text.rfind("lines,")) + 3);
+    REQUIRE(aabblab::read_rows(table).size() == 2);
+    REQUIRE(run_program({"run", config, "--out", out, "--resume"}).status == 0);
+    const auto resumed = aabblab::read_rows(table);
+    REQUIRE(resumed.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(resumed[i].key() == whole[i].key());
+    CHECK(resumed[0].search_ms == whole[0].search_ms);
+}
