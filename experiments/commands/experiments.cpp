@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "output.hpp"
@@ -15,6 +17,7 @@
 
 import aabb.validation;
 import aabblab.config;
+import aabblab.files;
 import aabblab.report;
 import aabblab.results;
 import aabblab.runner;
@@ -53,30 +56,40 @@ void note_idle_engines(const experiment& e, const scene_choice& scene) {
             note(engine.name + " has no part in " + scene.kind + ": it searches no boxes");
 }
 
-void print_tables(std::span<const row> rows) {
-    for (const scene_summary& summary : summarise(rows)) {
-        print(heading_of(summary) + "\n" + to_text(table_of(summary, number_style::grouped)) + "\n");
-        if (const table counts = counts_table_of(summary, number_style::grouped); !counts.columns.empty())
-            print("work a frame after the first one, and bytes\n" + to_text(counts) + "\n");
+/// The rows of a scene, whatever its seeds.
+std::vector<row> rows_of(const scene_choice& scene, std::span<const row> all) {
+    const std::string parameters = without_seed(parameters_text(scene));
+    std::vector<row> rows;
+    for (const row& r : all)
+        if (r.scene == scene.kind && without_seed(r.scene_parameters) == parameters) rows.push_back(r);
+    return rows;
+}
+
+void print_scenes(std::span<const scene_summary> scenes, printed shown) {
+    for (const scene_summary& scene : scenes) {
+        print(heading_of(scene) + "\n" + to_text(table_of(scene), output_width()) + "\n");
+        if (shown != printed::tables_and_counts) continue;
+        if (const table counts = counts_table_of(scene); !counts.columns.empty())
+            print("work a frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
     }
     flush_output();
 }
 
-void print_tables(const scene_choice& scene, const results_folder& results) {
-    std::vector<row> rows;
-    for (const row& r : results.rows())
-        if (r.scene == scene.kind && r.scene_parameters == parameters_text(scene)) rows.push_back(r);
-    print_tables(rows);
+bool is_of_other_seed(const scene_choice& a, const scene_choice& b) {
+    return a.kind == b.kind && without_seed(parameters_text(a)) == without_seed(parameters_text(b));
 }
 
+/// Shows a scene as soon as its last seed is played.
 std::vector<std::string> play_here(const experiment& e, results_folder& results, printed shown) {
     std::vector<std::string> failures;
-    for (const scene_choice& scene : e.scenes) {
+    for (std::size_t i = 0; i < e.scenes.size(); ++i) {
+        const scene_choice& scene = e.scenes[i];
         for (const std::string& failure : run_scene(e, scene, contenders_for(e, scene), results)) {
             note(failure);
             failures.push_back(failure);
         }
-        if (shown == printed::tables) print_tables(scene, results);
+        if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_of_other_seed(scene, e.scenes[i + 1])))
+            print_scenes(summarise(rows_of(scene, results.rows())), shown);
     }
     return failures;
 }
@@ -107,13 +120,23 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
     const interruption said(resume_with);
     const folder_lock alone(folder);
     for (const scene_choice& scene : e.scenes) note_idle_engines(e, scene);
+    std::vector<std::string> failures;
     {
         results_folder results(folder, e, existing);
         if (!results.replaced().empty()) note(results.replaced() + "; this run replaces them");
-        if (e.processes == 1) return play_here(e, results, shown);
+        // It is of a whole run.
+        std::error_code ignored;
+        std::filesystem::remove(folder / "summary.csv", ignored);
+        if (e.processes == 1) failures = play_here(e, results, shown);
     }
-    std::vector<std::string> failures = play_afresh(e, folder);
-    if (shown == printed::tables) print_tables(read_rows(folder / "results.csv"));
+    if (e.processes > 1) failures = play_afresh(e, folder);
+    const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
+    write_file(folder / "summary.csv", to_csv(full_table_of(scenes)));
+    if (shown == printed::nothing) return failures;
+    if (e.processes > 1) print_scenes(scenes, shown);
+    if (const table overall = overall_table_of(scenes); scenes.size() > 1 && !overall.rows.empty())
+        print(fmt::format("all {} scenes: geometric means of their ratios, fastest first\n\n{}\n", scenes.size(),
+                          to_text(overall, output_width())));
     return failures;
 }
 

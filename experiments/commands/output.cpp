@@ -1,7 +1,15 @@
 #include "output.hpp"
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstddef>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -27,6 +35,15 @@ void print(std::string_view text) {
 
 void flush_output() {
     if (std::fflush(stdout) != 0) refuse_output(errno);
+}
+
+std::size_t output_width() {
+    constexpr std::size_t least = 40;
+    std::size_t width = 80;
+    if (const char* columns = std::getenv("COLUMNS")) std::from_chars(columns, columns + std::strlen(columns), width);
+    winsize window{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) width = window.ws_col;
+    return std::max(width, least);
 }
 
 void note(std::string_view text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,6 +20,9 @@ void print(std::string_view text);
 
 /// Writes out what the buffer still holds; throws as `print` does.
 void flush_output();
+
+/// Characters of a line on standard output: of the terminal, else COLUMNS in the environment, else 80.
+[[nodiscard]] std::size_t output_width();
 
 /// A note for the user, on standard error.
 void note(std::string_view text);

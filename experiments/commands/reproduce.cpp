@@ -81,9 +81,7 @@ std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
 void keep_failures(const std::filesystem::path& folder, const std::vector<std::string>& failures) {
     std::string text;
     for (const std::string& failure : failures) text += failure + "\n";
-    output_file out(file_of_failures(folder));
-    out.write(text);
-    out.commit();
+    write_file(file_of_failures(folder), text);
 }
 std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     std::vector<std::string> failures;

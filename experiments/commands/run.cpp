@@ -26,6 +26,7 @@ struct run_request {
     std::optional<std::size_t> process;
     bool quick = false;
     bool resume = false;
+    bool counts = false;
 };
 
 int run(const run_request& request) {
@@ -35,10 +36,11 @@ int run(const run_request& request) {
     // A first look does not stand in the way of the whole.
     const std::filesystem::path folder = request.out.value_or("results/" + e.name + (request.quick ? "-quick" : ""));
     if (request.process) return play_share(e, folder, *request.process) ? 0 : 1;
-    const std::vector<std::string> failures =
-        play_experiment(e, folder, request.resume ? existing_results::resume : existing_results::refuse,
-                        "the same command with --resume", printed::tables);
-    print("Every repeat is a row of " + (folder / "results.csv").string() + "\n");
+    const std::vector<std::string> failures = play_experiment(
+        e, folder, request.resume ? existing_results::resume : existing_results::refuse,
+        "the same command with --resume", request.counts ? printed::tables_and_counts : printed::tables);
+    print("Every repeat is a row of " + (folder / "results.csv").string() + ", every line of a table one of " +
+          (folder / "summary.csv").string() + "\n");
     return failures.empty() ? 0 : 1;
 }
 
@@ -52,6 +54,8 @@ void add_run(CLI::App& program, int& status) {
         ->type_name("DIR");
     command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
     command->add_flag("--resume", request->resume, "Skip what is finished in the folder already");
+    command->add_flag("--counts", request->counts,
+                      "Also print the work of each composition and the bytes of its parts");
     // What it starts afresh for each of the processes that a config asks for; not for users.
     command->add_option("--process", request->process)->group("");
     command->callback([request, &status] { status = run(*request); });

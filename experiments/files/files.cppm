@@ -74,6 +74,9 @@ private:
     std::unique_ptr<state> state_;
 };
 
+/// Writes a text file, whole or not at all.
+void write_file(const std::filesystem::path& file, const std::string& text);
+
 /// A motion file in the making: every object in every frame, with the shortest decimals that read back to the same
 /// doubles.
 class motion_file {

@@ -134,4 +134,10 @@ void output_file::commit() {
     state_->file.reset();
 }
 
+void write_file(const std::filesystem::path& file, const std::string& text) {
+    output_file out(file);
+    out.write(text);
+    out.commit();
+}
+
 }  // namespace aabblab

@@ -33,17 +33,16 @@ std::string spaced(std::string_view name) {
     return text;
 }
 
-std::string cell(double value, number_style style) {
-    if (style == number_style::plain) return fmt::format("{:.3f}", value);
+std::string count_text(double value) {
     return value != 0 && value < 100 ? fmt::format("{:.1f}", value)
-                                     : number_text(static_cast<std::uint64_t>(std::llround(value)), style);
+                                     : number_text(static_cast<std::uint64_t>(std::llround(value)));
 }
 
 }  // namespace
 
-table counts_table_of(const scene_summary& scene, number_style style) {
+table counts_table_of(const scene_summary& scene) {
     constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
-    table t{name_columns_of(scene), {}};
+    table t{name_columns_of(scene.differing), {}};
     std::vector<std::size_t> works;
     std::vector<std::size_t> parts;
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
@@ -57,7 +56,7 @@ table counts_table_of(const scene_summary& scene, number_style style) {
         if (byte_columns[i] == "triangles" || byte_columns[i] == "vertices") continue;
         if (!is_used(scene, &summary_line::bytes_by_part, i)) continue;
         parts.push_back(i);
-        t.columns.push_back({(style == number_style::plain ? "bytes " : "KiB ") + spaced(byte_columns[i])});
+        t.columns.push_back({"KiB " + spaced(byte_columns[i])});
     }
     if (works.empty() && parts.empty()) return {};
     const bool trees =
@@ -66,21 +65,17 @@ table counts_table_of(const scene_summary& scene, number_style style) {
         std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
     if (trees) t.columns.push_back({"tree bytes a triangle"});
     if (inflated) t.columns.push_back({"box inflation %"});
-    const double counted_frames = scene.frames > 1 ? static_cast<double>(scene.frames - 1) : 1;
-    for (const summary_line& line : scene.lines) {
-        if (!line.name.engine.empty()) continue;
-        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene, line));
+    for (const summary_line* line : ranking_of(scene)) {
+        if (!line->name.engine.empty()) continue;
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, line->name));
         for (const std::size_t i : works) {
-            const double each = static_cast<double>(line.counts[i].value_or(0)) / counted_frames;
-            cells.push_back(cell(each, style));
+            const double each = line->counts[i].value_or(0);
+            cells.push_back(count_text(each));
             if (i == copies) cells.push_back(fmt::format("{:.3f}", each / static_cast<double>(scene.objects)));
         }
-        for (const std::size_t i : parts) {
-            const auto bytes = static_cast<double>(line.bytes_by_part[i].value_or(0));
-            cells.push_back(style == number_style::plain ? fmt::format("{:.0f}", bytes) : cell(bytes / 1024, style));
-        }
-        if (trees) cells.push_back(line.bytes_a_triangle ? fmt::format("{:.2f}", *line.bytes_a_triangle) : "-");
-        if (inflated) cells.push_back(line.box_inflation ? fmt::format("{:.3f}", 100 * *line.box_inflation) : "-");
+        for (const std::size_t i : parts) cells.push_back(kib_text(line->bytes_by_part[i].value_or(0)));
+        if (trees) cells.push_back(text_or_dash(line->bytes_a_triangle, 2));
+        if (inflated) cells.push_back(line->box_inflation ? fmt::format("{:.3f}", 100 * *line->box_inflation) : "-");
     }
     return t;
 }

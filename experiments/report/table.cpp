@@ -14,12 +14,6 @@ namespace aabblab {
 
 namespace {
 
-/// Characters, not bytes.
-std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 std::vector<std::string> header_of(const table& t) {
     std::vector<std::string> names;
     for (const column& c : t.columns) names.push_back(c.name);
@@ -40,17 +34,22 @@ std::string escaped(std::string_view text, const std::vector<std::pair<char, std
 
 }  // namespace
 
+std::size_t text_width(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 std::string to_text(const table& t) {
     std::vector<std::size_t> widths;
     for (std::size_t k = 0; k < t.columns.size(); ++k) {
-        widths.push_back(width_of(t.columns[k].name));
-        for (const auto& cells : t.rows) widths[k] = std::max(widths[k], width_of(cells[k]));
+        widths.push_back(text_width(t.columns[k].name));
+        for (const auto& cells : t.rows) widths[k] = std::max(widths[k], text_width(cells[k]));
     }
     std::string text;
     const auto add = [&](const std::vector<std::string>& cells) {
         std::string line;
         for (std::size_t k = 0; k < cells.size(); ++k) {
-            const std::string space(widths[k] - width_of(cells[k]), ' ');
+            const std::string space(widths[k] - text_width(cells[k]), ' ');
             line += (k ? "  " : "") + (t.columns[k].is_number ? space + cells[k] : cells[k] + space);
         }
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";

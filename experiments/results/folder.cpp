@@ -33,12 +33,6 @@ void drop_torn_row(const std::filesystem::path& file) {
     if (complete != text.size()) std::filesystem::resize_file(file, complete);
 }
 
-void replace_file(const std::filesystem::path& file, const std::string& text) {
-    output_file out(file);
-    out.write(text);
-    out.commit();
-}
-
 std::string scene_key(const scene_choice& scene) {
     return scene.kind + " " + parameters_text(scene);
 }
@@ -76,7 +70,7 @@ results_folder::results_folder(std::filesystem::path folder, const experiment& e
     }
     write_manifest();
     if (!std::filesystem::exists(table) || std::filesystem::file_size(table) == 0)
-        replace_file(table, csv_header_of_rows());
+        write_file(table, csv_header_of_rows());
     open_table();
 }
 
@@ -102,7 +96,7 @@ void results_folder::drop_where(const std::function<bool(const row&)>& dropped) 
         keys_.insert(r.key());
         text += csv_of(r);
     }
-    replace_file(folder_ / "results.csv", text);
+    write_file(folder_ / "results.csv", text);
     open_table();
 }
 
@@ -130,7 +124,7 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
                std::ranges::find(of, d.name) != of.end();
     });
     differences_.insert(differences_.end(), found.begin(), found.end());
-    replace_file(folder_ / "differences.csv", csv_of(differences_));
+    write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
 void results_folder::open_table() {
@@ -144,7 +138,7 @@ void results_folder::fail_table() const {
 }
 
 void results_folder::write_manifest() const {
-    replace_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_));
+    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_));
 }
 
 }  // namespace aabblab

@@ -67,6 +67,10 @@ struct row {
     [[nodiscard]] std::string key() const;
 };
 
+/// The parameters of a scene as a row has them end in its seed: what stands before it, and the seed itself.
+[[nodiscard]] std::string without_seed(const std::string& scene_parameters);
+[[nodiscard]] std::string seed_of(const std::string& scene_parameters);
+
 /// Rows of a results.csv. A last one that was cut off in the middle of being written is left out.
 /// @throws aabb::input_error with file and line where it is not a results.csv, or two rows are of the same measurement.
 [[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file);

@@ -159,6 +159,15 @@ std::string row::key() const {
     return csv_line(fields);
 }
 
+std::string without_seed(const std::string& scene_parameters) {
+    const std::size_t seed = scene_parameters.rfind("seed=");
+    return scene_parameters.substr(0, seed == std::string::npos || seed == 0 ? seed : seed - 1);
+}
+std::string seed_of(const std::string& scene_parameters) {
+    const std::size_t seed = scene_parameters.rfind("seed=");
+    return seed == std::string::npos ? "" : scene_parameters.substr(seed + 5);
+}
+
 std::string csv_header_of_rows() {
     return header_of<row>(columns_of_row);
 }

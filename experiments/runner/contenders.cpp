@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,10 +70,11 @@ bool has_meshes(const scene_choice& scene) {
 std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
     std::vector<contender> all;
+    std::set<contender_name> names;
     for (const composition& c : e.compositions) {
         contender who = contender_of(c, meshes);
         // In a scene of boxes, compositions that differ in local detection only are one.
-        if (std::ranges::find(all, who.name, &contender::name) == all.end()) all.push_back(std::move(who));
+        if (names.insert(who.name).second) all.push_back(std::move(who));
     }
     for (const std::string& name : e.engines) {
         const auto engine = std::ranges::find(aabb::engines(), name, &aabb::engine_info::name);

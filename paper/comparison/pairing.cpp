@@ -15,17 +15,6 @@ namespace aabblab {
 
 namespace {
 
-std::string without_seed(const std::string& parameters) {
-    std::string rest;
-    for (std::size_t at = 0; at < parameters.size();) {
-        const std::size_t end = std::min(parameters.find(' ', at), parameters.size());
-        if (const std::string one = parameters.substr(at, end - at); !one.starts_with("seed="))
-            rest += (rest.empty() ? "" : " ") + one;
-        at = end + 1;
-    }
-    return rest;
-}
-
 template <class T>
 void add_once(std::vector<T>& to, const T& value) {
     if (std::ranges::find(to, value) == to.end()) to.push_back(value);

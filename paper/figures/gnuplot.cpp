@@ -104,15 +104,7 @@ void remove_date(const std::filesystem::path& pdf) {
     const std::size_t end = bytes.find(')', begin);
     if (begin == std::string::npos || end == std::string::npos) return;
     bytes.replace(begin, end + 1 - begin, end + 1 - begin, ' ');
-    output_file out(pdf);
-    out.write(bytes);
-    out.commit();
-}
-
-void write_file(const std::filesystem::path& file, const std::string& text) {
-    output_file out(file);
-    out.write(text);
-    out.commit();
+    write_file(pdf, bytes);
 }
 
 /// It has written both pictures when this returns.

@@ -64,18 +64,12 @@ figure verdict_figure(const reproduction& all) {
 }
 
 void write_table(const std::filesystem::path& folder, const named_table& t) {
-    write_text(folder / (t.name + ".csv"), to_csv(t.content));
-    write_text(folder / (t.name + ".md"), to_markdown(t.content));
-    write_text(folder / (t.name + ".tex"), paper_table(t.content));
+    write_file(folder / (t.name + ".csv"), to_csv(t.content));
+    write_file(folder / (t.name + ".md"), to_markdown(t.content));
+    write_file(folder / (t.name + ".tex"), paper_table(t.content));
 }
 
 }  // namespace
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    output_file out(file);
-    out.write(text);
-    out.commit();
-}
 
 std::string text_of_file(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -141,11 +135,11 @@ void write_reproduction(const std::filesystem::path& folder, const reproduction&
     }
     for (const named_table& t : tables) write_table(folder / "tables", t);
     draw(folder / "figures", figures);
-    write_text(folder / "verdicts.csv", to_csv(verdict_table(all)));
-    write_text(folder / "endpoints.csv", to_csv(endpoints_of(all)));
-    write_text(folder / "macros.tex", macros_of(all, made, failures));
-    write_text(folder / "report.md", markdown_of(all, made, failures));
-    write_text(folder / "report.html", html_of(folder, all, made, failures));
+    write_file(folder / "verdicts.csv", to_csv(verdict_table(all)));
+    write_file(folder / "endpoints.csv", to_csv(endpoints_of(all)));
+    write_file(folder / "macros.tex", macros_of(all, made, failures));
+    write_file(folder / "report.md", markdown_of(all, made, failures));
+    write_file(folder / "report.html", html_of(folder, all, made, failures));
 }
 
 }  // namespace aabblab

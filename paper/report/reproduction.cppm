@@ -66,7 +66,6 @@ inline constexpr std::array<std::string_view, 2> rule_text = {
     "Where none favours it, the claim does not hold or makes no difference, as the primary endpoint says. Times are "
     "compared within a table only, never between runs or machines."};
 
-void write_text(const std::filesystem::path& file, const std::string& text);
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
 
 [[nodiscard]] std::string html_of(const std::filesystem::path& folder, const reproduction& all, const provenance& made,

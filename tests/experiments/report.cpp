@@ -1,8 +1,16 @@
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <sstream>
 #include <string>
 #include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
 
 import aabb;
 import aabblab.report;
@@ -16,7 +24,7 @@ row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
     row r;
     r.experiment = "test";
     r.scene = "brownian";
-    r.scene_parameters = "objects=10, \"quoted\"";
+    r.scene_parameters = "objects=10 seed=1";
     r.objects = 10;
     r.frames = 3;
     r.name.sort = sort;
@@ -33,6 +41,27 @@ row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
     return r;
 }
 
+row of_seed(row r, const std::string& seed) {
+    r.scene_parameters = "objects=10 seed=" + seed;
+    return r;
+}
+
+bool has_lines_of(const std::string& text, std::size_t width) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (line.size() > width) return false;
+    return true;
+}
+
+std::vector<std::string> column_of(const aabblab::table& t, const std::string& name) {
+    const auto place = std::ranges::find(t.columns, name, &aabblab::column::name) - t.columns.begin();
+    std::vector<std::string> cells;
+    for (const auto& all : t.rows) cells.push_back(all.at(static_cast<std::size_t>(place)));
+    return cells;
+}
+
+using texts = std::vector<std::string>;
+
 }  // namespace
 
 TEST_CASE("Ratios are taken within a repeat") {
@@ -44,9 +73,56 @@ TEST_CASE("Ratios are taken within a repeat") {
         rows.push_back(repeat_of("insertion", repeat, 2 * slow));
     }
     const aabblab::summary_line line = aabblab::summarise(rows)[0].lines[1];
-    REQUIRE(line.ratio.value_or(0) == 2);
-    REQUIRE(line.ratio_interval->low == 2);
-    REQUIRE(line.ratio_interval->high == 2);
+    CHECK(std::abs(line.ratio.value_or(0) - 2) < 1e-12);
+    CHECK(std::abs(line.ratio_interval->low - 2) < 1e-12);
+    CHECK(std::abs(line.ratio_interval->high - 2) < 1e-12);
+    CHECK(line.repeats == 7);
+    // Of one repeat nobody can tell how far it is off.
+    CHECK_FALSE(aabblab::summarise(std::span(rows).first(2))[0].lines[1].ratio_interval.has_value());
+}
+
+TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean of theirs") {
+    std::vector<row> rows;
+    for (std::uint64_t repeat = 0; repeat < 3; ++repeat)
+        for (const auto& [seed, slower] : {std::pair("1", 2.0), std::pair("20", 8.0)}) {
+            rows.push_back(of_seed(repeat_of("std", repeat, 1), seed));
+            rows.push_back(of_seed(repeat_of("insertion", repeat, slower), seed));
+            rows.back().contacts = 5;
+        }
+    rows.back().status = "inexact";
+    rows.back().missing = 2;
+    rows.back().invented = 0;
+    const auto scenes = aabblab::summarise(rows);
+    REQUIRE(scenes.size() == 1);
+    CHECK(scenes[0].parameters == "objects=10");
+    CHECK(scenes[0].seeds == texts{"1", "20"});
+    CHECK(scenes[0].digest.empty());
+    const aabblab::summary_line& line = scenes[0].lines[1];
+    CHECK(std::abs(line.ratio.value_or(0) - 4) < 1e-12);
+    // Two seeds that disagree leave the ratio open.
+    CHECK(line.ratio_interval->low < 2);
+    CHECK(line.ratio_interval->high > 8);
+    CHECK(line.pairs == 2 * 1234567);
+    CHECK(line.contacts == 10);
+    CHECK(line.repeats == 6);
+    CHECK(line.ms_a_frame->median == 2.5);
+}
+
+TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds miss and invent") {
+    row first = of_seed(repeat_of("std", 0, 1), "1");
+    row second = of_seed(repeat_of("std", 0, 1), "2");
+    for (row* r : {&first, &second}) {
+        r->status = "inexact";
+        r->missing = 2;
+        r->invented = 1;
+    }
+    second.status = "exact";
+    second.missing = second.invented = 0;
+    for (const auto& rows : {std::vector<row>{first, second}, std::vector<row>{second, first}}) {
+        const auto scene = aabblab::summarise(rows)[0];
+        CHECK(scene.lines[0].status == "inexact");
+        CHECK(column_of(aabblab::table_of(scene), "answer") == texts{"-2 +1"});
+    }
 }
 
 TEST_CASE("The table of counts has what was counted, a frame, and copies an object") {
@@ -54,48 +130,142 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     counted.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 300;
     counted.counts[static_cast<std::size_t>(aabb::work::subset_copies)] = 45;
     counted.bytes[0] = 2048;
+    row again = of_seed(counted, "2");
+    again.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 100;
+    again.bytes[0] = 4096;
     row engine = repeat_of("", 0, 1);
     engine.name = {};
     engine.name.engine = "cgal";
-    const auto scene = aabblab::summarise(std::vector<row>{counted, engine})[0];
-    REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene, aabblab::number_style::plain)) ==
-            "composition,comparisons,subset copies,copies an object,bytes projections\n"
-            "this composition,150.000,22.500,2.250,2048\n");
-    REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0], aabblab::number_style::plain)
-                .columns.empty());
+    const auto scene = aabblab::summarise(std::vector<row>{counted, engine, again})[0];
+    REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene)) ==
+            "composition,comparisons,subset copies,copies an object,KiB projections\n"
+            "this composition,100,22.5,2.250,4.0\n");
+    REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0]).columns.empty());
 }
 
+TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those without times") {
+    std::vector<row> rows;
+    for (const auto& [sort, ms] :
+         {std::pair("slow", 10.0), std::pair("wrong", 1.0), std::pair("untimed", 3.0), std::pair("fast", 2.0)})
+        rows.push_back(repeat_of(sort, 0, ms));
+    rows[1].status = "inexact";
+    rows[1].missing = 3;
+    rows[1].invented = 5;
+    rows[2].first_ms = std::nullopt;
+    const auto scene = aabblab::summarise(rows)[0];
+    const auto t = aabblab::table_of(scene);
+    CHECK(column_of(t, "sort") == texts{"fast", "slow", "wrong", "untimed"});
+    CHECK(column_of(t, "ratio") == texts{"0.20", "1.00", "0.10", "-"});
+    CHECK(column_of(t, "answer") == texts{"exact", "exact", "-3 +5", "exact"});
+    CHECK(aabblab::heading_of(scene).find("fastest first; ratio to slow\n") != std::string::npos);
+    CHECK(aabblab::heading_of(scene).find("all lines: 1,234,567 pairs\n") != std::string::npos);
+    CHECK(std::ranges::find(t.columns, "pairs", &aabblab::column::name) == t.columns.end());
+}
 
-TEST_CASE("A summary has medians per frame after frame 0, ratios to the first line, and names what differs") {
-    const std::vector<row> rows{repeat_of("std", 0, 2), repeat_of("insertion", 0, 8), repeat_of("std", 1, 4),
-                                repeat_of("insertion", 1, 16)};
+TEST_CASE("The table over all scenes has the geometric mean of ratios, their range and who wins") {
+    std::vector<row> rows;
+    for (const auto& [scene, ms] : {std::pair("a", 0.5), std::pair("b", 8.0)})
+        for (const auto& [sort, time] : {std::pair("std", 1.0), std::pair("insertion", ms)}) {
+            rows.push_back(repeat_of(sort, 0, time));
+            rows.back().scene = scene;
+        }
+    row engine = repeat_of("", 0, 4);
+    engine.name = {};
+    engine.name.engine = "cgal";
+    engine.scene = "a";
+    rows.push_back(engine);
     const auto scenes = aabblab::summarise(rows);
-    REQUIRE(scenes.size() == 1);
-    REQUIRE(scenes[0].common == "sweep one_axis");
-    REQUIRE(scenes[0].lines.size() == 2);
-    REQUIRE(scenes[0].lines[0].label == "std");
-    REQUIRE(scenes[0].lines[0].ms_a_frame->median == 1.5);
-    REQUIRE(scenes[0].lines[1].ratio.value_or(0) == 4.0);
-    const auto shown = aabblab::table_of(scenes[0], aabblab::number_style::grouped);
-    REQUIRE(aabblab::to_text(shown).find("1,234,567") != std::string::npos);
-    REQUIRE(aabblab::to_csv(aabblab::table_of(scenes[0], aabblab::number_style::plain)).find("1234567") !=
-            std::string::npos);
+    CHECK(aabblab::to_csv(aabblab::overall_table_of(scenes)) ==
+          "sort,ratio,least,greatest,scenes,fastest in\n"
+          "std,1.00,1.00,1.00,2,1\n"
+          "insertion,2.00,0.50,8.00,2,1\n"
+          "cgal,4.00,4.00,4.00,1,0\n");
+}
+
+TEST_CASE("Tables are written for programs too") {
     REQUIRE(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}).find("a\\_b \\\\\n\\hline\n50\\% \\\\") !=
             std::string::npos);
     REQUIRE(aabblab::to_html({{{"a", false}}, {{"<x>"}}}).find("<td>&lt;x&gt;</td>") != std::string::npos);
 }
 
-TEST_CASE("Tables fit a terminal of 120 columns and line up") {
-    std::vector<row> rows;
-    for (const char* sort : {"insertion", "std"}) {
-        row r = repeat_of(sort, 0, 12345);
-        r.name.partition = sort == std::string("std") ? "none" : "uniform_grid";
-        r.name.tree = sort == std::string("std") ? "canonical" : "leafless";
-        r.contacts = 123456;
-        r.bytes[0] = 12345678;
-        rows.push_back(r);
+TEST_CASE("A table fits the width it is given: spare columns go, then names, then it is shared among blocks") {
+    const aabblab::table t{{{"sort", false}, {"tree", false}, {"ms"}, {"spare", true, 1}, {"first", true, 2}},
+                           {{"insertion", "canonical", "1", "2", "3"}, {"std", "compressed:build=sah", "4", "5", "6"}}};
+    const std::string whole = aabblab::to_text(t);
+    CHECK(aabblab::to_text(t, 80) == whole);
+    CHECK(aabblab::to_text(t, 45) ==
+          "sort       tree                  ms  spare\n"
+          "insertion  canonical              1      2\n"
+          "std        compressed:build=sah   4      5\n"
+          "left out, for want of room: first\n");
+    CHECK(aabblab::to_text(t, 30) ==
+          "#  ms\n"
+          "1   1\n"
+          "2   4\n"
+          "\n"
+          "1  insertion + canonical\n"
+          "2  std +\n"
+          "   compressed:build=sah\n"
+          "left out, for want of room: first, spare\n");
+    aabblab::table wide{{{"sort", false}}, {{"insertion"}, {"std"}}};
+    for (int k = 0; k < 5; ++k) {
+        wide.columns.push_back({"column " + std::to_string(k)});
+        for (auto& cells : wide.rows) cells.push_back(std::to_string(k));
     }
-    const std::string text =
-        aabblab::to_text(aabblab::table_of(aabblab::summarise(rows)[0], aabblab::number_style::grouped));
-    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) REQUIRE(text.find('\n', at) - at <= 120);
+    CHECK(aabblab::to_text(wide, 40) ==
+          "sort       column 0  column 1  column 2\n"
+          "insertion         0         1         2\n"
+          "std               0         1         2\n"
+          "\n"
+          "sort       column 3  column 4\n"
+          "insertion         3         4\n"
+          "std               3         4\n");
+}
+
+TEST_CASE("run fits its tables to the terminal, prints work on request, and leaves a summary.csv of all lines") {
+    const temporary_folder folder;
+    const std::string config = folder
+                                   .write("a.toml",
+                                          "name = \"a\"\nseed = [1, 2]\nengines = [\"cgal\"]\n[[scene]]\n"
+                                          "kind = [\"brownian\", \"still\"]\nobjects = 50\nframes = 2\n[compose]\n"
+                                          "sort = [\"insertion\", \"shell:gaps=ciura\"]\n"
+                                          "partition = [\"none\", \"axial_cut:axes=3,segments=30,limit=off\"]\n"
+                                          "[measure]\nrepeats = 2\n")
+                                   .string();
+    const program_result narrow = run_program({"run", config, "--out", (folder / "a").string()});
+    REQUIRE(narrow.status == 0);
+    const std::string tables = narrow.out.substr(0, narrow.out.find("Every repeat"));
+    CHECK(has_lines_of(tables, 80));
+    CHECK(tables.find("box tests") == std::string::npos);
+    CHECK(tables.find("pooled over 2 seeds") != std::string::npos);
+    CHECK(tables.find("all 2 scenes: ") != std::string::npos);
+
+    const program_result counted = run_program({"run", config, "--counts", "--out", (folder / "b").string()});
+    REQUIRE(counted.status == 0);
+    CHECK(counted.out.find("box tests") != std::string::npos);
+    CHECK(has_lines_of(counted.out.substr(0, counted.out.find("Every repeat")), 80));
+
+    const auto summary = aabblab::read_csv(bytes_of_file(folder / "a/summary.csv"), "summary.csv").records;
+    REQUIRE(summary.size() == 1 + 2 * (4 + 1));
+    const auto field = [&](std::size_t line, const std::string& name) {
+        const auto& names = summary[0].fields;
+        return summary[line].fields.at(static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()));
+    };
+    double slowest = 0;
+    for (std::size_t line = 1; line < summary.size(); ++line) {
+        const std::size_t rank = (line - 1) % 5 + 1;
+        CHECK(field(line, "rank") == std::to_string(rank));
+        CHECK(field(line, "seeds") == "1 2");
+        CHECK(field(line, "scene") == (line <= 5 ? "brownian" : "still"));
+        CHECK(field(line, "repeats") == "4");
+        CHECK(field(line, "status") == "exact");
+        if (rank == 1) slowest = 0;
+        CHECK(std::stod(field(line, "ratio")) >= slowest);
+        slowest = std::stod(field(line, "ratio"));
+    }
+    // A refused run leaves it, and one that goes on makes it anew.
+    REQUIRE(run_program({"run", config, "--out", (folder / "a").string()}).status == 2);
+    const std::string before = bytes_of_file(folder / "a/summary.csv");
+    REQUIRE(run_program({"run", config, "--resume", "--out", (folder / "a").string()}).status == 0);
+    CHECK(bytes_of_file(folder / "a/summary.csv") == before);
 }

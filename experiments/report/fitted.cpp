@@ -1,0 +1,124 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.report;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::size_t gap = 2;  // between columns
+
+/// The columns before the first number: they name a row.
+std::size_t name_count(const table& t) {
+    return static_cast<std::size_t>(std::ranges::find(t.columns, true, &column::is_number) - t.columns.begin());
+}
+
+std::size_t width_of(const table& t, std::size_t k) {
+    std::size_t width = text_width(t.columns[k].name);
+    for (const auto& cells : t.rows) width = std::max(width, text_width(cells[k]));
+    return width;
+}
+
+/// Of columns from `begin` to before `end`, with a gap after each but the last.
+std::size_t width_of(const table& t, std::size_t begin, std::size_t end) {
+    std::size_t width = 0;
+    for (std::size_t k = begin; k < end; ++k) width += width_of(t, k) + (k > begin ? gap : 0);
+    return width;
+}
+
+bool fits(const table& t, std::size_t width) {
+    return width_of(t, 0, t.columns.size()) <= width;
+}
+
+void remove_column(table& t, std::size_t k) {
+    t.columns.erase(t.columns.begin() + static_cast<std::ptrdiff_t>(k));
+    for (auto& cells : t.rows) cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+/// Removes spare columns until the table fits, as far as there are any, and says which.
+std::string leave_out(table& t, std::size_t width) {
+    std::string names;
+    while (!fits(t, width)) {
+        const auto spare = std::ranges::max_element(t.columns, {}, &column::spare);
+        if (spare == t.columns.end() || spare->spare == 0) break;
+        names += (names.empty() ? "" : ", ") + spare->name;
+        remove_column(t, static_cast<std::size_t>(spare - t.columns.begin()));
+    }
+    return names.empty() ? "" : "left out, for want of room: " + names + "\n";
+}
+
+/// "a + b + c" after a number, in lines of at most `width` characters where a part is not longer.
+std::string legend_of(const std::string& number, const std::vector<std::string>& parts, std::size_t width) {
+    std::string text;
+    std::string line = number + std::string(gap, ' ');
+    const std::string indent(line.size(), ' ');
+    bool first = true;
+    for (const std::string& part : parts) {
+        if (part.empty()) continue;
+        if (!first) line += " +";
+        if (!first && text_width(line) + 1 + text_width(part) > width - gap) {
+            text += std::exchange(line, indent) + "\n";
+            first = true;
+        }
+        line += (first ? "" : " ") + part;
+        first = false;
+    }
+    return text + line + "\n";
+}
+
+/// Puts a number in the place of what names a row, and returns what the numbers stand for.
+std::string number_rows(table& t, std::size_t width) {
+    const auto names = static_cast<std::ptrdiff_t>(name_count(t));
+    std::string legend;
+    std::size_t row = 0;
+    for (auto& cells : t.rows) {
+        std::string number = std::to_string(++row);
+        number.insert(0, std::to_string(t.rows.size()).size() - number.size(), ' ');
+        legend += legend_of(number, {cells.begin(), cells.begin() + names}, width);
+        cells.erase(cells.begin(), cells.begin() + names);
+        cells.insert(cells.begin(), number);
+    }
+    t.columns.erase(t.columns.begin(), t.columns.begin() + names);
+    t.columns.insert(t.columns.begin(), {"#", false});
+    return legend;
+}
+
+/// The names of the rows with columns from `begin` to before `end`.
+table block_of(const table& t, std::size_t names, std::size_t begin, std::size_t end) {
+    const auto pick = [&](const auto& all) {
+        auto some = std::vector(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(names));
+        some.insert(some.end(), all.begin() + static_cast<std::ptrdiff_t>(begin),
+                    all.begin() + static_cast<std::ptrdiff_t>(end));
+        return some;
+    };
+    table block{pick(t.columns), {}};
+    for (const auto& cells : t.rows) block.rows.push_back(pick(cells));
+    return block;
+}
+
+}  // namespace
+
+std::string to_text(table t, std::size_t width) {
+    const std::string left_out = leave_out(t, width);
+    if (fits(t, width)) return to_text(t) + left_out;
+    // Names that leave half of the width stay; longer ones would be repeated in every block.
+    const std::string legend = width_of(t, 0, name_count(t)) > width / 2 ? number_rows(t, width) : "";
+    const std::size_t names = name_count(t);
+    const std::size_t room = width - std::min(width, width_of(t, 0, names) + gap);
+    std::string text;
+    for (std::size_t begin = names; begin < t.columns.size();) {
+        std::size_t end = begin + 1;
+        while (end < t.columns.size() && width_of(t, begin, end + 1) <= room) ++end;
+        text += (text.empty() ? "" : "\n") + to_text(block_of(t, names, begin, end));
+        begin = end;
+    }
+    return text + (legend.empty() ? "" : "\n") + legend + left_out;
+}
+
+}  // namespace aabblab
