@@ -1,8 +1,14 @@
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
 #include <cctype>
+#include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -421,6 +427,31 @@ TEST_CASE("What gnuplot says last is why it failed, and half a picture is none")
     REQUIRE(folder.files() == 2);
     write_gnuplot(programs, "kill -9 $$\n");
     REQUIRE_THROWS_WITH(aabblab::draw(folder.path(), {&f, 1}), EndsWith("gnuplot was ended by signal 9"));
+}
+
+TEST_CASE("gnuplot ends with whoever draws, however that ends") {
+    const int signal = GENERATE(SIGKILL, SIGTERM, SIGINT);
+    const temporary_folder folder;
+    const temporary_folder programs;
+    // It takes the place of the shell, so that there is one process.
+    write_gnuplot(programs, "echo $$ >pid.part && mv pid.part pid && exec sleep 20\n");
+    const environment path("PATH", programs.path().string() + ":" + std::getenv("PATH"));
+    const figure f = every_style();
+    REQUIRE(prctl(PR_SET_CHILD_SUBREAPER, 1) == 0);  // what it leaves behind becomes ours
+    const pid_t drawing = fork();
+    if (drawing == 0) {
+        std::signal(signal, SIG_DFL);
+        aabblab::draw(folder.path(), {&f, 1});
+        _exit(0);
+    }
+    while (!std::filesystem::exists(folder / "pid") && waitpid(drawing, nullptr, WNOHANG) == 0) usleep(1000);
+    REQUIRE(kill(drawing, signal) == 0);
+    REQUIRE(waitpid(drawing, nullptr, 0) == drawing);
+    int status = 0;
+    const pid_t gnuplot = std::stoi(bytes_of_file(folder / "pid"));
+    REQUIRE(waitpid(gnuplot, &status, 0) == gnuplot);
+    REQUIRE(prctl(PR_SET_CHILD_SUBREAPER, 0) == 0);
+    REQUIRE(WIFSIGNALED(status));
 }
 
 TEST_CASE("A folder that cannot be made is named") {

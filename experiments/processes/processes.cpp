@@ -1,0 +1,102 @@
+module;
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.processes;
+
+namespace aabblab {
+
+namespace {
+
+/// Both ends are closed in every child, except where they are given to it.
+struct pipe_ends {
+    std::array<int, 2> ends{-1, -1};
+
+    pipe_ends() = default;
+    pipe_ends(const pipe_ends&) = delete;
+    pipe_ends& operator=(const pipe_ends&) = delete;
+    ~pipe_ends() {
+        close_end(0);
+        close_end(1);
+    }
+    [[nodiscard]] bool open() { return pipe2(ends.data(), O_CLOEXEC) == 0; }
+    void close_end(std::size_t which) {
+        if (const int end = std::exchange(ends[which], -1); end >= 0) close(end);
+    }
+};
+
+/// Puts an open file in the place of one that the program begins with; no name leaves that one.
+[[nodiscard]] bool redirect(const char* file, int flags, int place) {
+    if (*file == 0) return true;
+    const int opened = open(file, flags | O_CLOEXEC, 0666);
+    return opened >= 0 && dup2(opened, place) >= 0;
+}
+
+/// Between fork and exec only what a signal handler may call. Returns where the program cannot be started.
+void become(char* const* arguments, const surroundings& where, int output, pid_t parent) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(127);  // it ended before that
+    if (dup2(output, STDOUT_FILENO) < 0 || !redirect(where.input.c_str(), O_RDONLY, STDIN_FILENO) ||
+        !redirect(where.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
+        (!where.folder.empty() && chdir(where.folder.c_str()) != 0))
+        return;
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGPIPE, SIG_DFL);
+    execvp(*arguments, arguments);
+}
+
+std::string read_all(int input) {
+    std::string all;
+    std::array<char, 4096> part{};
+    for (;;) {
+        const ssize_t got = read(input, part.data(), part.size());
+        if (got > 0)
+            all.append(part.data(), static_cast<std::size_t>(got));
+        else if (got == 0 || errno != EINTR)
+            return all;
+    }
+}
+
+}  // namespace
+
+child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
+                       const surroundings& where) {
+    std::vector<std::string> texts{program};
+    texts.insert(texts.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& text : texts) pointers.push_back(text.data());
+    pointers.push_back(nullptr);
+    pipe_ends output;
+    pipe_ends refusal;
+    if (!output.open() || !refusal.open()) return {errno, 0, {}};
+    const pid_t parent = getpid();
+    const pid_t child = fork();
+    if (child < 0) return {errno, 0, {}};
+    if (child == 0) {
+        become(pointers.data(), where, output.ends[1], parent);
+        const int why = errno;
+        _exit(write(refusal.ends[1], &why, sizeof why) < 0 ? 126 : 127);
+    }
+    output.close_end(1);
+    refusal.close_end(1);
+    child_result result{};
+    // Nothing comes where the program was started, which closes the other end.
+    if (const std::string why = read_all(refusal.ends[0]); why.size() == sizeof result.refused)
+        std::memcpy(&result.refused, why.data(), why.size());
+    result.printed = read_all(output.ends[0]);
+    while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
+    return result;
+}
+
+}  // namespace aabblab
