@@ -1,0 +1,20 @@
+# Sourced by the tests of ./aabblab: `checkout` has the script and what it reads, on a system that is made up. PATH has a
+# few tools of this system, and those that a test writes to bin/.
+# shellcheck shell=bash disable=SC2154
+
+unset AABBLAB_PRESET AABBLAB_INSTALL AABBLAB_LINT AABBLAB_DATA
+mkdir checkout bin sources
+cp -r "$root/aabblab" "$root/CMakePresets.json" "$root/cmake" checkout/
+sed -i "s|/etc/os-release|$work/os-release|g; s|/etc/apt/sources.list.d|$work/sources|g" checkout/cmake/setup.bash
+holds 'the system is made up' grep -q "$work/os-release" checkout/cmake/setup.bash
+holds 'so are its package sources' grep -q "$work/sources" checkout/cmake/setup.bash
+for tool in awk bash cat chmod chown cp cut dirname env find flock grep ln mkdir mkfifo mv readlink rm sed sh sleep tail tee touch true uniq wc; do
+    ln -s "$(type -P "$tool")" bin/
+done
+
+# program NAME: a command from what stands on standard input.
+program() {
+    cat >"bin/$1.part"
+    chmod +x "bin/$1.part"
+    mv "bin/$1.part" "bin/$1"
+}
