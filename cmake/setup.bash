@@ -99,7 +99,7 @@ explain_apt() {
 }
 
 run_apt() {
-    logged "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -o DPkg::Lock::Timeout=300 "$@"
+    logged installing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -o DPkg::Lock::Timeout=300 "$@"
 }
 
 # A source that we do not need may be out of reach; but then there is no long wait for the others.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# How ./aabblab builds, with a CMake that is not one: a checkout that was copied or moved.
+# How ./aabblab builds, with a CMake that is not one: a checkout that was copied or moved, what it says where there is no
+# terminal, and what is left when it is killed.
 set -euo pipefail
 
 root=$(readlink -f -- "$(dirname -- "${BASH_SOURCE[0]}")/../..")
@@ -47,5 +48,52 @@ holds 'nothing of the other place is left' test ! -e copy/build/release/stale
 holds 'the other place is as it was' grep -q "echo \"the program of $work/checkout\"" checkout/build/release/aabblab
 mv copy moved
 expect 'a checkout that was moved' 0 "^the program of $work/moved$" moved/aabblab list
+
+# Where there is no terminal. Each of the readers ends when nobody is left who writes: who speaks, and who builds.
+mkfifo said at_work
+start() {
+    touch slow
+    rm -f heard
+    cat said >heard &
+    listener=$!
+    cat at_work &
+    watcher=$!
+    # With a group of its own, because an interrupt is kept from what merely runs in the background.
+    set -m
+    BASH_ENV=$work/quick checkout/aabblab list >out 2>said &
+    script=$!
+    set +m
+    holds 'it says how far it is' appears '^aabblab: building, 1 of 2 after [0-9]+ s$' heard
+}
+# holds_ended WHAT READER
+holds_ended() {
+    for _ in {1..600}; do
+        kill -0 "$2" 2>/dev/null || return 0
+        sleep 0.1
+    done
+    kill "$2"
+    holds "$1" false
+}
+start
+rm slow
+holds 'it ends as ever' wait "$script"
+holds 'with the program' grep -q 'the program of' out
+holds_ended 'it says no more' "$listener"
+
+for signal in TERM INT HUP; do
+    start
+    kill -s "$signal" "$script"
+    status=0
+    wait "$script" || status=$?
+    holds "$signal ends it" test "$status" = 130
+    holds_ended "$signal silences it" "$listener"
+    holds_ended "$signal ends the build" "$watcher"
+done
+
+start
+kill -s KILL "$script"
+holds_ended 'nobody speaks for one that was killed' "$listener"
+rm slow
+holds_ended 'what it began ends' "$watcher"
 
 exit $((failures > 0))

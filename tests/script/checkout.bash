@@ -18,3 +18,17 @@ program() {
     chmod +x "bin/$1.part"
     mv "bin/$1.part" "bin/$1"
 }
+
+# Half a minute is too long for a test.
+cat >quick <<'BASH'
+read() { builtin read "${@/#30/0.1}"; }
+BASH
+
+# appears PATTERN FILE: waits for that line, for a minute at most.
+appears() {
+    for _ in {1..600}; do
+        if grep -qsE -- "$1" "$2"; then return; fi
+        sleep 0.1
+    done
+    return 1
+}
