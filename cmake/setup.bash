@@ -1,22 +1,33 @@
 # Sourced by ./aabblab: what the build needs, and how it gets there. `root` and `build` are folders of the caller.
 # shellcheck shell=bash disable=SC2154
 
-packages=(
-    clang-19 clang-tools-19 libclang-rt-19-dev cmake ninja-build
-    catch2 librapidcheck-dev libbenchmark-dev
-    libcgal-dev libfcl-dev libccd-dev libeigen3-dev libassimp-dev
-    libboost-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
+# What the build needs: Debian's packages, Fedora's (- where there are none), and what shows that it is there on any
+# system, which is a header, a command, or a version that `has` knows about.
+needs=(
+    'clang-19,libclang-rt-19-dev  clang,compiler-rt        clang++ 19 or newer'
+    'clang-tools-19               clang-tools-extra        clang-scan-deps'
+    'cmake                        cmake                    CMake 3.28 or newer'
+    'ninja-build                  ninja-build              ninja'
+    'gnuplot-nox                  gnuplot                  gnuplot'
+    'catch2                       catch-devel              <catch2/catch_test_macros.hpp>'
+    'librapidcheck-dev            -                        <rapidcheck.h>'
+    'libbenchmark-dev             google-benchmark-devel   <benchmark/benchmark.h>'
+    'libcgal-dev                  CGAL-devel               <CGAL/version.h>'
+    'libfcl-dev                   -                        <fcl/config.h>'
+    'libccd-dev                   libccd-devel             <ccd/ccd.h>'
+    'libeigen3-dev                eigen3-devel             <eigen3/Eigen/Core>'
+    'libassimp-dev                assimp-devel             <assimp/scene.h>'
+    'libboost-dev                 boost-devel              <boost/math/distributions/students_t.hpp>'
+    'libtomlplusplus-dev          tomlplusplus-devel       <toml++/toml.h>'
+    'libcli11-dev                 cli11-devel              <CLI/CLI.hpp>'
+    'libfmt-dev                   fmt-devel                <fmt/core.h>'
+    'nlohmann-json3-dev           json-devel               <nlohmann/json.hpp>'
+    'libxxhash-dev                xxhash-devel             <xxhash.h>'
 )
-# Debian's packages of gnuplot exclude each other, and any of them will do.
-command -v gnuplot >/dev/null || packages+=(gnuplot-nox)
-[[ ${AABBLAB_LINT:-0} == 0 ]] || packages+=(clang-format-19 clang-tidy-19)
+[[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=('clang-format-19 - clang-format-19' 'clang-tidy-19 - clang-tidy-19')
 # Debian 12 has versions this new in its backports only.
 declare -A least=([cmake]=3.28 [catch2]=3.0)
-# What shows that a library is there on a system without dpkg.
-headers=(
-    catch2/catch_test_macros.hpp rapidcheck.h benchmark/benchmark.h CGAL/version.h fcl/config.h ccd/ccd.h
-    boost/math/distributions/students_t.hpp eigen3/Eigen/Core assimp/scene.h toml++/toml.h CLI/CLI.hpp fmt/core.h nlohmann/json.hpp xxhash.h
-)
+backports_file=/etc/apt/sources.list.d/aabblab-backports.sources
 
 # at_least HAVE WANT: compares the first two numbers of two versions; no version is not enough.
 at_least() {
@@ -28,31 +39,50 @@ at_least() {
 
 # What `paper` needs beside pdflatex: the packages that bring it, and the files that show it is there on any system.
 tex_packages=(texlive-latex-base texlive-latex-recommended lmodern)
+tex_rpms=(texlive-collection-latexrecommended texlive-lm)
 tex_files=(
     article.cls amsmath.sty array.sty booktabs.sty caption.sty fontenc.sty geometry.sty graphicx.sty hyperref.sty
     lmodern.sty longtable.sty microtype.sty textcomp.sty lmr10.pfb
 )
 
-# ---- Set-up on Debian 12 and 13 --------------------------------------------------------------------------------------
-
-# Sets `codename` and succeeds on a Debian that we install on.
-on_debian() {
-    local ID='' VERSION_ID='' VERSION_CODENAME=''
+# Sets `system` to debian, where packages are installed, to apt or dnf, for which there is a line to tell, or to nothing;
+# and `codename`, of a Debian only.
+know_system() {
+    local ID='' ID_LIKE='' VERSION_ID='' VERSION_CODENAME='' name
     # shellcheck source=/dev/null
     [[ ! -r /etc/os-release ]] || . /etc/os-release
-    codename=$VERSION_CODENAME
-    [[ $ID == debian && $VERSION_ID == 1[23] ]]
+    codename='' system=''
+    [[ $ID != debian ]] || codename=$VERSION_CODENAME
+    for name in $ID $ID_LIKE; do
+        case $name in
+        debian | ubuntu) system=apt ;;
+        fedora) system=dnf ;;
+        rhel | centos) ;; # like Fedora, but without most of the libraries
+        *) continue ;;
+        esac
+        break
+    done
+    [[ $ID != debian || $VERSION_ID != 1[23] ]] || system=debian
 }
 
-# Sets `missing` to the packages that are not installed or too old.
+# listed NAME…: with commas.
+listed() {
+    local names
+    printf -v names ', %s' "$@"
+    printf '%s' "${names:2}"
+}
+
+# ---- Set-up on Debian 12 and 13 --------------------------------------------------------------------------------------
+
+# find_missing_packages PACKAGE…: sets `missing` to those that are not installed or too old.
 find_missing_packages() {
     local name version status
     local -A installed=()
     while read -r name version status; do
         [[ $status != installed ]] || installed[$name]=$version
-    done <<<"$(dpkg-query -W -f '${Package} ${Version} ${db:Status-Status}\n' "${packages[@]}" 2>/dev/null)"
+    done <<<"$(dpkg-query -W -f '${Package} ${Version} ${db:Status-Status}\n' "$@" 2>/dev/null)"
     missing=()
-    for name in "${packages[@]}"; do
+    for name in "$@"; do
         if [[ ! ${installed[$name]:-} ]] || ! at_least "${installed[$name]}" "${least[$name]:-0.0}"; then
             missing+=("$name")
         fi
@@ -70,20 +100,36 @@ signed_by() {
     fi
 }
 
-# Adds Debian's backports at the address from which this machine takes Debian itself, unless they are there.
-add_backports() {
-    local suite=$codename-backports file=/etc/apt/sources.list.d/aabblab-backports.sources release uri entry from='' origin
+# Sets `wanted` to the names by which apt-get installs `missing`, and `backports` to what the package sources lack for
+# that: Debian's backports, at the address from which this machine takes Debian itself.
+name_wanted() {
+    local name suite=$codename-backports release uri entry from='' origin there=''
+    wanted=() backports=''
+    for name in "${missing[@]}"; do
+        if [[ $codename == bookworm && ${least[$name]:-} ]]; then name+=/$suite; fi
+        wanted+=("$name")
+    done
+    [[ ${wanted[*]} == */* ]] || return 0
     # shellcheck disable=SC2016 # apt-get fills these in
-    local fields='$(RELEASE) $(REPO_URI) $(SOURCESENTRY)'
     while read -r release uri entry; do
-        if [[ $release == "$suite" ]]; then return; fi
+        if [[ $release == "$suite" ]]; then there=yes; fi
         if [[ $release == "$codename" ]]; then from=$uri origin=$entry; fi
-    done <<<"$(apt-get indextargets --format "$fields" 'Created-By: Packages' 'Component: main')"
-    [[ $from ]] || explain_apt
-    say "adding $suite to the package sources as $file"
-    { printf 'Types: deb\nURIs: %s\nSuites: %s\nComponents: main\n' "$from" "$suite" && signed_by "$origin"; } |
-        "${as_root[@]}" tee "$file" >/dev/null
-    update_apt
+    done <<<"$(apt-get indextargets --format '$(RELEASE) $(REPO_URI) $(SOURCESENTRY)' 'Created-By: Packages' 'Component: main')"
+    if [[ ! $there && $from ]]; then
+        printf -v backports 'Types: deb\nURIs: %s\nSuites: %s\nComponents: main\n%s' "$from" "$suite" "$(signed_by "$origin")"
+    fi
+}
+
+# The line that installs `missing` with apt-get, for any shell of root's.
+apt_line() {
+    local wanted backports lines words=''
+    name_wanted
+    if [[ $backports ]]; then
+        mapfile -t lines <<<"$backports"
+        printf -v words ' %s' "${lines[@]@Q}"
+        words="printf '%s\\n'$words >$backports_file && "
+    fi
+    printf '%s' "${words}apt-get update && apt-get install -y --no-install-recommends ${wanted[*]}"
 }
 
 # Ends with the reason why apt-get failed.
@@ -99,7 +145,8 @@ explain_apt() {
 }
 
 run_apt() {
-    logged installing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -o DPkg::Lock::Timeout=300 "$@"
+    logged installing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive LC_ALL=C \
+        apt-get -o DPkg::Lock::Timeout=300 "$@"
 }
 
 # A source that we do not need may be out of reach; but then there is no long wait for the others.
@@ -107,58 +154,97 @@ update_apt() {
     run_apt -o APT::Update::Error-Mode=any -o Acquire::Retries=0 update || patience=(-o Acquire::Retries=0)
 }
 
-install_packages() {
-    local as_root=(env) apt_log=$root/build/apt.log patience=() wanted=() newer=() name
+# install_missing PACKAGE…: installs what is missing of these.
+install_missing() {
+    local missing as_root=(env) apt_log=$root/build/apt.log patience=() wanted backports
+    find_missing_packages "$@"
+    ((${#missing[@]} > 0)) || return 0
     if ((EUID != 0)); then
         as_root=(sudo env)
-        { command -v sudo >/dev/null && sudo true; } || fail "root or sudo is needed to install: ${missing[*]}."
+        { command -v sudo >/dev/null && sudo true; } ||
+            fail_lacking 'root or sudo is needed to install what is missing' "${missing[@]}"
     fi
     say "installing with apt-get: ${missing[*]}"
     : >"$apt_log"
     update_apt
-    for name in "${missing[@]}"; do
-        if [[ $codename == bookworm && ${least[$name]:-} ]]; then newer+=("$name/bookworm-backports"); else wanted+=("$name"); fi
-    done
-    ((${#newer[@]} == 0)) || add_backports
-    run_apt "${patience[@]}" install -y --no-install-recommends "${wanted[@]}" "${newer[@]}" || explain_apt
-    find_missing_packages
+    name_wanted
+    if [[ $backports ]]; then
+        say "adding $codename-backports to the package sources as $backports_file"
+        "${as_root[@]}" tee "$backports_file" <<<"$backports" >/dev/null
+        update_apt
+    fi
+    run_apt "${patience[@]}" install -y --no-install-recommends "${wanted[@]}" || explain_apt
+    find_missing_packages "$@"
     ((${#missing[@]} == 0)) || fail "apt-get installed no version new enough of: ${missing[*]}."
 }
 
-# listed NAME…: with commas.
-listed() {
-    local names
-    printf -v names ', %s' "$@"
-    printf '%s' "${names:2}"
+# ---- Where nothing is installed ---------------------------------------------------------------------------------------
+
+# fail_lacking WHY WHAT…: ends with that and, where we know it, the line that installs it: Debian's packages `missing`,
+# Fedora's packages `rpms`. `unpackaged` is what Fedora has no package of.
+fail_lacking() {
+    local line='' what=it sentence
+    sentence="$1: $(listed "${@:2}")"
+    case $system in
+    debian | apt) line=$(apt_line) ;;
+    dnf)
+        ((${#rpms[@]} == 0)) || line="dnf install -y ${rpms[*]}"
+        if ((${#unpackaged[@]} > 0)); then
+            sentence+="; Fedora has no package of $(listed "${unpackaged[@]}")" what='the rest'
+        fi
+        ;;
+    esac
+    [[ $line ]] || fail "$sentence."
+    fail "$sentence; as root, this installs $what:"$'\n'"  $line"
 }
 
-# ---- Other systems ---------------------------------------------------------------------------------------------------
+# has WHAT: is it there? Without any compiler no header can be found, and a package too many does no harm.
+has() {
+    case $1 in
+    clang++*) [[ $compiler ]] ;;
+    clang-scan-deps) command -v "clang-scan-deps${compiler#clang++}" clang-scan-deps >/dev/null ;;
+    CMake*) at_least "$(cmake --version 2>/dev/null | sed -n '1s/[^0-9]*//p')" "${least[cmake]}" ;;
+    \<*) "${compiler:-c++}" -E -x c++ -include "${1:1:-1}" /dev/null >/dev/null 2>&1 ;;
+    *) command -v "$1" >/dev/null ;;
+    esac
+}
 
 # Sets `compiler`, or ends with all that is missing.
 find_tools() {
-    local lacking=() header
+    local lacking=() missing=() rpms=() unpackaged=() debian fedora what need names
     for compiler in clang++-{19..29} clang++ ''; do
         if at_least "$("${compiler:-false}" -dumpversion 2>/dev/null)" 19.0; then break; fi
     done
-    [[ $compiler ]] || lacking+=('clang++ 19 or newer')
-    command -v "clang-scan-deps${compiler#clang++}" clang-scan-deps >/dev/null || lacking+=(clang-scan-deps)
-    at_least "$(cmake --version 2>/dev/null | sed -n '1s/[^0-9]*//p')" 3.28 || lacking+=('CMake 3.28 or newer')
-    command -v ninja >/dev/null || lacking+=(ninja)
-    command -v gnuplot >/dev/null || lacking+=(gnuplot)
-    for header in "${headers[@]}"; do
-        [[ ! $compiler ]] || "$compiler" -E -x c++ -include "$header" /dev/null >/dev/null 2>&1 || lacking+=("<$header>")
+    for need in "${needs[@]}"; do
+        read -r debian fedora what <<<"$need"
+        if has "$what"; then continue; fi
+        lacking+=("$what")
+        IFS=, read -ra names <<<"$debian"
+        missing+=("${names[@]}")
+        IFS=, read -ra names <<<"$fedora"
+        if [[ $fedora == - ]]; then unpackaged+=("$what"); else rpms+=("${names[@]}"); fi
     done
-    ((${#lacking[@]} == 0)) ||
-        fail "packages are installed on Debian 12 and 13 only, and here is missing: $(listed "${lacking[@]}")."
+    ((${#lacking[@]} == 0)) || fail_lacking "packages are installed on Debian 12 and 13 only, and here is missing" "${lacking[@]}"
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
 
+# Debian's packages of what the build needs. Those of gnuplot exclude each other, and any of them will do.
+build_packages() {
+    local debian what need
+    for need in "${needs[@]}"; do
+        read -r debian _ what <<<"$need"
+        if [[ $what != gnuplot ]] || ! has gnuplot; then printf '%s\n' "${debian//,/$'\n'}"; fi
+    done
+}
+
 # Installs what is missing or ends with one sentence. Sets `compiler` where it is not the one of the presets.
 set_up() {
-    if on_debian; then
-        find_missing_packages
-        ((${#missing[@]} == 0)) || install_packages
+    local packages
+    know_system
+    if [[ $system == debian ]]; then
+        mapfile -t packages <<<"$(build_packages)"
+        install_missing "${packages[@]}"
     elif [[ ! -e $build/build.ninja ]]; then
         find_tools
     fi
@@ -178,15 +264,13 @@ find_missing_tex() {
 
 # As set_up, but what `paper` needs, whether or not anything is built.
 set_up_tex() {
-    local lacking packages=("${tex_packages[@]}")
+    local lacking missing=("${tex_packages[@]}") rpms=("${tex_rpms[@]}") unpackaged=()
     find_missing_tex
     ((${#lacking[@]} > 0)) || return 0
-    if on_debian; then
-        find_missing_packages
-        ((${#missing[@]} == 0)) || install_packages
-        find_missing_tex
-        ((${#lacking[@]} > 0)) || return 0
+    know_system
+    [[ $system == debian ]] || fail_lacking "packages are installed on Debian 12 and 13 only, and TeX lacks here" "${lacking[@]}"
+    install_missing "${tex_packages[@]}"
+    find_missing_tex
+    ((${#lacking[@]} == 0)) ||
         fail "${tex_packages[*]} are installed, but TeX does not find $(listed "${lacking[@]}")."
-    fi
-    fail "packages are installed on Debian 12 and 13 only, and TeX lacks here $(listed "${lacking[@]}")."
 }

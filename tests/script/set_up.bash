@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# What ./aabblab says, and installs, where something is missing: on systems that are made up, and never as root.
+set -euo pipefail
+
+root=$(readlink -f -- "$(dirname -- "${BASH_SOURCE[0]}")/../..")
+# shellcheck source=tests/expectations.bash
+. "$root/tests/expectations.bash"
+# shellcheck source=tests/script/checkout.bash
+. "$root/tests/script/checkout.bash"
+
+user=()
+if ((EUID == 0)); then
+    user=("$(command -v setpriv)" --reuid=65534 --regid=65534 --clear-groups)
+    chown -R 65534:65534 "$work"
+fi
+aabblab() { "${user[@]}" "$work/checkout/aabblab" "$@"; }
+# on WHAT: the system is this, and nothing has been installed on it.
+on() {
+    printf '%s\n' "$@" >os-release
+    : >installed
+    : >calls
+    chmod a+w installed calls
+}
+
+# dpkg-query knows what stands in `installed`; apt-get has the newest of everything, and notes what it is called with.
+program dpkg-query <<'SH'
+#!/bin/sh
+while read -r name; do echo "$name 99.0-1 installed"; done <"$WORK/installed"
+SH
+program apt-get <<'SH'
+#!/bin/sh
+echo "$*" >>"$WORK/calls"
+case "$*" in
+indextargets*) cat "$WORK/targets" ;;
+*install*)
+    while [ -e "$WORK/slow" ]; do
+        echo 'Unpacking clang-19 ...'
+        sleep 0.1
+    done
+    for name; do echo "${name%/*}"; done >>"$WORK/installed"
+    ;;
+esac
+SH
+printf '#!/bin/sh\nexec "$@"\n' | program sudo_of_tests
+printf 'Types: deb\nURIs: http://here/debian\nSuites: bookworm\nComponents: main\nSigned-By: /keys/debian\n' >here.sources
+printf 'bookworm http://here/debian %s/here.sources:1\n' "$work" >targets
+export PATH=$work/bin WORK=$work
+
+everything='clang\+\+ 19 or newer, clang-scan-deps, CMake 3.28 or newer, ninja, gnuplot, <catch2/catch_test_macros.hpp>,'
+everything+=' <rapidcheck.h>, <benchmark/benchmark.h>, <CGAL/version.h>, <fcl/config.h>, <ccd/ccd.h>, <eigen3/Eigen/Core>,'
+everything+=' <assimp/scene.h>, <boost/math/distributions/students_t.hpp>, <toml\+\+/toml.h>, <CLI/CLI.hpp>, <fmt/core.h>,'
+everything+=' <nlohmann/json.hpp>, <xxhash.h>'
+tools='clang-19 libclang-rt-19-dev clang-tools-19'
+libraries='librapidcheck-dev libbenchmark-dev libcgal-dev libfcl-dev libccd-dev libeigen3-dev libassimp-dev libboost-dev'
+libraries+=' libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev'
+all="$tools cmake ninja-build gnuplot-nox catch2 $libraries"
+install='apt-get update && apt-get install -y --no-install-recommends'
+
+# ---- Where nothing is ever installed ----
+
+here='aabblab: packages are installed on Debian 12 and 13 only, and here is missing:'
+fedora='clang compiler-rt clang-tools-extra cmake ninja-build gnuplot catch-devel google-benchmark-devel CGAL-devel'
+fedora+=' libccd-devel eigen3-devel assimp-devel boost-devel tomlplusplus-devel cli11-devel fmt-devel json-devel xxhash-devel'
+unpackaged='Fedora has no package of <rapidcheck.h>, <fcl/config.h>'
+on ID=fedora
+expect 'a bare Fedora' 2 "^$here $everything; $unpackaged; as root, this installs the rest:$" aabblab list
+expect 'its line' 2 "^  dnf install -y $fedora$" aabblab list
+on ID=nobara 'ID_LIKE="fedora"'
+expect 'what is like Fedora' 2 "^  dnf install -y $fedora$" aabblab list
+on ID=ubuntu 'ID_LIKE=debian' VERSION_CODENAME=noble
+expect 'a bare Ubuntu' 2 "^$here $everything; as root, this installs it:$" aabblab list
+expect 'its line' 2 "^  $install $all$" aabblab list
+on ID=linuxmint 'ID_LIKE="ubuntu debian"'
+expect 'what is like Ubuntu' 2 "^  $install $all$" aabblab list
+# Of another Debian nobody knows where its backports are.
+on ID=debian VERSION_ID=11 VERSION_CODENAME=bullseye
+expect 'an older Debian' 2 "^  $install $all$" aabblab list
+for other in $'ID=rocky\nID_LIKE="rhel centos fedora"' ID=arch; do
+    on "$other"
+    expect "$other" 2 "^$here $everything\.$" aabblab list
+    holds "$other has no line" test "$(aabblab list 2>&1 | wc -l)" = 1
+done
+
+# A compiler that finds every header but two, and nothing else.
+program clang++-20 <<'SH'
+#!/bin/sh
+case "$*" in
+-dumpversion) echo 20.1.2 ;;
+*rapidcheck.h* | *xxhash.h*) exit 1 ;;
+esac
+SH
+for tool in clang-scan-deps-20 ninja gnuplot; do printf '#!/bin/sh\n' | program "$tool"; done
+printf '#!/bin/sh\necho cmake version 3.27.9\n' | program cmake
+on ID=fedora
+expect 'some is there' 2 "here is missing: CMake 3.28 or newer, <rapidcheck.h>, <xxhash.h>; Fedora has no package of <rapidcheck.h>; " aabblab list
+expect 'the line of the rest' 2 '^  dnf install -y cmake xxhash-devel$' aabblab list
+sed -i 's/ \*xxhash.h\*/ nothing/' bin/clang++-20
+printf '#!/bin/sh\necho cmake version 3.28.3\n' | program cmake
+expect 'nothing that Fedora has is missing' 2 'here is missing: <rapidcheck.h>; Fedora has no package of <rapidcheck.h>\.$' aabblab list
+rm bin/clang++-20 bin/clang-scan-deps-20 bin/ninja bin/gnuplot bin/cmake
+
+# ---- Debian ----
+
+backports="printf '%s\\\\n' 'Types: deb' 'URIs: http://here/debian' 'Suites: bookworm-backports' 'Components: main'"
+backports+=" 'Signed-By: /keys/debian' >$work/sources/aabblab-backports.sources"
+newer="$tools cmake/bookworm-backports ninja-build gnuplot-nox catch2/bookworm-backports $libraries"
+on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
+expect 'neither root nor sudo' 2 \
+    "^aabblab: root or sudo is needed to install what is missing: ${all// /, }; as root, this installs it:$" aabblab list
+expect 'its line' 2 "^  $backports && $install $newer$" aabblab list
+printf 'bookworm-backports http://here/debian %s/here.sources:1\n' "$work" >>targets
+expect 'a Debian that has its backports' 2 "^  $install $newer$" aabblab list
+sed -i '$d' targets
+holds 'nothing is installed' test ! -s installed
+on ID=debian VERSION_ID=13 VERSION_CODENAME=trixie
+expect 'the next Debian' 2 "^  $install $all$" aabblab list
+
+cp bin/sudo_of_tests bin/sudo
+on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
+touch slow
+chmod a+w .
+BASH_ENV=$work/quick aabblab list 2>heard &
+script=$!
+holds 'it says what apt-get does' appears '^aabblab: installing after [0-9]+ s: Unpacking clang-19 \.\.\.$' heard
+rm slow
+wait "$script" || true # there is still nothing to build with
+holds 'the backports are added' grep -qx 'URIs: http://here/debian' sources/aabblab-backports.sources
+holds 'with their key' grep -qx 'Signed-By: /keys/debian' sources/aabblab-backports.sources
+holds 'all is installed' grep -q "install -y --no-install-recommends $newer$" calls
+
+# ---- The paper ----
+
+mkdir -p results
+touch results/macros.tex
+chmod a+w results
+rm bin/sudo
+tex='TeX lacks here: pdflatex'
+on ID=fedora
+expect 'TeX on Fedora' 2 "^aabblab: packages are installed on Debian 12 and 13 only, and $tex; as root, this installs it:$" aabblab paper results
+expect 'its line' 2 '^  dnf install -y texlive-collection-latexrecommended texlive-lm$' aabblab paper results
+on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
+debian_tex='texlive-latex-base texlive-latex-recommended lmodern'
+expect 'TeX without root' 2 "root or sudo is needed to install what is missing: ${debian_tex// /, }; as root" aabblab paper results
+expect 'its line' 2 "^  $install $debian_tex$" aabblab paper results
+holds 'TeX is not installed' test ! -s installed
+
+exit $((failures > 0))
