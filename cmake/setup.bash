@@ -62,7 +62,7 @@ know_system() {
         esac
         break
     done
-    [[ $ID != debian || $VERSION_ID != 1[23] ]] || system=debian
+    [[ $ID != debian || $VERSION_ID != 1[23] || $AABBLAB_INSTALL == no ]] || system=debian
 }
 
 # listed NAME…: with commas.
@@ -198,6 +198,15 @@ fail_lacking() {
     fail "$sentence; as root, this installs $what:"$'\n'"  $line"
 }
 
+# Why nothing is installed.
+no_installing() {
+    if [[ $AABBLAB_INSTALL == no ]]; then
+        printf "AABBLAB_INSTALL is 'no', and"
+    else
+        printf 'packages are installed on Debian 12 and 13 only, and'
+    fi
+}
+
 # has WHAT: is it there? Without any compiler no header can be found, and a package too many does no harm.
 has() {
     case $1 in
@@ -224,7 +233,7 @@ find_tools() {
         IFS=, read -ra names <<<"$fedora"
         if [[ $fedora == - ]]; then unpackaged+=("$what"); else rpms+=("${names[@]}"); fi
     done
-    ((${#lacking[@]} == 0)) || fail_lacking "packages are installed on Debian 12 and 13 only, and here is missing" "${lacking[@]}"
+    ((${#lacking[@]} == 0)) || fail_lacking "$(no_installing) here is missing" "${lacking[@]}"
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
@@ -268,7 +277,7 @@ set_up_tex() {
     find_missing_tex
     ((${#lacking[@]} > 0)) || return 0
     know_system
-    [[ $system == debian ]] || fail_lacking "packages are installed on Debian 12 and 13 only, and TeX lacks here" "${lacking[@]}"
+    [[ $system == debian ]] || fail_lacking "$(no_installing) TeX lacks here" "${lacking[@]}"
     install_missing "${tex_packages[@]}"
     find_missing_tex
     ((${#lacking[@]} == 0)) ||

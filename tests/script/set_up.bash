@@ -14,6 +14,7 @@ if ((EUID == 0)); then
     chown -R 65534:65534 "$work"
 fi
 aabblab() { "${user[@]}" "$work/checkout/aabblab" "$@"; }
+no_installing() { AABBLAB_INSTALL=no aabblab "$@"; }
 # on WHAT: the system is this, and nothing has been installed on it.
 on() {
     printf '%s\n' "$@" >os-release
@@ -117,6 +118,18 @@ expect 'the next Debian' 2 "^  $install $all$" aabblab list
 
 cp bin/sudo_of_tests bin/sudo
 on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
+expect 'nothing shall be installed' 2 \
+    "^aabblab: AABBLAB_INSTALL is 'no', and here is missing: $everything; as root, this installs it:$" no_installing list
+expect 'its line' 2 "^  $backports && $install $newer$" no_installing list
+holds 'apt-get is only asked where Debian comes from' test "$(cut -d ' ' -f 1 calls | uniq)" = indextargets
+line=$(no_installing list 2>&1 | sed -n 's/^  //p') || true
+"${user[@]}" sh -c "$line" # as a user would
+holds 'the line adds the backports' grep -qx 'Suites: bookworm-backports' sources/aabblab-backports.sources
+holds 'and installs' grep -qx "install -y --no-install-recommends $newer" calls
+AABBLAB_INSTALL=maybe expect 'not an answer' 2 "^aabblab: AABBLAB_INSTALL is 'maybe'; it must be yes or no\.$" aabblab list
+
+rm sources/aabblab-backports.sources
+on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
 touch slow
 chmod a+w .
 BASH_ENV=$work/quick aabblab list 2>heard &
@@ -142,6 +155,7 @@ on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
 debian_tex='texlive-latex-base texlive-latex-recommended lmodern'
 expect 'TeX without root' 2 "root or sudo is needed to install what is missing: ${debian_tex// /, }; as root" aabblab paper results
 expect 'its line' 2 "^  $install $debian_tex$" aabblab paper results
+expect 'TeX shall not be installed' 2 "^aabblab: AABBLAB_INSTALL is 'no', and $tex; as root, this installs it:$" no_installing paper results
 holds 'TeX is not installed' test ! -s installed
 
 exit $((failures > 0))
