@@ -1,0 +1,123 @@
+// FORMATS.md says of which numbers a digest is; these tests make each anew from the rows of the files.
+
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+
+namespace {
+
+using rows = std::vector<std::vector<std::uint32_t>>;
+
+/// What a CSV file holds below its column names.
+rows rows_of(const std::string& text) {
+    rows all;
+    std::istringstream lines(text);
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+        std::istringstream numbers(line);
+        std::string number;
+        std::vector<std::uint32_t>& row = all.emplace_back();
+        while (std::getline(numbers, number, ',')) row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
+    }
+    return all;
+}
+
+std::string digest_of(const rows& all) {
+    aabb::digest made;
+    for (const std::vector<std::uint32_t>& row : all) made.add(row);
+    return made.text();
+}
+
+/// The two triangles of rows of `collide`, behind the frame 0 in which they meet.
+rows in_frame_0(const rows& all) {
+    rows made;
+    for (const std::vector<std::uint32_t>& row : all) made.push_back({0, row.at(0), row.at(1)});
+    return made;
+}
+
+/// Runs a command with --json and --out.
+struct outcome {
+    outcome(const temporary_folder& folder, std::vector<std::string> arguments) {
+        const std::string out = folder / "out.csv";
+        const program_result result = run_program(joined(std::move(arguments), {"--json", "--out", out}));
+        INFO(result.err);
+        REQUIRE(result.status == 0);
+        digest = nlohmann::json::parse(result.out)["digest"];
+        written = rows_of(bytes_of_file(out));
+        REQUIRE(written.size() > 3);
+    }
+
+    std::string digest;
+    rows written;
+};
+
+/// What `run` writes into the column `digest`, the same in every row.
+std::string digest_of_run(const temporary_folder& folder, const std::string& scene) {
+    const std::string config = folder.write("digests.toml", "name = \"digests\"\nseed = 7\n[[scene]]\n" + scene +
+                                                                "[measure]\nrepeats = 1\nmetrics = [\"counts\"]\n");
+    const std::string results = folder / "results";
+    const program_result result = run_program({"run", config, "--out", results});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    std::istringstream lines(bytes_of_file(folder / "results" / "results.csv"));
+    std::string names;
+    std::string values;
+    std::getline(lines, names);
+    std::getline(lines, values);
+    const auto fields = [](const std::string& line) {
+        std::vector<std::string> all;
+        std::istringstream parts(line);
+        for (std::string part; std::getline(parts, part, ',');) all.push_back(part);
+        return all;
+    };
+    const std::vector<std::string> columns = fields(names);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        if (columns[i] == "digest") return fields(values).at(i);
+    return "no digest";
+}
+
+}  // namespace
+
+TEST_CASE("pairs and run on boxes digest the rows frame,a,b") {
+    const temporary_folder folder;
+    const std::string scene = folder / "scene.aabbs";
+    REQUIRE(run_program(
+                {"scene", "brownian", "--n", "80", "--frames", "3", "--seed", "7", "--density", "1", "--out", scene})
+                .status == 0);
+    const outcome pairs(folder, {"pairs", scene});
+    CHECK(pairs.digest == digest_of(pairs.written));
+    CHECK(digest_of_run(folder, "kind = \"brownian\"\nobjects = 80\nframes = 3\ndensity = 1\n") == pairs.digest);
+}
+
+TEST_CASE("collide digests 0,a,b for each row, of a mesh with itself too") {
+    const temporary_folder folder;
+    const std::string knot = "torus_knot:triangles=600";
+    const outcome both(folder, {"collide", knot, "icosphere:triangles=320"});
+    CHECK(both.digest == digest_of(in_frame_0(both.written)));
+    const outcome self(folder, {"collide", knot, "--self"});
+    CHECK(self.written[0].size() == 3);
+    CHECK(self.digest == digest_of(in_frame_0(self.written)));
+}
+
+TEST_CASE("contacts and run on meshes digest the rows frame,object_a,object_b,triangle_a,triangle_b") {
+    const temporary_folder folder;
+    const std::string motion = folder / "swarm.txt";
+    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "8", "--frames", "3", "--density", "3", "--seed", "7", "--mesh",
+                         "icosphere:triangles=80", "--normalise", "no", "--motion", motion})
+                .status == 0);
+    const outcome contacts(folder, {"contacts", motion, "icosphere:triangles=80"});
+    CHECK(contacts.digest == digest_of(contacts.written));
+    CHECK(digest_of_run(folder,
+                        "kind = \"mesh_swarm\"\nobjects = 8\nframes = 3\ndensity = 3\nnormalise = \"no\"\n"
+                        "meshes = [\"icosphere:triangles=80\"]\n") == contacts.digest);
+}
