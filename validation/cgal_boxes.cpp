@@ -17,8 +17,10 @@ namespace aabb {
 namespace {
 
 /// A box as CGAL's algorithm takes it. Two boxes with one number count as the same box, which is never reported.
+/// Coordinates are handed over in double: the algorithm takes the greatest value of their type for infinity, and boxes
+/// may end at the greatest float.
 struct numbered_box {
-    using NT = float;
+    using NT = double;
     using ID = std::uint64_t;
 
     box bounds;
