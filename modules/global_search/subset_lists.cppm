@@ -25,7 +25,8 @@ concept PartitionPolicy = Strategy<P>;
 
 /// A partition that really cuts. `axes(boxes, objects, swept)` says which sorted lists it needs beside those of the
 /// sweep; `fit(all)` decides the subsets of a frame; `for_each_subset(id, b, visit)` calls
-/// `visit(subset, owned_axes)` for each subset that box b of object `id` reaches into.
+/// `visit(subset, owned_axes)` for each subset that box b of object `id` reaches into, and `copies(id, b)` says how
+/// many those are without a walk over them.
 template <class P>
 concept CuttingPartition =
     PartitionPolicy<P> &&
@@ -35,6 +36,7 @@ concept CuttingPartition =
         policy.fit(all);
         { fitted.subset_count() } -> std::convertible_to<std::uint32_t>;
         fitted.for_each_subset(id, b, visit);
+        { fitted.copies(id, b) } -> std::convertible_to<std::uint64_t>;
     };
 
 /// Into how many segments axes were to be cut, and were; summed over the axes.
@@ -57,7 +59,7 @@ public:
     void clear() noexcept { starts_.resize(1); }
 
     /// @param axes whose lists are to be distributed; at least one
-    /// @throws input_error when the partition makes more than 2^29 copies of objects.
+    /// @throws input_error when the partition makes more than 2^24 + 64 n copies of n objects.
     template <CuttingPartition Partition, CounterPolicy Counters>
     void distribute(const Partition& partition, const whole_subset& all, axis_set axes, Counters& counters) {
         bool counted = false;
@@ -95,7 +97,11 @@ public:
     }
 
 private:
-    static constexpr std::size_t most_copies = std::size_t{1} << 29;  // 4 GiB a list
+    /// Room for a scene of few objects, some of them huge, and far more than a search of many gains by: 128 MiB and 512
+    /// bytes an object a list.
+    [[nodiscard]] static constexpr std::uint64_t most_copies(std::size_t objects) noexcept {
+        return (std::uint64_t{1} << 24) + 64 * std::uint64_t{objects};
+    }
 
     /// Sets starts_: of each subset the number of entries before it.
     template <class Partition>
@@ -108,13 +114,21 @@ private:
                 ++starts_[s + 1];
                 ++copies;
             });
-            // While they are counted: to count them all could take hours.
-            if (copies <= most_copies) continue;
-            clear();
-            throw input_error(std::string(Partition::name) + " makes more than " + std::to_string(most_copies) +
-                              " copies of " + std::to_string(any.size()) + " objects");
+            // While they are counted: to walk over them all could take hours.
+            if (copies > most_copies(any.size())) refuse(partition, boxes, any);
         }
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
+    }
+
+    template <class Partition>
+    [[noreturn]] static void refuse(const Partition& partition, std::span<const box> boxes,
+                                    std::span<const projection> any) {
+        std::uint64_t copies = 0;
+        for (const projection& p : any) copies += partition.copies(p.id, boxes[p.id]);
+        throw input_error(std::string(Partition::name) + " makes " + std::to_string(copies) + " copies of " +
+                          std::to_string(any.size()) + " objects, more than the " +
+                          std::to_string(most_copies(any.size())) +
+                          " (2^24 and 64 an object) that it may; fewer cuts make fewer");
     }
 
     std::vector<std::size_t> starts_{0};

@@ -39,7 +39,8 @@ public:
         std::uint32_t axes = 2;
         /// Segments wanted on each of these axes. auto: what a model of uniformly spread boxes finds cheapest.
         std::optional<std::uint32_t> segments;
-        /// off: a box may be cut any number of times.
+        /// off: a box may be cut any number of times; a frame with more than 2^24 + 64 n copies of n objects is
+        /// refused.
         limit_choice limit = limit_choice::on;
     };
     static constexpr std::tuple parameters{
@@ -85,8 +86,8 @@ public:
             subsets *= cuts_[k].size() + 1;
         }
         if (subsets > most_subsets)
-            throw input_error("axial_cut: " + std::to_string(wanted_) +
-                              " segments an axis make more than 2^26 subsets");
+            throw input_error("axial_cut: " + std::to_string(wanted_) + " segments an axis make " +
+                              std::to_string(subsets) + " subsets, more than 2^26");
     }
 
     [[nodiscard]] inline std::uint32_t subset_count() const noexcept {
@@ -103,11 +104,15 @@ public:
         return counts;
     }
 
+    [[nodiscard]] std::uint64_t copies(std::uint32_t id, const box&) const noexcept {
+        std::uint64_t all = 1;
+        for (const range& r : reach_of(id)) all *= std::uint64_t{r.last} - r.first + 1;
+        return all;
+    }
+
     template <class Visit>
     void for_each_subset(std::uint32_t id, const box&, Visit visit) const {
-        std::array<range, 3> reach{};
-        for (std::size_t k = 0; k < 3; ++k)
-            if (has_axis(cut_, k)) reach[k] = places_[id][k];
+        const std::array<range, 3> reach = reach_of(id);
         const std::uint32_t along_y = segments_on(1);
         const std::uint32_t along_z = segments_on(2);
         for (std::uint32_t x = reach[0].first; x <= reach[0].last; ++x)
@@ -134,6 +139,13 @@ private:
     static constexpr std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
     [[nodiscard]] inline std::uint32_t segments_on(std::size_t k) const noexcept {
         return static_cast<std::uint32_t>(cuts_[k].size()) + 1;
+    }
+
+    [[nodiscard]] inline std::array<range, 3> reach_of(std::uint32_t id) const noexcept {
+        std::array<range, 3> reach{};
+        for (std::size_t k = 0; k < 3; ++k)
+            if (has_axis(cut_, k)) reach[k] = places_[id][k];
+        return reach;
     }
 
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {

@@ -71,6 +71,12 @@ public:
 
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return cells_[0] * cells_[1] * cells_[2]; }
 
+    [[nodiscard]] std::uint64_t copies(std::uint32_t, const box& b) const noexcept {
+        std::uint64_t all = 1;
+        for (int k = 0; k < 3; ++k) all *= cell(b.max[k], k) - cell(b.min[k], k) + 1;
+        return all;
+    }
+
     template <class Visit>
     void for_each_subset(std::uint32_t, const box& b, Visit visit) const {
         std::array<std::uint32_t, 3> first{};

@@ -38,6 +38,9 @@ struct fake_cutting_partition {
         if (b.min[0] < 0) visit(std::uint32_t{0}, aabb::every_axis);
         if (b.max[0] >= 0) visit(std::uint32_t{1}, aabb::axis_set{b.min[0] < 0 ? 0b110U : 0b111U});
     }
+    [[nodiscard]] static std::uint64_t copies(std::uint32_t, const aabb::box& b) {
+        return b.min[0] < 0 && b.max[0] >= 0 ? 2 : 1;
+    }
 };
 
 /// Sorts anything by `precedes`, and tells of its swaps.

@@ -93,6 +93,27 @@ TEST_CASE("pairs refuses what it cannot do and leaves no file behind") {
     REQUIRE(folder.files() == 1);
 }
 
+TEST_CASE("copies of objects beyond all measure are refused before they are made") {
+    const temporary_folder folder;
+    const std::string scene = folder / "dense.aabbs";
+    REQUIRE(
+        run_program({"scene", "brownian", "--n", "300", "--density", "3", "--frames", "0", "--out", scene}).status ==
+        0);
+    const std::string config = folder.write(
+        "dense.toml",
+        "name = \"dense\"\n[[scene]]\nkind = \"brownian\"\nobjects = 300\ndensity = 3\nframes = 1\n[compose]\n"
+        "sort = \"std\"\npartition = { name = \"axial_cut\", axes = 3, segments = 65535, limit = \"off\" }\n"
+        "sweep = \"one_axis\"\n");
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"pairs", scene, "--partition", "axial_cut:axes=3,segments=65535,limit=off"},
+          std::vector<std::string>{"run", config, "--out", folder / "results"}}) {
+        const program_result result = run_program(arguments);
+        INFO(result.err);
+        CHECK(result.status == 2);
+        CHECK(result.err.find("copies of 300 objects, more than the 16796416") != std::string::npos);
+    }
+}
+
 TEST_CASE("pairs are never written over the recording they are of") {
     const temporary_folder folder;
     const std::string scene = recording_in(folder);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -211,8 +212,27 @@ TEST_CASE("a grid that no machine can hold is refused") {
     // On a flat axis there is one cell, whatever its size.
     const std::vector<box> point = {{{1, 2, 3}, {1, 2, 3}}, {{1, 2, 3}, {1, 2, 3}}};
     CHECK(search("1e-310", point) == 1);
-    const std::vector<box> large(200, box{{0, 0, 0}, {400, 400, 400}});
-    CHECK_THROWS_AS(search("1", large), input_error);
+}
+
+TEST_CASE("copies that no machine can hold are counted and refused") {
+    std::vector<box> nested;  // box i reaches over 300 - i segments of each axis
+    for (int i = 0; i < 300; ++i) {
+        const auto low = static_cast<float>(i);
+        nested.push_back({{low, low, low}, {1000, 1000, 1000}});
+    }
+    for (const auto& [partition, boxes, sentence] :
+         {std::tuple{"axial_cut:axes=3,segments=65535,limit=off", nested,
+                     "axial_cut makes 2038522500 copies of 300 objects, more than the 16796416 (2^24 and 64 an "
+                     "object) that it may; fewer cuts make fewer"},
+          std::tuple{"uniform_grid:cell_size=1", std::vector(200, box{{0, 0, 0}, {400, 400, 400}}),
+                     "uniform_grid makes 12896240200 copies of 200 objects, more than the 16790016 (2^24 and 64 an "
+                     "object) that it may; fewer cuts make fewer"}}) {
+        const auto stage = compose({{"std", {}}, parse_strategy(partition), {"one_axis", {}}}, instrumentation::none);
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
+        CHECK_THROWS_MATCHES(stage->update(boxes), input_error, Message(sentence));
+        // Nothing of that size was made.
+        CHECK(stage->bytes()[2].bytes < std::size_t{1} << 30);
+    }
 }
 
 TEST_CASE("a search goes on after its partition refused a frame") {
