@@ -33,12 +33,12 @@ public:
     global_stage& operator=(const global_stage&) = delete;
     virtual ~global_stage() = default;
 
-    /// An object comes (its id must not be present) or goes (its id must be).
+    /// An object comes (its id must not be present) or goes (its id must be). Boxes of others take no part.
     virtual void insert(std::uint32_t id) = 0;
     virtual void remove(std::uint32_t id) = 0;
 
     /// Takes the boxes of a frame, indexed by id: sorts and partitions.
-    /// @throws input_error on a box that is not finite or inverted.
+    /// @throws input_error on a box that is not finite or inverted, and on boxes where no object was ever inserted.
     virtual void update(std::span<const box> boxes) = 0;
 
     /// Appends every overlapping pair of present objects, each once, a < b, in no particular order. The boxes given to

@@ -1,8 +1,6 @@
 module;
-#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 
 module aabb.validation;
 
@@ -11,30 +9,15 @@ import :parts;
 
 namespace aabb {
 
-void box_engine::insert(std::uint32_t id) {
-    if (is_present(id)) throw input_error("object " + std::to_string(id) + " is inserted twice");
-    if (id >= present_.size()) present_.resize(std::size_t{id} + 1);
-    present_[id] = true;
-    changed_ = true;
-}
-
-void box_engine::remove(std::uint32_t id) {
-    if (!is_present(id)) throw input_error("object " + std::to_string(id) + " is removed but was never inserted");
-    present_[id] = false;
-    changed_ = true;
-}
-
 void box_engine::update(std::span<const box> boxes) {
-    if (changed_) {
-        ids_.clear();
-        for (std::uint32_t id = 0; id < present_.size(); ++id)
-            if (present_[id]) ids_.push_back(id);
-        changed_ = false;
-    }
-    if (!ids_.empty() && ids_.back() >= boxes.size())
-        throw input_error("object " + std::to_string(ids_.back()) + " is present, but the frame has only " +
-                          std::to_string(boxes.size()) + " boxes");
+    objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
+    if (objects_.any_departures() || !objects_.arrivals().empty()) {
+        ids_.clear();
+        for (std::uint32_t id = 0; id < boxes.size(); ++id)
+            if (is_present(id)) ids_.push_back(id);
+        objects_.settle();
+    }
     take(boxes, ids_);
 }
 

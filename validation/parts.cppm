@@ -13,25 +13,25 @@ import aabb;
 
 namespace aabb {
 
-/// What every engine of boxes does alike: who is present, and refusing boxes that are not valid. None counts its work.
+/// What every engine of boxes does alike: who is present, and refusing what a composed stage refuses. None counts its
+/// work.
 class box_engine : public global_stage {
 public:
-    void insert(std::uint32_t id) final;
-    void remove(std::uint32_t id) final;
+    void insert(std::uint32_t id) final { objects_.insert(id); }
+    void remove(std::uint32_t id) final { objects_.remove(id); }
     void update(std::span<const box> boxes) final;
     [[nodiscard]] work_counters counters() const final { return {}; }
     [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
 
 protected:
-    [[nodiscard]] bool is_present(std::uint32_t id) const { return id < present_.size() && present_[id]; }
+    [[nodiscard]] bool is_present(std::uint32_t id) const { return objects_.contains(id); }
 
     /// Takes the boxes of the present objects, whose ids are ascending.
     virtual void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;
 
 private:
-    std::vector<bool> present_;  // by id
+    membership objects_;
     std::vector<std::uint32_t> ids_;
-    bool changed_ = false;
 };
 
 /// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.

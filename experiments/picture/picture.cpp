@@ -72,8 +72,10 @@ frame_drawing drawing_of(const survey::frame& frame) {
     }
     drawing.present = drawing.drawn.size();
     std::vector<aabb::index_pair> pairs;
-    search->update(frame.boxes);
-    search->search(pairs);
+    if (drawing.present > 0) {
+        search->update(frame.boxes);
+        search->search(pairs);
+    }
     drawing.pairs = pairs.size();
     drawing.overlapping.resize(frame.boxes.size());
     for (const auto [a, b] : pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;

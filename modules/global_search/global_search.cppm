@@ -23,8 +23,8 @@ export namespace aabb {
 
 /// Global search (paper, section 2): sorted projection lists kept between frames, an optional partition, a sweep.
 ///
-/// Objects have stable ids, which index the boxes of a frame. Nothing is allocated once the buffers have grown to the
-/// scene.
+/// Objects have stable ids, which index the boxes of a frame; only those inserted take part. Nothing is allocated once
+/// the buffers have grown to the scene.
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters = no_counters>
 class global_search {
     static constexpr bool cuts = CuttingPartition<Partition>;
@@ -44,8 +44,9 @@ public:
     void remove(std::uint32_t id) { objects_.remove(id); }
 
     /// Sorts and partitions the boxes of a frame, indexed by id. They are looked at again by `search`.
-    /// @throws input_error on a box that is not finite or inverted, when ids reach beyond the boxes, or when the
-    /// partition refuses; another update must succeed before the next search then.
+    /// @throws input_error on a box that is not finite or inverted, when ids reach beyond the boxes, when there are
+    /// boxes but no object was ever inserted, or when the partition refuses; another update must succeed before the
+    /// next search then.
     void update(std::span<const box> boxes) {
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);

@@ -45,8 +45,11 @@ public:
     [[nodiscard]] bool any_departures() const noexcept { return departures_; }
     [[nodiscard]] inline bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
 
-    /// @throws input_error when an object that is present has no box.
+    /// @throws input_error when an object that is present has no box, or when there are boxes but `insert` was never
+    /// called: who forgets it would find no pair, without a word.
     void require_boxes_for_all(std::size_t boxes) const {
+        if (state_.empty() && boxes > 0)
+            throw input_error("no object was inserted; call insert(id) for each box first");
         for (std::size_t id = boxes; id < state_.size(); ++id)
             if (contains(static_cast<std::uint32_t>(id)))
                 throw input_error("object " + std::to_string(id) + " is present, but the frame has only " +

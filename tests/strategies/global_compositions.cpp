@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -62,6 +63,7 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                 std::vector<box> boxes(n);
                 std::vector<bool> present(n);
                 std::vector<index_pair> found;
+                bool any_yet = false;
                 for (int frame = 0; frame < 6; ++frame) {
                     // From frames in which all move to frames in which none does.
                     const int unrest = *rc::gen::element(0, 1, 4);
@@ -74,7 +76,9 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                         }
                     }
                     found.clear();
-                    stage->update(boxes);
+                    // Before the first object comes there are no boxes: a scene of nobody may begin.
+                    any_yet |= std::ranges::find(present, true) != present.end();
+                    stage->update(std::span(boxes).first(any_yet ? n : 0));
                     stage->search(found);
                     std::ranges::sort(found);
                     RC_ASSERT(found == overlapping(boxes, present));
@@ -101,6 +105,27 @@ TEST_CASE("a composition refuses boxes and ids that make no sense, and can go on
         stage->update(boxes);
         stage->search(found);
         CHECK(found.size() == 3);
+    }
+}
+
+TEST_CASE("boxes of which no object was inserted are refused, and no boxes or objects that have left are not") {
+    const std::vector<box> boxes(2, box{{0, 0, 0}, {1, 1, 1}});
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::none);
+        std::vector<index_pair> found;
+        stage->update({});
+        stage->search(found);
+        CHECK_THROWS_MATCHES(stage->update(boxes), input_error,
+                             Message("no object was inserted; call insert(id) for each box first"));
+        stage->insert(0);
+        stage->insert(1);
+        stage->update(boxes);
+        stage->remove(0);
+        stage->remove(1);
+        stage->update(boxes);
+        stage->search(found);
+        CHECK(found.empty());
     }
 }
 

@@ -135,11 +135,13 @@ TEST_CASE("engines refuse bad boxes and bad ids") {
         if (!info.searches_boxes) continue;
         INFO(info.name);
         const auto engine = make_box_engine(info.name);
+        const std::vector<box> one(1, {{0, 0, 0}, {1, 1, 1}});
+        REQUIRE(refusal_in([&] { engine->update(one); }) ==
+                "no object was inserted; call insert(id) for each box first");
         engine->insert(0);
         engine->insert(1);
         REQUIRE(refusal_in([&] { engine->insert(1); }) == "object 1 is inserted twice");
         REQUIRE(refusal_in([&] { engine->remove(7); }) == "object 7 is removed but was never inserted");
-        const std::vector<box> one(1, {{0, 0, 0}, {1, 1, 1}});
         REQUIRE(refusal_in([&] { engine->update(one); }) == "object 1 is present, but the frame has only 1 boxes");
         std::vector<box> bad(2, {{0, 0, 0}, {1, 1, 1}});
         bad[1].min[2] = nan;
