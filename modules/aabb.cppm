@@ -2,11 +2,13 @@
 /// (`aabb.sort.std`, …).
 export module aabb;
 
+export import :append_whole;
 export import :box_cursor;
 export import :build_node;
 export import :counters;
 export import :digest;
 export import :error;
+export import :frame_state;
 export import :geometry;
 export import :global_search;
 export import :interval_test;
@@ -18,6 +20,7 @@ export import :mean_split;
 export import :median_split;
 export import :membership;
 export import :mesh;
+export import :mesh_fit;
 export import :model;
 export import :pair_set;
 export import :pipeline;

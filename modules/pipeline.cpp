@@ -8,6 +8,7 @@ module;
 module aabb;
 
 import :error;
+import :frame_state;
 import :geometry;
 import :mesh;
 import :pipeline;
@@ -28,6 +29,7 @@ pipeline::pipeline(const mesh_scene& scene, global_stage& global, local_stage& l
 }
 
 void pipeline::update(std::span<const pose> poses) {
+    frame_.begin();
     if (poses.size() != boxes_.size())
         throw input_error("the scene has " + std::to_string(boxes_.size()) + " objects, but the frame has " +
                           std::to_string(poses.size()) + " poses");
@@ -48,9 +50,11 @@ void pipeline::update(std::span<const pose> poses) {
             throw input_error("object " + std::to_string(object) + " lies beyond the range of float");
     }
     global_.update(boxes_);
+    frame_.taken();
 }
 
 void pipeline::search() {
+    frame_.require_taken();
     candidates_.clear();
     global_.search(candidates_);
 }

@@ -7,6 +7,7 @@ module;
 
 export module aabb:pipeline;
 
+import :frame_state;
 import :geometry;
 import :mesh;
 import :pose;
@@ -36,6 +37,7 @@ public:
     /// of meshes that have deformed.
     /// @throws input_error on a pose that is not rigid or takes an object beyond the range of float, by its number.
     void update(std::span<const pose> poses);
+    /// @throws input_error when the last update did not succeed, or there was none.
     void search();
     void detect();
 
@@ -56,6 +58,7 @@ private:
     std::vector<index_pair> candidates_;
     std::vector<index_pair> triangle_pairs_;
     std::vector<contact> contacts_;
+    frame_state frame_;
 };
 
 }  // namespace aabb

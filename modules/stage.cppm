@@ -25,7 +25,8 @@ struct part_bytes {
     std::size_t bytes;
 };
 
-/// Boxes in, overlapping pairs out.
+/// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
+/// every later frame, by an input_error; a search that throws appends nothing.
 class global_stage {
 public:
     global_stage() = default;
@@ -43,6 +44,7 @@ public:
 
     /// Appends every overlapping pair of present objects, each once, a < b, in no particular order. The boxes given to
     /// `update` must still be there.
+    /// @throws input_error when the last update did not succeed, or there was none.
     virtual void search(std::vector<index_pair>& pairs) = 0;
 
     [[nodiscard]] virtual work_counters counters() const = 0;
@@ -79,7 +81,8 @@ public:
     /// are among them, since they meet in the vertices that they share.
     virtual void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) = 0;
 
-    /// Takes note that vertices of the model's mesh have moved.
+    /// Takes note that vertices of the model's mesh have moved. When it throws, queries of the model do too, until a
+    /// refit succeeds.
     /// @throws input_error when the mesh is no longer valid or of as many triangles.
     virtual void refit(std::uint32_t model) = 0;
 

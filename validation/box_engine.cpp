@@ -1,6 +1,7 @@
 module;
 #include <cstdint>
 #include <span>
+#include <vector>
 
 module aabb.validation;
 
@@ -10,6 +11,7 @@ import :parts;
 namespace aabb {
 
 void box_engine::update(std::span<const box> boxes) {
+    frame_.begin();
     objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
     if (objects_.any_departures() || !objects_.arrivals().empty()) {
@@ -18,7 +20,13 @@ void box_engine::update(std::span<const box> boxes) {
             if (is_present(id)) ids_.push_back(id);
         objects_.settle();
     }
-    take(boxes, ids_);
+    frame_.change([&] { take(boxes, ids_); });
+    frame_.taken();
+}
+
+void box_engine::search(std::vector<index_pair>& pairs) {
+    frame_.require_taken();
+    append_whole(pairs, [&] { find(pairs); });
 }
 
 }  // namespace aabb

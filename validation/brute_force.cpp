@@ -19,17 +19,6 @@ namespace {
 /// Every pair, in the plainest loop that vectorises: no order of the boxes, no data structure to get wrong.
 class brute_force_boxes final : public box_engine {
 public:
-    void search(std::vector<index_pair>& pairs) override {
-        std::array<std::uint32_t, 512> hits{};
-        for (std::size_t i = 0; i < ids_.size(); ++i)
-            for (std::size_t begin = i + 1; begin < ids_.size(); begin += hits.size()) {
-                const std::size_t count = std::min(hits.size(), ids_.size() - begin);
-                if (!test_block(i, begin, count, hits)) continue;
-                for (std::size_t j = 0; j < count; ++j)
-                    if (hits[j]) pairs.push_back({ids_[i], ids_[begin + j]});
-            }
-    }
-
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t all = bytes_of(ids_);
         for (std::size_t k = 0; k < 3; ++k) all += bytes_of(min_[k]) + bytes_of(max_[k]);
@@ -47,6 +36,17 @@ private:
                 max_[k].push_back(boxes[id].max[static_cast<int>(k)]);
             }
         }
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        std::array<std::uint32_t, 512> hits{};
+        for (std::size_t i = 0; i < ids_.size(); ++i)
+            for (std::size_t begin = i + 1; begin < ids_.size(); begin += hits.size()) {
+                const std::size_t count = std::min(hits.size(), ids_.size() - begin);
+                if (!test_block(i, begin, count, hits)) continue;
+                for (std::size_t j = 0; j < count; ++j)
+                    if (hits[j]) pairs.push_back({ids_[i], ids_[begin + j]});
+            }
     }
 
     /// Tests box i against `count` boxes from `begin` on; says whether any overlaps.

@@ -34,18 +34,18 @@ struct numbered_box {
 
 class cgal_boxes final : public box_engine {
 public:
-    void search(std::vector<index_pair>& pairs) override {
-        CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), [&](const numbered_box& a, const numbered_box& b) {
-            pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
-        });
-    }
-
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(boxes_)}}; }
 
 private:
     void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.clear();
         for (const std::uint32_t id : ids) boxes_.push_back({boxes[id], id});
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), [&](const numbered_box& a, const numbered_box& b) {
+            pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
+        });
     }
 
     std::vector<numbered_box> boxes_;

@@ -37,14 +37,6 @@ private:
 
 class fcl_boxes final : public box_engine {
 public:
-    void search(std::vector<index_pair>& pairs) override {
-        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* found) {
-            static_cast<std::vector<index_pair>*>(found)->push_back(
-                ordered_pair(static_cast<fcl_object*>(a)->id(), static_cast<fcl_object*>(b)->id()));
-            return false;
-        });
-    }
-
     /// Objects and nodes of the tree; FCL's table from one to the other is left out.
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         const std::size_t n = manager_.size();
@@ -70,6 +62,14 @@ private:
         }
         manager_.registerObjects(arrivals);
         manager_.update();
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* found) {
+            static_cast<std::vector<index_pair>*>(found)->push_back(
+                ordered_pair(static_cast<fcl_object*>(a)->id(), static_cast<fcl_object*>(b)->id()));
+            return false;
+        });
     }
 
     std::vector<std::unique_ptr<fcl_object>> objects_;  // by id; null where absent

@@ -7,8 +7,10 @@ module;
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 module aabb.validation;
@@ -26,24 +28,22 @@ using fcl_tree = fcl::BVHModel<fcl::OBBRSSd>;
 class fcl_meshes final : public mesh_engine {
 public:
     std::uint32_t add_model(const mesh& m) override {
-        models_.push_back({&m, tree_of(m)});
+        models_.push_back({&m, tree_of(m), {}});
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
     void refit(std::uint32_t model) override {
-        const mesh& m = *models_[model].triangles;
-        require_valid(m);
-        fcl_tree& tree = *models_[model].tree;
-        tree.beginReplaceModel();
-        tree.replaceSubModel(vertices_of(m));
-        tree.endReplaceModel(true, true);
-    }
-
-    void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-                   std::vector<index_pair>& pairs) override {
-        const fcl::CollisionResultd result =
-            collide(model_a, pose_a, model_b, pose_b, std::numeric_limits<std::size_t>::max());
-        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
+        auto& [triangles, tree, fit] = models_[model];
+        fit.renew([&] {
+            require_valid(*triangles);
+            const std::vector<fcl::Vector3d> vertices = vertices_of(*triangles);
+            // A tree whose refit broke off FCL would take for one in the midst of it, and write beyond its vertices.
+            std::unique_ptr<fcl_tree> refitted = tree ? std::move(tree) : tree_of(*triangles);
+            refitted->beginReplaceModel();
+            refitted->replaceSubModel(vertices);
+            refitted->endReplaceModel(true, true);
+            tree = std::move(refitted);
+        });
     }
 
     [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
@@ -56,16 +56,18 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t all = 0;
         for (const model& m : models_)
-            all += static_cast<std::size_t>(m.tree->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSSd>) +
-                   static_cast<std::size_t>(m.tree->num_tris) * sizeof(fcl::Triangle) +
-                   static_cast<std::size_t>(m.tree->num_vertices) * sizeof(fcl::Vector3d);
+            if (m.tree)
+                all += static_cast<std::size_t>(m.tree->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSSd>) +
+                       static_cast<std::size_t>(m.tree->num_tris) * sizeof(fcl::Triangle) +
+                       static_cast<std::size_t>(m.tree->num_vertices) * sizeof(fcl::Vector3d);
         return {{"engine", all}};
     }
 
 private:
     struct model {
         const mesh* triangles;
-        std::unique_ptr<fcl_tree> tree;
+        std::unique_ptr<fcl_tree> tree;  // none after a refit that broke off
+        mesh_fit fit;
     };
 
     [[nodiscard]] static std::vector<fcl::Vector3d> vertices_of(const mesh& m) {
@@ -80,10 +82,15 @@ private:
         std::vector<fcl::Triangle> triangles;
         for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
         auto tree = std::make_unique<fcl_tree>();
-        tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-        tree->addSubModel(vertices, triangles);
-        tree->endModel();
+        require_done(tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())));
+        require_done(tree->addSubModel(vertices, triangles));
+        require_done(tree->endModel());
         return tree;
+    }
+
+    /// FCL says by a number that memory ran out, and would go on with half a tree.
+    static void require_done(int code) {
+        if (code != fcl::BVH_OK) throw std::bad_alloc();
     }
 
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
@@ -99,9 +106,18 @@ private:
         return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
     }
 
+    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+              std::vector<index_pair>& pairs) override {
+        const fcl::CollisionResultd result =
+            collide(model_a, pose_a, model_b, pose_b, std::numeric_limits<std::size_t>::max());
+        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
+    }
+
     /// Without contact points each pair of triangles is reported once.
     [[nodiscard]] fcl::CollisionResultd collide(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                                 const pose& pose_b, std::size_t most) const {
+        models_[model_a].fit.require();
+        models_[model_b].fit.require();
         fcl::CollisionRequestd request;
         request.num_max_contacts = most;
         request.enable_contact = false;

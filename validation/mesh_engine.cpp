@@ -9,6 +9,11 @@ import :parts;
 
 namespace aabb {
 
+void mesh_engine::all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                            std::vector<index_pair>& pairs) {
+    append_whole(pairs, [&] { find(model_a, pose_a, model_b, pose_b, pairs); });
+}
+
 std::uint64_t mesh_engine::count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                        const pose& pose_b) {
     std::vector<index_pair> pairs;
@@ -19,8 +24,10 @@ std::uint64_t mesh_engine::count_pairs(std::uint32_t model_a, const pose& pose_a
 void mesh_engine::self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) {
     std::vector<index_pair> both_ways;
     all_pairs(model, {}, model, {}, both_ways);
-    for (const index_pair pair : both_ways)
-        if (pair.a < pair.b) pairs.push_back(pair);
+    append_whole(pairs, [&] {
+        for (const index_pair pair : both_ways)
+            if (pair.a < pair.b) pairs.push_back(pair);
+    });
 }
 
 }  // namespace aabb

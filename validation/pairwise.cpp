@@ -26,14 +26,8 @@ public:
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
-    void refit(std::uint32_t model) override { models_[model] = model_of(*models_[model].triangles); }
-
-    void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-                   std::vector<index_pair>& pairs) override {
-        decide(model_a, pose_a, model_b, pose_b, [&](index_pair found) {
-            pairs.push_back(found);
-            return false;
-        });
+    void refit(std::uint32_t model) override {
+        models_[model].fit.renew([&] { models_[model] = model_of(*models_[model].triangles); });
     }
 
     [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
@@ -57,18 +51,29 @@ private:
         const mesh* triangles;
         box bounds;
         std::vector<box> boxes;  // by triangle
+        mesh_fit fit;
     };
 
     [[nodiscard]] static model model_of(const mesh& m) {
         require_valid(m);
-        model made{&m, bounds_of(m), {}};
+        model made{&m, bounds_of(m), {}, {}};
         for (std::uint32_t t = 0; t < m.triangle_count(); ++t) made.boxes.push_back(bounds_of(m.triangle(t)));
         return made;
+    }
+
+    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+              std::vector<index_pair>& pairs) override {
+        decide(model_a, pose_a, model_b, pose_b, [&](index_pair found) {
+            pairs.push_back(found);
+            return false;
+        });
     }
 
     /// `emit` takes an intersecting pair and says whether to stop.
     template <class Emit>
     void decide(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b, Emit emit) const {
+        models_[model_a].fit.require();
+        models_[model_b].fit.require();
         const model& a = models_[model_a];
         const mesh& b = *models_[model_b].triangles;
         const relative_pose to_a(pose_a, pose_b, models_[model_b].bounds);

@@ -20,6 +20,7 @@ public:
     void insert(std::uint32_t id) final { objects_.insert(id); }
     void remove(std::uint32_t id) final { objects_.remove(id); }
     void update(std::span<const box> boxes) final;
+    void search(std::vector<index_pair>& pairs) final;
     [[nodiscard]] work_counters counters() const final { return {}; }
     [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
 
@@ -28,21 +29,31 @@ protected:
 
     /// Takes the boxes of the present objects, whose ids are ascending.
     virtual void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;
+    /// Appends the overlapping pairs of what was taken.
+    virtual void find(std::vector<index_pair>& pairs) = 0;
 
 private:
     membership objects_;
     std::vector<std::uint32_t> ids_;
+    frame_state frame_;
 };
 
 /// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.
 class mesh_engine : public local_stage {
 public:
+    void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                   std::vector<index_pair>& pairs) final;
     [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                             const pose& pose_b) final;
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final;
     [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const final { return std::nullopt; }
     [[nodiscard]] work_counters counters() const final { return {}; }
     [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
+
+protected:
+    /// Appends the intersecting pairs.
+    virtual void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                      std::vector<index_pair>& pairs) = 0;
 };
 
 /// Finds pairs of triangles whose boxes overlap: triangle i of `a` and t of `b` as {i, t}, in any order.

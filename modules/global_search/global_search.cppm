@@ -9,7 +9,9 @@ module;
 
 export module aabb:global_search;
 
+import :append_whole;
 import :counters;
+import :frame_state;
 import :geometry;
 import :membership;
 import :policy;
@@ -24,7 +26,8 @@ export namespace aabb {
 /// Global search (paper, section 2): sorted projection lists kept between frames, an optional partition, a sweep.
 ///
 /// Objects have stable ids, which index the boxes of a frame; only those inserted take part. Nothing is allocated once
-/// the buffers have grown to the scene.
+/// the buffers have grown to the scene. Memory that runs out in `insert` or `search` changes nothing; in `update` it
+/// may end the use of the search, which says so then.
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters = no_counters>
 class global_search {
     static constexpr bool cuts = CuttingPartition<Partition>;
@@ -48,19 +51,21 @@ public:
     /// boxes but no object was ever inserted, or when the partition refuses; another update must succeed before the
     /// next search then.
     void update(std::span<const box> boxes) {
+        frame_.begin();
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
         boxes_ = boxes;
-        lists_.settle(objects_);
-        objects_.settle();
-        const axis_set swept = sweep_.axes(boxes, objects_);
-        axis_set needed = swept;
+        axis_set swept = 0;
+        frame_.change([&] {
+            lists_.settle(objects_);
+            objects_.settle();
+            swept = sweep_.axes(boxes, objects_);
+            axis_set needed = swept;
+            if constexpr (cuts) needed |= partition_.axes(boxes, objects_, swept);
+            lists_.sort(boxes, needed, sort_, counters_);
+        });
         if constexpr (cuts) {
             subsets_.clear();
-            needed |= partition_.axes(boxes, objects_, swept);
-        }
-        lists_.sort(boxes, needed, sort_, counters_);
-        if constexpr (cuts) {
             partition_.fit(lists_.all(boxes));
             if (partition_.subset_count() > 1)
                 subsets_.distribute(partition_, lists_.all(boxes), swept, counters_);
@@ -71,16 +76,21 @@ public:
             counters_.add(work::segments_wanted, partition_.segments().wanted);
             counters_.add(work::segments_got, partition_.segments().got);
         }
+        frame_.taken();
     }
 
     /// Appends every overlapping pair, each once, a < b, in no particular order.
+    /// @throws input_error when the last update did not succeed, or there was none.
     void search(std::vector<index_pair>& pairs) {
-        if constexpr (cuts) {
-            for (std::uint32_t s = 0; s < subsets_.size(); ++s)
-                sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
-            if (subsets_.size() > 0) return;
-        }
-        sweep_.sweep(lists_.all(boxes_), pairs, counters_);
+        frame_.require_taken();
+        append_whole(pairs, [&] {
+            if constexpr (cuts) {
+                for (std::uint32_t s = 0; s < subsets_.size(); ++s)
+                    sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
+                if (subsets_.size() > 0) return;
+            }
+            sweep_.sweep(lists_.all(boxes_), pairs, counters_);
+        });
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
@@ -107,6 +117,7 @@ private:
     std::span<const box> boxes_;
     membership objects_;
     projection_lists<Counters> lists_;
+    frame_state frame_;
 };
 
 /// With a sweep that keeps pairs from frame to frame there are no projection lists and no subsets: it has lists of its
@@ -123,13 +134,20 @@ public:
     void remove(std::uint32_t id) { objects_.remove(id); }
 
     void update(std::span<const box> boxes) {
+        frame_.begin();
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
-        sweep_.update(boxes, objects_, sort_, counters_);
-        objects_.settle();
+        frame_.change([&] {
+            sweep_.update(boxes, objects_, sort_, counters_);
+            objects_.settle();
+        });
+        frame_.taken();
     }
 
-    void search(std::vector<index_pair>& pairs) { sweep_.search(pairs); }
+    void search(std::vector<index_pair>& pairs) {
+        frame_.require_taken();
+        append_whole(pairs, [&] { sweep_.search(pairs); });
+    }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] axis_set sorted_axes() const noexcept { return sweep_.axes(); }
@@ -143,6 +161,7 @@ private:
     [[no_unique_address]] Sweep sweep_;
     [[no_unique_address]] Counters counters_;
     membership objects_;
+    frame_state frame_;
 };
 
 }  // namespace aabb

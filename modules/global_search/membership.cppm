@@ -21,8 +21,9 @@ public:
         if (id >= state_.size()) state_.resize(std::size_t{id} + 1, state::absent);
         if (contains(id)) throw input_error("object " + std::to_string(id) + " is inserted twice");
         // An object that leaves and comes back before the next frame never left.
-        state_[id] = state_[id] == state::leaving ? state::known : state::coming;
-        if (state_[id] == state::coming) arrivals_.push_back(id);
+        const bool comes = state_[id] == state::absent;
+        if (comes) arrivals_.push_back(id);
+        state_[id] = comes ? state::coming : state::known;
     }
 
     /// @throws input_error when the object is not present.

@@ -16,8 +16,10 @@ module;
 
 module aabb;
 
+import :append_whole;
 import :counters;
 import :error;
+import :frame_state;
 import :geometry;
 import :membership;
 import :policy;
@@ -52,8 +54,10 @@ split_large_stage::split_large_stage(std::unique_ptr<global_stage> search, doubl
 
 void split_large_stage::insert(std::uint32_t id) {
     objects_.insert(id);
-    if (id >= first_slot_) drop_pieces();
-    search_->insert(id);
+    frame_.change([&] {
+        if (id >= first_slot_) drop_pieces();
+        search_->insert(id);
+    });
 }
 
 void split_large_stage::remove(std::uint32_t id) {
@@ -62,27 +66,33 @@ void split_large_stage::remove(std::uint32_t id) {
 }
 
 void split_large_stage::update(std::span<const box> boxes) {
+    frame_.begin();
     objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
     objects_.settle();
     const double longest = longest_whole(boxes);
     find_splits(boxes, longest);
     boxes_ = boxes;
-    if (first_slot_ != boxes.size()) drop_pieces();
-    first_slot_ = static_cast<std::uint32_t>(boxes.size());
-    assign_slots();
-    if (splits_.empty()) return search_->update(boxes);
-    make_pieces(boxes, longest);
+    frame_.change([&] {
+        if (first_slot_ != boxes.size()) drop_pieces();
+        first_slot_ = static_cast<std::uint32_t>(boxes.size());
+        assign_slots();
+    });
+    if (!splits_.empty()) make_pieces(boxes, longest);
     if (counted_ == instrumentation::counters) pieces_counted_ += slots_.size() + splits_.size();
-    search_->update(pieces_);
+    search_->update(splits_.empty() ? boxes : pieces_);
+    frame_.taken();
 }
 
 void split_large_stage::search(std::vector<index_pair>& pairs) {
+    frame_.require_taken();
     if (splits_.empty()) return search_->search(pairs);
     found_.clear();
     search_->search(found_);
-    for (const auto [a, b] : found_)
-        if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
+    append_whole(pairs, [&] {
+        for (const auto [a, b] : found_)
+            if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
+    });
 }
 
 work_counters split_large_stage::counters() const {

@@ -12,6 +12,7 @@ module;
 export module aabb:split_large;
 
 import :counters;
+import :frame_state;
 import :geometry;
 import :membership;
 import :stage;
@@ -76,6 +77,7 @@ private:
     instrumentation counted_;
     std::uint64_t pieces_counted_ = 0;
     membership objects_;
+    frame_state frame_;
     std::span<const box> boxes_;
     std::uint32_t first_slot_ = 0;      // ids below are objects, or the first pieces of objects; the others are slots
     std::vector<split> splits_;         // by object

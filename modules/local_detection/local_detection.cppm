@@ -8,6 +8,7 @@ module;
 
 export module aabb:local_detection;
 
+import :append_whole;
 import :counters;
 import :geometry;
 import :leaf_test;
@@ -36,9 +37,11 @@ public:
     /// Appends every pair of intersecting triangles (a of A, b of B), each once, in no particular order.
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
-        walk(a, pose_a, b, pose_b, [&](index_pair found) {
-            pairs.push_back(found);
-            return false;
+        append_whole(pairs, [&] {
+            walk(a, pose_a, b, pose_b, [&](index_pair found) {
+                pairs.push_back(found);
+                return false;
+            });
         });
     }
 
@@ -73,16 +76,18 @@ public:
         };
         begin();
         nodes_.assign(1, m.root());
-        while (!nodes_.empty()) {
-            const cursor at = nodes_.back();
-            nodes_.pop_back();
-            if (m.tree().is_leaf(at)) continue;
-            const auto [left, right] = m.tree().children(at, m.triangles());
-            nodes_.push_back(left);
-            nodes_.push_back(right);
-            push_if_near(m, m, here, {left, right, m.tree().bounds(right)}, side::both);
-            drain(m, m, here, emit);
-        }
+        append_whole(pairs, [&] {
+            while (!nodes_.empty()) {
+                const cursor at = nodes_.back();
+                nodes_.pop_back();
+                if (m.tree().is_leaf(at)) continue;
+                const auto [left, right] = m.tree().children(at, m.triangles());
+                nodes_.push_back(left);
+                nodes_.push_back(right);
+                push_if_near(m, m, here, {left, right, m.tree().bounds(right)}, side::both);
+                drain(m, m, here, emit);
+            }
+        });
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }

@@ -9,6 +9,7 @@ export module aabb:model;
 import :error;
 import :geometry;
 import :mesh;
+import :mesh_fit;
 import :tree_policy;
 
 export namespace aabb {
@@ -27,22 +28,30 @@ public:
     /// @param boxes scratch, one box an internal node
     /// @throws input_error when the mesh is no longer valid or of as many triangles.
     void refit(std::vector<box>& boxes) {
-        require_valid(*mesh_);
-        if (mesh_->triangles.size() != triangles_)
-            throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles_) +
-                              ", now there are " + std::to_string(mesh_->triangles.size()));
-        tree_.refit(*mesh_, boxes);
+        fit_.renew([&] {
+            require_valid(*mesh_);
+            if (mesh_->triangles.size() != triangles_)
+                throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles_) +
+                                  ", now there are " + std::to_string(mesh_->triangles.size()));
+            tree_.refit(*mesh_, boxes);
+        });
     }
 
     [[nodiscard]] const mesh& triangles() const noexcept { return *mesh_; }
     [[nodiscard]] const Tree& tree() const noexcept { return tree_; }
-    [[nodiscard]] typename Tree::cursor root() const { return tree_.root(*mesh_); }
+    /// Where every query begins.
+    /// @throws input_error when the last refit did not succeed.
+    [[nodiscard]] typename Tree::cursor root() const {
+        fit_.require();
+        return tree_.root(*mesh_);
+    }
     [[nodiscard]] box bounds() const { return tree_.bounds(root()); }
 
 private:
     const mesh* mesh_;
     std::size_t triangles_;
     Tree tree_;
+    mesh_fit fit_;
 };
 
 }  // namespace aabb

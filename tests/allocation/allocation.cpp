@@ -1,46 +1,15 @@
 // Counts every allocation of the process: once the buffers have grown to the scene, neither stage may make one.
 
-#include <atomic>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
-#include <new>
 #include <vector>
 
 #include "../compositions.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations = 0;
-}
-
-// NOLINTBEGIN(cppcoreguidelines-no-malloc)
-void* operator new(std::size_t bytes) {
-    ++allocations;
-    if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
-    throw std::bad_alloc();
-}
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-    ++allocations;
-    const auto multiple = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(multiple, (bytes + multiple) / multiple * multiple)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-// NOLINTEND(cppcoreguidelines-no-malloc)
+#include "counted_new.hpp"
 
 using namespace aabb;
 
@@ -86,7 +55,7 @@ TEST_CASE("global search allocates nothing in steady state") {
         std::size_t before = 0;
         bool away = false;
         for (int round = 0; round < 4; ++round) {
-            if (round == 3) before = allocations;
+            if (round == 3) before = allocations.made;
             for (const auto& boxes : frames) {
                 for (const std::uint32_t id : {7U, 30U, 299U}) away ? stage->insert(id) : stage->remove(id);
                 away = !away;
@@ -95,7 +64,7 @@ TEST_CASE("global search allocates nothing in steady state") {
                 stage->search(pairs);
             }
         }
-        const std::size_t made = allocations - before;
+        const std::size_t made = allocations.made - before;
         CHECK(made == 0);
         CHECK_FALSE(pairs.empty());
     }
@@ -110,7 +79,7 @@ TEST_CASE("local detection allocates nothing in steady state") {
         std::vector<index_pair> pairs;
         std::size_t before = 0;
         for (int round = 0; round < 2; ++round) {
-            if (round == 1) before = allocations;
+            if (round == 1) before = allocations.made;
             for (int step = 0; step < 5; ++step) {
                 pose moved;
                 moved.translation = {0.3 * step, 0.2, 0.1};
@@ -122,7 +91,7 @@ TEST_CASE("local detection allocates nothing in steady state") {
                 stage->refit(model);
             }
         }
-        const std::size_t made = allocations - before;
+        const std::size_t made = allocations.made - before;
         CHECK(made == 0);
         CHECK_FALSE(pairs.empty());
     }

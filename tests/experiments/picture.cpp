@@ -139,6 +139,15 @@ TEST_CASE("scene draws every kind, without a recording where none is wanted") {
     REQUIRE(holds(svg, "first frame (0): boxes " + (kind == "population" && objects == "30" ? "15" : objects) + ","));
 }
 
+TEST_CASE("a frame that all objects have left is drawn without any") {
+    const temporary_folder folder;
+    const program_result result = run_program(
+        {"scene", "population", "--n", "1", "--frames", "1", "--turnover", "1", "--picture", folder / "empty.svg"});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    REQUIRE(folder.files() == 1);
+}
+
 TEST_CASE("scene writes the same recording with a picture as without") {
     const temporary_folder folder;
     const std::string alone = folder / "alone.aabbs";

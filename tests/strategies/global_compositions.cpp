@@ -129,6 +129,27 @@ TEST_CASE("boxes of which no object was inserted are refused, and no boxes or ob
     }
 }
 
+TEST_CASE("a frame that was not taken is not searched") {
+    std::vector<box> boxes(2, box{{0, 0, 0}, {1, 1, 1}});
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        const auto stage = compose(composition, instrumentation::none);
+        stage->insert(0);
+        stage->insert(1);
+        std::vector<index_pair> found;
+        const auto nothing = Message("there is no frame to search: update was not called, or did not succeed");
+        CHECK_THROWS_MATCHES(stage->search(found), input_error, nothing);
+        stage->update(boxes);
+        boxes[1].min[0] = 2;
+        CHECK_THROWS_AS(stage->update(boxes), input_error);
+        CHECK_THROWS_MATCHES(stage->search(found), input_error, nothing);
+        boxes[1].min[0] = 1;
+        stage->update(boxes);
+        stage->search(found);
+        CHECK(found.size() == 1);
+    }
+}
+
 TEST_CASE("counted compositions do the same and say what they did") {
     std::vector<box> boxes;
     for (int i = 0; i < 200; ++i) {

@@ -1,0 +1,48 @@
+#include "counted_new.hpp"
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+/// Takes note of what malloc gave, or of what it is to be taken for.
+void* noted(void* memory) {
+    if (allocations.fails_in > 0 && --allocations.fails_in == 0) {
+        std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc)
+        memory = nullptr;
+    }
+    if (memory == nullptr) throw std::bad_alloc();
+    ++allocations.made;
+    ++allocations.alive;
+    return memory;
+}
+
+void give_back(void* memory) noexcept {
+    if (memory != nullptr) --allocations.alive;
+    std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc)
+}
+
+}  // namespace
+
+// NOLINTBEGIN(cppcoreguidelines-no-malloc)
+void* operator new(std::size_t bytes) {
+    return noted(std::malloc(bytes ? bytes : 1));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+    const auto multiple = static_cast<std::size_t>(alignment);
+    return noted(std::aligned_alloc(multiple, (bytes + multiple) / multiple * multiple));
+}
+// NOLINTEND(cppcoreguidelines-no-malloc)
+void operator delete(void* memory) noexcept {
+    give_back(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    give_back(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    give_back(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    give_back(memory);
+}

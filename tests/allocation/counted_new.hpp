@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstddef>
+
+/// Every allocation of the process, as the operators new of this program see it.
+struct allocation_log {
+    std::size_t made = 0;
+    std::size_t alive = 0;
+    std::size_t fails_in = 0;  ///< the n-th from now on throws std::bad_alloc, once; 0 for none
+};
+inline allocation_log allocations;

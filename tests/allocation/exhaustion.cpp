@@ -1,0 +1,312 @@
+// Memory that runs out at any allocation, in every stage there is: afterwards a stage is exact or refuses.
+
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../compositions.hpp"
+#include "counted_new.hpp"
+
+import aabb;
+import aabb.registry;
+import aabb.validation;
+
+using namespace aabb;
+
+namespace {
+
+/// One run of a stage in which one allocation fails, and what came of it.
+class exhausted_run {
+public:
+    /// @param fails_in which allocation fails, from 1
+    explicit exhausted_run(std::size_t fails_in) : left_(fails_in) {}
+
+    /// Makes a call with memory as short as it is; says whether it succeeded.
+    template <class Call>
+    bool attempt(Call call) {
+        allocations.fails_in = left_;
+        bool succeeded = false;
+        try {
+            call();
+            succeeded = true;
+        } catch (const std::bad_alloc&) {
+            failed_ = true;
+        } catch (const input_error&) {
+            refused_ = true;
+        }
+        left_ = std::exchange(allocations.fails_in, 0);
+        return succeeded;
+    }
+
+    /// The same, and once more when memory ran out.
+    template <class Call>
+    bool insist(Call call) {
+        return attempt(call) || (!refused_ && attempt(call));
+    }
+
+    [[nodiscard]] bool failed() const { return failed_; }
+    [[nodiscard]] bool refused() const { return refused_; }
+    void forget_refusal() { refused_ = false; }
+
+private:
+    std::size_t left_;
+    bool failed_ = false;
+    bool refused_ = false;
+};
+
+constexpr index_pair mark{7, 7};  // stands in a list before a call, and must still stand there alone when it has failed
+
+std::vector<index_pair> sorted_behind_mark(std::vector<index_pair> pairs) {
+    std::sort(pairs.begin() + 1, pairs.end());
+    return pairs;
+}
+
+constexpr std::uint32_t objects = 24;
+
+/// Boxes that move, some of them long, and who is present; the first of all, later some come and go.
+struct frame {
+    std::vector<box> boxes;
+    std::vector<bool> present;
+    std::vector<index_pair> pairs;  // behind the mark
+};
+
+std::vector<frame> frames() {
+    std::vector<frame> all;
+    for (std::uint32_t f = 0; f < 5; ++f) {
+        // More boxes in a later frame, as the pieces of a split must give way to them.
+        const std::uint32_t n = f < 3 ? objects : objects + 4;
+        frame made{{}, {}, {mark}};
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const vec3f at{static_cast<float>((i * 7 + f * 5) % 24), static_cast<float>((i * 11 + f * (i % 3)) % 19),
+                           static_cast<float>(i * 5 % 17)};
+            const float edge = i % 8 == f ? 14.0F : 3.0F;
+            made.boxes.push_back({at, at + vec3f{edge, 3, 3}});
+            made.present.push_back(f == 0 || (i + f) % 4 != 0);
+        }
+        for (std::uint32_t a = 0; a < n; ++a)
+            for (std::uint32_t b = a + 1; b < n; ++b)
+                if (made.present[a] && made.present[b] && overlaps(made.boxes[a], made.boxes[b]))
+                    made.pairs.push_back({a, b});
+        all.push_back(made);
+    }
+    return all;
+}
+
+/// Plays all frames while one allocation fails; says what is wrong then, nothing when all is well.
+std::string fault_of(global_stage& stage, const std::vector<frame>& frames, exhausted_run& run) {
+    std::vector<bool> present(objects + 4);
+    for (const frame& now : frames) {
+        for (std::uint32_t id = 0; id < now.boxes.size(); ++id) {
+            if (present[id] == now.present[id]) continue;
+            if (!run.insist([&] { now.present[id] ? stage.insert(id) : stage.remove(id); }))
+                return run.attempt([&] { stage.update(now.boxes); }) ? "goes on without an object" : "";
+            present[id] = now.present[id];
+        }
+        const bool updated = run.attempt([&] { stage.update(now.boxes); });
+        std::vector<index_pair> pairs{mark};
+        if (updated) {
+            if (run.attempt([&] { stage.search(pairs); })) {
+                if (sorted_behind_mark(pairs) != now.pairs) return "wrong pairs";
+                continue;
+            }
+            if (run.refused()) return "refuses a frame that it has taken";
+            if (pairs != std::vector{mark}) return "pairs of a search that failed";
+            if (!run.attempt([&] { stage.search(pairs); })) return "no search after one that failed";
+            if (sorted_behind_mark(pairs) != now.pairs) return "wrong pairs after a search that failed";
+        } else {
+            if (run.attempt([&] { stage.search(pairs); })) return "a search after an update that failed";
+            run.forget_refusal();
+            if (!run.insist([&] { stage.update(now.boxes); })) return {};
+            if (!run.insist([&] { stage.search(pairs); })) return "no search after an update";
+            if (sorted_behind_mark(pairs) != now.pairs) return "wrong pairs after an update that failed";
+        }
+    }
+    return {};
+}
+
+/// Lets each allocation of a stage's life fail in turn.
+void require_exact_or_refusing(const std::function<std::unique_ptr<global_stage>()>& make, bool frees_all) {
+    const std::vector<frame> all = frames();
+    for (std::size_t k = 1;; ++k) {
+        exhausted_run run(k);
+        const std::size_t before = allocations.alive;
+        std::string fault;
+        {
+            const std::unique_ptr<global_stage> stage = make();
+            fault = fault_of(*stage, all, run);
+        }
+        if (fault.empty() && frees_all && allocations.alive != before) fault = "memory that is not given back";
+        INFO("allocation " << k);
+        REQUIRE(fault == "");
+        if (!run.failed()) {
+            REQUIRE(k > 5);
+            REQUIRE_FALSE(run.refused());
+            return;
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses") {
+    for (const global_composition& composition : all_global_compositions()) {
+        INFO(to_text(composition));
+        require_exact_or_refusing([&] { return compose(composition, instrumentation::counters); }, true);
+    }
+}
+
+TEST_CASE("an engine for boxes that runs out of memory is exact afterwards, or refuses") {
+    for (const engine_info& engine : engines()) {
+        if (!engine.searches_boxes) continue;
+        INFO(engine.name);
+        // FCL itself loses the nodes of a tree that it could not finish.
+        require_exact_or_refusing([&] { return make_box_engine(engine.name); }, engine.name != "fcl");
+    }
+}
+
+namespace {
+
+/// A sheet with waves, of which some cross the others.
+mesh sheet(float height) {
+    mesh m;
+    for (std::uint32_t i = 0; i <= 4; ++i)
+        for (std::uint32_t j = 0; j <= 4; ++j)
+            m.vertices.push_back({static_cast<float>(i), static_cast<float>(j), (i + j) % 2 == 0 ? height : -height});
+    for (std::uint32_t i = 0; i < 4; ++i)
+        for (std::uint32_t j = 0; j < 4; ++j) {
+            const std::uint32_t v = i * 5 + j;
+            m.triangles.push_back({v, v + 1, v + 5});
+            m.triangles.push_back({v + 1, v + 6, v + 5});
+        }
+    return m;
+}
+
+pose moved() {
+    pose p;
+    p.translation = {0.3, 0.2, 0.1};
+    return p;
+}
+
+/// What all queries say of a model and itself, moved, behind marks.
+struct answers {
+    std::vector<index_pair> all{mark};
+    std::vector<index_pair> self{mark};
+    std::uint64_t count = 0;
+    bool any = false;
+
+    friend bool operator==(const answers&, const answers&) = default;
+};
+
+answers ask(local_stage& stage) {
+    answers given;
+    stage.all_pairs(0, {}, 0, moved(), given.all);
+    stage.self_pairs(0, given.self);
+    given.count = stage.count_pairs(0, {}, 0, moved());
+    given.any = stage.first_pair(0, {}, 0, moved()).has_value();
+    given.all = sorted_behind_mark(given.all);
+    given.self = sorted_behind_mark(given.self);
+    return given;
+}
+
+/// The same while memory may run out; nothing where a query refused.
+std::optional<answers> ask(local_stage& stage, exhausted_run& run, std::string& fault) {
+    answers given;
+    for (const bool self : {false, true}) {
+        std::vector<index_pair>& pairs = self ? given.self : given.all;
+        const auto query = [&] { self ? stage.self_pairs(0, pairs) : stage.all_pairs(0, {}, 0, moved(), pairs); };
+        if (!run.attempt(query)) {
+            if (pairs != std::vector{mark}) fault = "pairs of a query that failed";
+            if (run.refused() || !run.attempt(query)) return std::nullopt;
+        }
+        pairs = sorted_behind_mark(pairs);
+    }
+    if (!run.insist([&] { given.count = stage.count_pairs(0, {}, 0, moved()); })) return std::nullopt;
+    if (!run.insist([&] { given.any = stage.first_pair(0, {}, 0, moved()).has_value(); })) return std::nullopt;
+    return given;
+}
+
+std::string fault_of(local_stage& stage, mesh& m, const std::vector<answers>& expected, exhausted_run& run) {
+    std::string fault;
+    m = sheet(0.1F);
+    if (!run.insist([&] { stage.add_model(m); })) return "no model after one that failed";
+    if (ask(stage, run, fault) != expected[0]) return "wrong pairs";
+    m.vertices = sheet(3).vertices;
+    if (!run.attempt([&] { stage.refit(0); })) {
+        if (ask(stage, run, fault)) return "a query after a refit that failed";
+        run.forget_refusal();
+        if (!run.attempt([&] { stage.refit(0); })) return "no refit after one that failed";
+    }
+    if (ask(stage, run, fault) != expected[1]) return "wrong pairs of a mesh that has deformed";
+    return fault;
+}
+
+void require_exact_or_refusing(const std::function<std::unique_ptr<local_stage>()>& make, bool frees_all) {
+    std::vector<answers> expected;
+    for (const float height : {0.1F, 3.0F}) {
+        const mesh m = sheet(height);
+        const auto stage = make();
+        stage->add_model(m);
+        expected.push_back(ask(*stage));
+        REQUIRE(expected.back().all.size() > 10);
+    }
+    REQUIRE(expected[0] != expected[1]);
+    for (std::size_t k = 1;; ++k) {
+        exhausted_run run(k);
+        mesh m = sheet(3);
+        const std::size_t before = allocations.alive;
+        std::string fault;
+        {
+            const std::unique_ptr<local_stage> stage = make();
+            fault = fault_of(*stage, m, expected, run);
+        }
+        if (fault.empty() && frees_all && allocations.alive != before) fault = "memory that is not given back";
+        INFO("allocation " << k);
+        REQUIRE(fault == "");
+        if (!run.failed()) {
+            REQUIRE(k > 3);
+            return;
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a composed local detection that runs out of memory is exact afterwards, or refuses") {
+    for (const local_composition& composition : all_local_compositions()) {
+        INFO(to_text(composition));
+        require_exact_or_refusing([&] { return compose(composition, instrumentation::none); }, true);
+    }
+}
+
+TEST_CASE("an engine for meshes that runs out of memory is exact afterwards, or refuses") {
+    for (const engine_info& engine : engines()) {
+        INFO(engine.name);
+        require_exact_or_refusing([&] { return make_mesh_engine(engine.name); }, engine.name != "fcl");
+    }
+}
+
+TEST_CASE("a model is not asked before it fits its mesh again") {
+    const auto refuses = [](local_stage& stage) {
+        mesh m = sheet(0.1F);
+        stage.add_model(m);
+        m.vertices = sheet(3).vertices;
+        const float good = std::exchange(m.vertices[0][0], std::numeric_limits<float>::quiet_NaN());
+        CHECK_THROWS_AS(stage.refit(0), input_error);
+        CHECK_THROWS_AS(ask(stage), input_error);
+        m.vertices[0][0] = good;
+        stage.refit(0);
+        CHECK(ask(stage).any);
+    };
+    for (const local_composition& composition : all_local_compositions())
+        refuses(*compose(composition, instrumentation::none));
+    for (const engine_info& engine : engines()) refuses(*make_mesh_engine(engine.name));
+}
