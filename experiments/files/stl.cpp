@@ -118,16 +118,19 @@ loaded_mesh read_text(const file_text& file) {
 
 }  // namespace
 
-// Binary files may begin with "solid" too, so the size decides first.
+// Binary files may begin with "solid" too, so the size decides first, then whether there is anything but text: one that
+// is cut off has no size to go by.
 loaded_mesh read_stl(const file_text& file) {
     const std::size_t size = file.text.size();
     const bool has_count = size >= header_bytes;
     if (has_count && size == header_bytes + triangle_bytes * announced_triangles(file.text)) return read_binary(file);
-    if (is_keyword(std::string_view(file.text).substr(0, 5), "solid")) return read_text(file);
+    const auto is_text = [](unsigned char c) { return c >= ' ' || (c >= '\t' && c <= '\r'); };
+    if (is_keyword(std::string_view(file.text).substr(0, 5), "solid") && std::ranges::all_of(file.text, is_text))
+        return read_text(file);
     if (!has_count)
         throw aabb::input_error(file.name +
-                                ": is no STL file: it neither begins with solid nor holds the 84 bytes of a "
-                                "binary header");
+                                ": is no STL file: it is neither text that begins with solid nor holds the 84 bytes of "
+                                "a binary header");
     const std::uint64_t count = announced_triangles(file.text);
     throw aabb::input_error(file.name + ": its header announces " + std::to_string(count) + " triangles, which take " +
                             std::to_string(header_bytes + triangle_bytes * count) + " bytes, but the file has " +

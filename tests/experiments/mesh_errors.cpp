@@ -141,6 +141,7 @@ TEST_CASE("malformed binary meshes are refused") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const std::string face = raw(std::uint8_t{3}) + raw(0) + raw(1);
+    const std::string triangle = stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0});
     const std::string lying =
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty float y\n"
         "property float z\nend_header\n";
@@ -157,7 +158,12 @@ TEST_CASE("malformed binary meshes are refused") {
              {"a.ply", ply_binary + ply_points() + face + raw(2) + raw(1),
               "a.ply: goes on for 4 bytes after the last element that its header announces"},
              {"a.stl", "cube",
-              "a.stl: is no STL file: it neither begins with solid nor holds the 84 bytes of a binary "
+              "a.stl: is no STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary "
+              "header"},
+             {"a.stl", (stl_header(2, "solid but binary") + triangle).substr(0, 100),
+              "a.stl: its header announces 2 triangles, which take 184 bytes, but the file has 100"},
+             {"a.stl", stl_header(2, "solid but binary").substr(0, 82),
+              "a.stl: is no STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary "
               "header"},
              {"a.stl", stl_header(4000000000),
               "a.stl: its header announces 4000000000 triangles, which take 200000000084 bytes, but the file has 84"},
