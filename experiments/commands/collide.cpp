@@ -148,7 +148,12 @@ detection_result detect(const collide_request& request, const detection_method& 
     result.build_ms = milliseconds_of([&] {
         for (const aabb::mesh& m : meshes) method.stage->add_model(m);
     });
-    result.query_ms = milliseconds_of([&] { query(*method.stage, request, poses, result); });
+    try {
+        result.query_ms = milliseconds_of([&] { query(*method.stage, request, poses, result); });
+    } catch (const aabb::input_error& error) {
+        throw aabb::input_error(
+            fmt::format("{} against {}: {}", request.a, request.b.value_or("itself"), error.what()));
+    }
     for (const aabb::mesh& m : meshes) result.triangles.push_back(m.triangle_count());
     set_bytes(result, *method.stage, meshes);
     if (request.count && !request.self) return result;

@@ -74,17 +74,18 @@ std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {
     return pairs;
 }
 
-void play(aabb::pipeline& both, const std::vector<aabb::pose>& poses, std::uint32_t frame) {
+void play(aabb::pipeline& both, const std::vector<aabb::pose>& poses, const std::string& motion, std::uint32_t frame) {
     try {
         both.update(poses);
         both.search();
         both.detect();
     } catch (const aabb::input_error& error) {
-        throw aabb::input_error(fmt::format("frame {}: {}", frame, error.what()));
+        throw aabb::input_error(fmt::format("{}: frame {}: {}", motion, frame, error.what()));
     }
 }
 
-contacts_result detect_all(aabb::mesh_scene& scene, const both_stages& stages, std::optional<number_table>& table) {
+contacts_result detect_all(aabb::mesh_scene& scene, const std::string& motion, const both_stages& stages,
+                           std::optional<number_table>& table) {
     contacts_result result;
     result.objects = scene.mesh_of.size();
     std::optional<aabb::pipeline> both;
@@ -94,7 +95,7 @@ contacts_result detect_all(aabb::mesh_scene& scene, const both_stages& stages, s
     std::vector<aabb::pose> poses;
     std::vector<aabb::contact> contacts;
     for (std::uint32_t frame = 0; scene.next(poses); ++frame) {
-        result.milliseconds.push_back(milliseconds_of([&] { play(*both, poses, frame); }));
+        result.milliseconds.push_back(milliseconds_of([&] { play(*both, poses, motion, frame); }));
         contacts.assign(both->contacts().begin(), both->contacts().end());
         sort_each_once(contacts, fmt::format("{}, frame {}", stages.name, frame));
         for (const aabb::contact& c : contacts) {
@@ -132,14 +133,14 @@ void print_text(const contacts_request& request, const both_stages& stages, cons
 
 void find_contacts(const contacts_request& request) {
     const both_stages stages = stages_of(request);
-    const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_meshes(request.meshes));
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.motion, 1});
         require_no_mesh(*request.out, request.meshes);
         table.emplace(*request.out, "frame,object_a,object_b,triangle_a,triangle_b");
     }
-    const contacts_result result = detect_all(*scene, stages, table);
+    const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_meshes(request.meshes));
+    const contacts_result result = detect_all(*scene, request.motion, stages, table);
     if (table) table->commit();
     if (request.json)
         print_json(stages, result);

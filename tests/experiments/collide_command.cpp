@@ -133,6 +133,7 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
         {{"--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0,"}, "--pose-a: a number is missing after the last comma"},
         {{"--pose-b", "1,0,0,x,0,1,0,0,0,0,1,0"}, "--pose-b: number 4 of 12: 'x' is not a number"},
         {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,nan"}, "number 12 of 12: 'nan' is not finite"},
+        {{"--pose-b", "1,0,0,1e39,0,1,0,0,0,0,1,0"}, "a.off: seen from one mesh, the other lies beyond"},
         {{"--pose-b", "2,0,0,0,0,1,0,0,0,0,1,0"}, "--pose-b: the pose is not rigid"},
         {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
         {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
