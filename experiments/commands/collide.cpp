@@ -227,12 +227,12 @@ void collide(const collide_request& request) {
                                              pose_of(request.poses[1], "--pose-b")};
     std::vector<std::string> names{request.a};
     if (request.b) names.push_back(*request.b);
-    const std::vector<aabb::mesh> meshes = read_meshes(names);
     std::optional<number_table> table;
     if (request.out) {
         require_no_mesh(*request.out, names);
         table.emplace(*request.out, request.self ? "a,b,shared_vertices" : "a,b");
     }
+    const std::vector<aabb::mesh> meshes = read_meshes(names);
     const detection_result result = detect(request, method, meshes, poses, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)

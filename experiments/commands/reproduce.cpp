@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
@@ -92,6 +91,7 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
 
 /// Plays every experiment of the paper, and keeps what is wrong as soon as it is found.
 void measure(const std::filesystem::path& folder, bool quick) {
+    std::filesystem::create_directories(folder);  // before the configs, which take a while
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs())
         experiments.push_back(open_experiment(config.string(), quick));
@@ -100,9 +100,7 @@ void measure(const std::filesystem::path& folder, bool quick) {
         failures.insert(failures.end(), found.begin(), found.end());
         keep_failures(folder, failures);
     };
-    // What cannot be written is said by the first experiment, which makes the folder.
-    std::error_code ignored;
-    std::filesystem::remove(file_of_failures(folder), ignored);
+    std::filesystem::remove(file_of_failures(folder));
     for (const experiment& e : experiments) {
         note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, experiments.size() + 1, e.name));
         add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));

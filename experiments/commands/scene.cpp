@@ -173,9 +173,9 @@ void write_scene(const scene_request& request) {
     // Opened before anything is played, so that a file that cannot be written costs no time and no recording.
     std::optional<motion_file> motion;
     if (request.motion) motion.emplace(*request.motion);
-    surveyed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
     std::optional<output_file> picture;
     if (request.picture) picture.emplace(*request.picture);
+    surveyed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
     {
         progress shown("frames played", scene.frames());
         if (request.out) {

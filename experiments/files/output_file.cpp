@@ -11,7 +11,6 @@ module;
 #include <memory>
 #include <string>
 #include <system_error>
-#include <utility>
 
 module aabblab.files;
 
@@ -22,27 +21,34 @@ namespace aabblab {
 
 struct output_file::state {
     std::filesystem::path target;
-    bool in_place = false;       // the target is no regular file: written at once
-    std::filesystem::path part;  // the name beside the target, while there is one
+    bool in_place = false;  // the target is no regular file: written at once
+    int folder = -1;        // where the target is, opened, so that no path to it can be too long
+    std::string part;       // the name beside the target, while there is one
     file_handle file;
 
-    [[noreturn]] void fail() const {
-        throw aabb::input_error(target.string() +
-                                ": cannot be written: " + std::error_code(errno, std::generic_category()).message());
+    state() = default;
+    state(const state&) = delete;
+    state& operator=(const state&) = delete;
+    ~state() {
+        if (!part.empty()) unlinkat(folder, part.c_str(), 0);
+        if (folder >= 0) close(folder);
     }
 
-    [[nodiscard]] std::filesystem::path folder() const {
+    [[noreturn]] void refuse(const std::string& why) const {
+        throw aabb::input_error(target.string() + ": cannot be written: " + why);
+    }
+    [[noreturn]] void fail() const { refuse(std::error_code(errno, std::generic_category()).message()); }
+
+    [[nodiscard]] std::filesystem::path folder_path() const {
         return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
     }
 
     /// Gives `make` names that no other process and no other file of this one has, until it makes one. `make` must not
-    /// take an existing file (EEXIST).
+    /// take an existing file (EEXIST). They are short, since the target's name may be as long as names can be.
     template <class Make>
     [[nodiscard]] bool make_part(Make make) {
         for (int attempt = 0; attempt < 100; ++attempt) {
-            part = target;
-            part.replace_filename("." + target.filename().string() + "." + std::to_string(getpid()) + "." +
-                                  std::to_string(attempt) + ".part");
+            part = ".aabblab." + std::to_string(getpid()) + "." + std::to_string(attempt) + ".part";
             if (make(part.c_str())) return true;
             if (errno != EEXIST) break;
         }
@@ -50,13 +56,16 @@ struct output_file::state {
         return false;
     }
 
-    /// A file without a name goes with its process, however that ends.
-    void open_unnamed() {
-        const int descriptor = open(folder().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    void take(int descriptor) {
         if (descriptor < 0) return;
-        // Without /proc it could never be named.
-        if (access(link_to(descriptor).c_str(), F_OK) == 0) file.reset(fdopen(descriptor, "wb"));
+        file.reset(fdopen(descriptor, "wb"));
         if (!file) close(descriptor);
+    }
+
+    /// A file without a name goes with its process, however that ends. Without /proc it could never be named.
+    void open_unnamed() {
+        take(openat(folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+        if (file && access(link_to(fileno(file.get())).c_str(), F_OK) != 0) file.reset();
     }
 
     [[nodiscard]] static std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
@@ -67,17 +76,23 @@ output_file::output_file(std::filesystem::path file) : state_(std::make_unique<s
     state_->target = file;
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
-    if (is_directory(status)) throw aabb::input_error(file.string() + ": cannot be written: it is a folder");
+    // The file gets its name when all work is done, which is late to hear that the name is too long.
+    if (!status_known(status)) state_->refuse(error.message());
+    if (is_directory(status)) state_->refuse("it is a folder");
     if (exists(status) && !is_regular_file(status)) {
         state_->in_place = true;
         state_->file.reset(std::fopen(file.c_str(), "wb"));
     } else {
-        // Through a symbolic link, so that the link stays one.
-        if (exists(status)) state_->target = std::filesystem::canonical(file);
+        if (std::filesystem::is_symlink(file, error)) {
+            if (!exists(status)) state_->refuse("it is a symbolic link to what is not there");
+            state_->target = std::filesystem::canonical(file);  // so that the link stays one
+        }
+        state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+        if (state_->folder < 0) state_->fail();
         state_->open_unnamed();
         // Not every file system has files without a name.
         if (!state_->file && !state_->make_part([&](const char* part) {
-                state_->file.reset(std::fopen(part, "wbx"));
+                state_->take(openat(state_->folder, part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
                 return state_->file != nullptr;
             }))
             state_->fail();
@@ -85,16 +100,11 @@ output_file::output_file(std::filesystem::path file) : state_(std::make_unique<s
     if (!state_->file) state_->fail();
 }
 
-output_file::~output_file() {
-    if (!state_->file) return;
-    state_->file.reset();
-    std::error_code ignored;
-    if (!state_->part.empty()) std::filesystem::remove(state_->part, ignored);
-}
+output_file::~output_file() = default;
 
 void output_file::require_space(double bytes) const {
     std::error_code error;
-    const std::filesystem::space_info space = std::filesystem::space(state_->folder(), error);
+    const std::filesystem::space_info space = std::filesystem::space(state_->folder_path(), error);
     if (error || state_->in_place) return;
     const auto available = static_cast<double>(space.available);
     if (bytes <= available) return;
@@ -126,10 +136,12 @@ void output_file::commit() {
         // An existing file cannot be linked over, only renamed over.
         const std::string unnamed = state::link_to(fileno(file));
         if (state_->part.empty() && !state_->make_part([&](const char* part) {
-                return linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, part, AT_SYMLINK_FOLLOW) == 0;
+                return linkat(AT_FDCWD, unnamed.c_str(), state_->folder, part, AT_SYMLINK_FOLLOW) == 0;
             }))
             state_->fail();
-        if (std::rename(state_->part.c_str(), state_->target.c_str()) != 0) state_->fail();
+        if (renameat(state_->folder, state_->part.c_str(), state_->folder, state_->target.filename().c_str()) != 0)
+            state_->fail();
+        state_->part.clear();
     }
     state_->file.reset();
 }

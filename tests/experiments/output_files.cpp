@@ -51,6 +51,24 @@ TEST_CASE("an output file that is not committed has no name, so that an interrup
     }
 }
 
+TEST_CASE("an output file may have the longest of names and the longest of paths") {
+    const temporary_folder folder;
+    const std::string name(255, 'n');
+    aabblab::output_file named(folder / name);
+    named.commit();
+    REQUIRE(std::filesystem::exists(folder / name));
+    // With room for a name of one letter.
+    std::filesystem::path deep = folder.path();
+    while (deep.native().size() < 4093) {
+        const std::size_t room = 4093 - deep.native().size() - 1;
+        deep /= std::string(room > 250 ? 200 : room, 'd');
+    }
+    std::filesystem::create_directories(deep);
+    aabblab::output_file far(deep / "a");
+    far.commit();
+    REQUIRE(std::filesystem::exists(deep / "a"));
+}
+
 TEST_CASE("an output file needs a name") {
     REQUIRE_THROWS_WITH(aabblab::output_file(""), "the file to write has no name");
 }
@@ -122,6 +140,14 @@ TEST_CASE("what cannot be written is refused") {
     REQUIRE_THROWS_WITH(aabblab::output_file(folder.path()), EndsWith(": cannot be written: it is a folder"));
     REQUIRE_THROWS_WITH(aabblab::output_file(folder / "absent" / "a"),
                         EndsWith("/absent/a: cannot be written: No such file or directory"));
+    REQUIRE_THROWS_WITH(aabblab::output_file(folder / std::string(256, 'n')),
+                        EndsWith("n: cannot be written: File name too long"));
+    REQUIRE_THROWS_WITH(aabblab::output_file("/proc/self/a"),
+                        EndsWith("/proc/self/a: cannot be written: No such file or directory"));
+    std::filesystem::create_symlink("absent", folder / "link");
+    REQUIRE_THROWS_WITH(aabblab::output_file(folder / "link"),
+                        EndsWith("/link: cannot be written: it is a symbolic link to what is not there"));
+    REQUIRE(folder.files() == 1);
     const auto fill = [] {
         aabblab::output_file out("/dev/full");
         out.write(std::string(100'000, 'x'));

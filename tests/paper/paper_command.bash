@@ -37,6 +37,7 @@ expect 'two folders' 2 "unexpected argument 'more'" "$root/aabblab" paper 'my re
 expect 'no file' 2 'takes one value' "$root/aabblab" paper 'my results' --out
 expect 'not a PDF' 2 'must end in .pdf' "$root/aabblab" paper 'my results' --out x.ps
 expect 'a file as folder' 2 'cannot be written' "$root/aabblab" paper 'my results' --out 'my results/macros.tex/x.pdf'
+expect 'a name too long' 2 'cannot be written' "$root/aabblab" paper 'my results' --out "$(printf 'x%.0s' {1..300}).pdf"
 expect 'help' 0 'RESULTS_DIR' "$root/aabblab" paper --help
 holds 'TeX has not run yet' test ! -e runs
 
