@@ -16,7 +16,6 @@ needs=(
     'libfcl-dev                   -                        <fcl/config.h>'
     'libccd-dev                   libccd-devel             <ccd/ccd.h>'
     'libeigen3-dev                eigen3-devel             <eigen3/Eigen/Core>'
-    'libassimp-dev                assimp-devel             <assimp/scene.h>'
     'libboost-dev                 boost-devel              <boost/math/distributions/students_t.hpp>'
     'libtomlplusplus-dev          tomlplusplus-devel       <toml++/toml.h>'
     'libcli11-dev                 cli11-devel              <CLI/CLI.hpp>'

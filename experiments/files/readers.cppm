@@ -10,7 +10,7 @@ namespace aabblab {
 [[nodiscard]] loaded_mesh read_obj(const file_text& file);
 [[nodiscard]] loaded_mesh read_ply(const file_text& file);
 [[nodiscard]] loaded_mesh read_stl(const file_text& file);
-/// Reads through assimp, which opens the file (and those it refers to) itself.
+/// glTF 2.0, as text or binary, with its buffers inside or beside it.
 [[nodiscard]] loaded_mesh read_gltf(const file_text& file);
 
 }  // namespace aabblab
