@@ -16,6 +16,7 @@ module aabblab.files;
 
 import aabb;
 import :file_text;
+import :sizes;
 
 namespace aabblab {
 
@@ -108,10 +109,8 @@ void output_file::require_space(double bytes) const {
     if (error || state_->in_place) return;
     const auto available = static_cast<double>(space.available);
     if (bytes <= available) return;
-    std::array<char, 96> sizes{};
-    std::snprintf(sizes.data(), sizes.size(), ": would take %.1f GiB, but only %.1f GiB are free", bytes * 0x1p-30,
-                  available * 0x1p-30);
-    throw aabb::input_error(state_->target.string() + sizes.data());
+    const auto [wanted, free] = different_sizes(bytes, available);
+    throw aabb::input_error(state_->target.string() + ": would take " + wanted + ", but only " + free + " are free");
 }
 
 void output_file::write(const void* data, std::size_t bytes) {

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
 #include <cstdint>
@@ -195,4 +197,13 @@ TEST_CASE("what is no mesh file is refused") {
     // A file with a hole: it has the size, but no disk or memory is touched.
     std::filesystem::resize_file(folder.write("huge.off", "OFF"), std::uintmax_t{1} << 43);
     CHECK_THAT(error_of(folder / "huge.off"), Catch::Matchers::ContainsSubstring("16384.0 GiB of memory"));
+}
+
+TEST_CASE("what takes more memory than there is is told in sizes that differ") {
+    const auto memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+    REQUIRE_NOTHROW(aabblab::require_memory("x", memory));
+    const std::string there = std::to_string(static_cast<std::uint64_t>(memory));
+    const std::string one_more = std::to_string(static_cast<std::uint64_t>(memory) + 1);
+    REQUIRE_THROWS_WITH(aabblab::require_memory("x", memory + 1),
+                        "x would take " + one_more + " bytes of memory, but this machine has " + there + " bytes");
 }
