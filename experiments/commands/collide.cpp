@@ -184,8 +184,9 @@ void print_json(const detection_method& method, const detection_result& result) 
 }
 
 void print_text(const collide_request& request, const detection_method& method, const detection_result& result) {
-    print(fmt::format("{} ({} triangles) against {}\n", request.a, result.triangles[0],
-                      request.self ? "itself" : fmt::format("{} ({} triangles)", *request.b, result.triangles[1])));
+    print(fmt::format(
+        "{} ({} triangles) against {}\n", visible(request.a), result.triangles[0],
+        request.self ? "itself" : fmt::format("{} ({} triangles)", visible(*request.b), result.triangles[1])));
     const std::string digest = result.digest ? ", digest " + *result.digest : "";
     if (request.first && !result.pairs.empty())
         print(fmt::format("triangles {} and {} intersect\n", result.pairs[0].a, result.pairs[0].b));

@@ -140,7 +140,7 @@ int compare_folders(const compare_request& request) {
         note("times of runs at different hours differ by more than the noise within each; ratios tell more");
     }
     const comparison found = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
-    print(fmt::format("A: {} ({})\nB: {} ({})\n", request.a, makers_of(a), request.b, makers_of(b)));
+    print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
     print_answers(found);
     print_ratios(found, request.all);
     if (request.times) print_times(found, request.all);

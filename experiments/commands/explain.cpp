@@ -62,7 +62,7 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 void explain(const std::string& config) {
     const experiment e = open_experiment(config, false);
     for (const scene_choice& scene : e.scenes) {
-        print(scene.kind + " (" + parameters_text(scene) + ")\n");
+        print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n");
         explain_unused(e, scene);
         for (const contender& who : contenders_for(e, scene)) explain_contender(scene, who);
         print("\n");

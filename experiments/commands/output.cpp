@@ -1,12 +1,15 @@
 #include "output.hpp"
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -27,10 +30,44 @@ namespace {
     throw aabb::input_error("cannot write to standard output: " + std::generic_category().message(error));
 }
 
+/// The bytes of the character in front; 0 where it is a control character or no UTF-8.
+std::size_t plain_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;
+    const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+    if (byte(0) < 0xc0 || byte(0) > 0xf4 || text.size() < length) return 0;
+    std::uint32_t code = byte(0) & (0x7fU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0U) != 0x80) return 0;
+        code = code << 6U | (byte(i) & 0x3fU);
+    }
+    // The second row of control characters, forms longer than they need be, halves of UTF-16 pairs, and no Unicode.
+    constexpr std::array<std::uint32_t, 5> least = {0, 0, 0xa0, 0x800, 0x10000};
+    return code >= least[length] && (code < 0xd800 || code > 0xdfff) && code <= 0x10ffff ? length : 0;
+}
+
+std::string made_visible(std::string_view text, bool keep_lines) {
+    std::string shown;
+    while (!text.empty()) {
+        const std::size_t length = keep_lines && text[0] == '\n' ? 1 : plain_length(text);
+        if (length == 0)
+            shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+        else
+            shown += text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return shown;
+}
+
 }  // namespace
 
+std::string visible(std::string_view text) {
+    return made_visible(text, false);
+}
+
 void print(std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) refuse_output(errno);
+    const std::string shown = made_visible(text, true);
+    if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) refuse_output(errno);
 }
 
 void flush_output() {
@@ -47,7 +84,7 @@ std::size_t output_width() {
 }
 
 void note(std::string_view text) {
-    std::fprintf(stderr, "aabblab: %.*s\n", static_cast<int>(text.size()), text.data());
+    std::fprintf(stderr, "aabblab: %s\n", visible(text).c_str());
 }
 
 void require_other_file(const std::string& out, std::span<const std::string> inputs) {

@@ -14,7 +14,10 @@ public:
     output_closed() : runtime_error("standard output was closed") {}
 };
 
-/// Writes to standard output, which is buffered.
+/// The text with every byte that a terminal would obey, or that is no UTF-8, written as \x1b is; one line.
+[[nodiscard]] std::string visible(std::string_view text);
+
+/// Writes to standard output, which is buffered: lines, made visible.
 /// @throws output_closed, or aabb::input_error when it cannot be written (a full disk).
 void print(std::string_view text);
 
@@ -24,7 +27,7 @@ void flush_output();
 /// Characters of a line on standard output: of the terminal, else COLUMNS in the environment, else 80.
 [[nodiscard]] std::size_t output_width();
 
-/// A note for the user, on standard error.
+/// A note for the user, on standard error: one line, made visible.
 void note(std::string_view text);
 
 /// Refuses to write over a file that the same command reads.

@@ -100,7 +100,8 @@ void print_json(const search_result& result) {
 }
 
 void print_text(const pairs_request& request, const search_method& method, const search_result& result) {
-    print(fmt::format("{}: {} objects, {} frames\n", request.recording, result.objects, result.milliseconds.size()));
+    print(fmt::format("{}: {} objects, {} frames\n", visible(request.recording), result.objects,
+                      result.milliseconds.size()));
     print(fmt::format("{} overlapping pairs, digest {}\n", result.pairs, result.digest));
     if (!result.milliseconds.empty())
         print(fmt::format("{}: {:.3f} ms a frame (median)\n", method.name, median(result.milliseconds)));

@@ -133,7 +133,7 @@ int reproduce(const reproduce_request& request) {
     print(verdict_text(all));
     if (!failures.empty()) print(fmt::format("\n{} compositions were wrong; they have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
-    print("\nThe report is " + (folder / "report.html").string() + "\n");
+    print("\nThe report is " + visible((folder / "report.html").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 

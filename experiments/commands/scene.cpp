@@ -187,15 +187,15 @@ void write_scene(const scene_request& request) {
         }
     }
     const std::string size = fmt::format("{} objects, {} frames", scene.objects(), scene.frames());
-    if (request.out) print(fmt::format("wrote {}: {}\n", *request.out, size));
+    if (request.out) print(fmt::format("wrote {}: {}\n", visible(*request.out), size));
     if (motion) {
         motion->commit();
-        print(fmt::format("wrote {}: {}\n", *request.motion, size));
+        print(fmt::format("wrote {}: {}\n", visible(*request.motion), size));
     }
     if (picture) {
-        picture->write(picture_of(scene.seen(), {kind.name, kind.summary, all_parameters(kind, choice)}));
+        picture->write(picture_of(scene.seen(), {kind.name, kind.summary, visible(all_parameters(kind, choice))}));
         picture->commit();
-        print(fmt::format("wrote {}: {}\n", *request.picture, size));
+        print(fmt::format("wrote {}: {}\n", visible(*request.picture), size));
     }
     print(displacement_text(scene.seen()) + "\n");
 }

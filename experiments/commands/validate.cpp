@@ -83,7 +83,7 @@ int validate(const validate_request& request) {
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
         const scene_verdicts result = validate_scene(scene, contenders_for(e, scene));
-        print(scene.kind + " (" + parameters_text(scene) + "), all pairs of " + std::to_string(result.frames) +
+        print(scene.kind + " (" + visible(parameters_text(scene)) + "), all pairs of " + std::to_string(result.frames) +
               " frames against " + result.judge + ", digest " + result.digest + "\n\n");
         table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
         for (const verdict& v : result.verdicts) {

@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
@@ -20,12 +21,11 @@ struct file_text {
     std::string text;
 };
 
-/// The word in quotes, for a sentence: at most 40 bytes of it, unprintable ones as '?'.
+/// The word in quotes, for a sentence: at most 40 bytes of it, and no part of a character.
 [[nodiscard]] inline std::string quoted(std::string_view word) {
-    std::string text = "'";
-    for (const char c : word.substr(0, 40))
-        text += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f ? '?' : c;
-    return text + (word.size() > 40 ? "…'" : "'");
+    std::size_t end = std::min<std::size_t>(word.size(), 40);
+    while (end > 0 && end < word.size() && (static_cast<unsigned char>(word[end]) & 0xc0U) == 0x80) --end;
+    return "'" + std::string(word.substr(0, end)) + (end < word.size() ? "…'" : "'");
 }
 
 /// Refuses what is not a file with something in it.
