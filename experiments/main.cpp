@@ -1,3 +1,5 @@
+#include <fcntl.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <csignal>
@@ -34,6 +36,19 @@ void run(CLI::App& program, int argc, char** argv) {
     flush_output();
 }
 
+/// A file opened later would take the place of a standard stream that is closed, and get what is printed.
+/// @throws aabb::input_error when it is standard output, which nothing can stand in for.
+void require_standard_streams() {
+    bool is_closed = false;
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) >= 0) continue;
+        is_closed |= stream == STDOUT_FILENO;
+        // Opening takes the lowest number that is free, which is this one.
+        if (open("/dev/null", O_RDWR) != stream) throw aabb::input_error("/dev/null cannot be opened");
+    }
+    if (is_closed) throw aabb::input_error("standard output is closed; nothing could be printed");
+}
+
 /// Says what went wrong, after what was printed before it.
 int fail(int status, const std::string& sentence) {
     try {
@@ -49,6 +64,7 @@ int main_of(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is the error EPIPE, told apart from others in print()
     int status = 0;
     try {
+        require_standard_streams();
         CLI::App program(
             "AABB Lab: collision detection with axis-aligned bounding boxes, composed, proved and measured", "aabblab");
         program.set_version_flag("--version", "aabblab " AABBLAB_VERSION, "Print the version");

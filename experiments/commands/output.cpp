@@ -25,9 +25,14 @@ namespace aabblab {
 
 namespace {
 
-[[noreturn]] void refuse_output(int error) {
-    if (error == EPIPE) throw output_closed();
-    throw aabb::input_error("cannot write to standard output: " + std::generic_category().message(error));
+bool outlives_reader = false;
+bool reader_has_gone = false;
+
+void lose_output(int error) {
+    if (error != EPIPE)
+        throw aabb::input_error("cannot write to standard output: " + std::generic_category().message(error));
+    if (!outlives_reader) throw output_closed();
+    reader_has_gone = true;
 }
 
 /// The bytes of the character in front; 0 where it is a control character or no UTF-8.
@@ -66,12 +71,17 @@ std::string visible(std::string_view text) {
 }
 
 void print(std::string_view text) {
+    if (reader_has_gone) return;
     const std::string shown = made_visible(text, true);
-    if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) refuse_output(errno);
+    if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) lose_output(errno);
 }
 
 void flush_output() {
-    if (std::fflush(stdout) != 0) refuse_output(errno);
+    if (!reader_has_gone && std::fflush(stdout) != 0) lose_output(errno);
+}
+
+void outlive_reader() {
+    outlives_reader = true;
 }
 
 std::size_t output_width() {

@@ -27,6 +27,10 @@ void flush_output();
 /// Characters of a line on standard output: of the terminal, else COLUMNS in the environment, else 80.
 [[nodiscard]] std::size_t output_width();
 
+/// For commands whose work is not what they print: from now on, when whoever read standard output has gone, what is
+/// printed is lost and the work goes on.
+void outlive_reader();
+
 /// A note for the user, on standard error: one line, made visible.
 void note(std::string_view text);
 

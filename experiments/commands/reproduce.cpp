@@ -118,6 +118,7 @@ std::string verdict_text(const reproduction& all) {
 }
 
 int reproduce(const reproduce_request& request) {
+    outlive_reader();
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/reproduce-quick" : "results/reproduce");
     const auto is_there = [&](const std::filesystem::path& config) {

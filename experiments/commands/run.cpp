@@ -30,6 +30,7 @@ struct run_request {
 };
 
 int run(const run_request& request) {
+    outlive_reader();
     const experiment e = request.process ? read_experiment(request.config, request.quick ? experiment_size::quick
                                                                                          : experiment_size::full)
                                          : open_experiment(request.config, request.quick);

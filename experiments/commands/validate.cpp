@@ -77,6 +77,7 @@ struct validate_request {
 };
 
 int validate(const validate_request& request) {
+    outlive_reader();
     if (request.quick && !request.config)
         throw aabb::input_error("--quick takes what a config says under quick, so it needs CONFIG");
     const experiment e = request.config ? open_experiment(*request.config, request.quick) : built_in_experiment();

@@ -10,6 +10,22 @@
 #include <string>
 #include <vector>
 
+#include "temporary_folder.hpp"
+
+namespace {
+
+/// Whoever was to read standard output has gone.
+program_result run_unread(const std::vector<std::string>& arguments) {
+    int ends[2];
+    REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
+    close(ends[0]);
+    program_result result = run_program(arguments, {}, ends[1]);
+    close(ends[1]);
+    return result;
+}
+
+}  // namespace
+
 TEST_CASE("The program prints its version and its help") {
     REQUIRE(run_program({"--version"}).out.starts_with("aabblab "));
     const program_result help = run_program({"--help"});
@@ -54,13 +70,41 @@ TEST_CASE("Output that cannot be written is an error, output that nobody reads i
     REQUIRE(failed.status == 2);
     REQUIRE(is_one_sentence(failed.err));
 
-    int ends[2];
-    REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
-    close(ends[0]);
-    const program_result quiet = run_program({"list", "--json"}, {}, ends[1]);
-    close(ends[1]);
+    const program_result quiet = run_unread({"list", "--json"});
     REQUIRE(quiet.status == 0);
     REQUIRE(quiet.err.empty());
+}
+
+TEST_CASE("An experiment whose tables nobody reads is finished all the same") {
+    const temporary_folder folder;
+    const std::string config =
+        folder.write("c.toml", "name = \"c\"\n[[scene]]\nkind = [\"brownian\", \"still\"]\nobjects = 20\nframes = 1\n" +
+                                   std::string("[measure]\nrepeats = 2\n"));
+    const program_result unread = run_unread({"run", config, "--out", folder / "r"});
+    CHECK(unread.status == 0);
+    CHECK(unread.err.empty());
+    const std::string rows = bytes_of_file(folder / "r/results.csv");
+    CHECK(std::ranges::count(rows, '\n') == 1 + 2 * 2);
+    // The second scene cannot be played, which has to be known by the status.
+    folder.write("a.off", "OFF\n3 1 0\n0 0 0\n3e38 0 0\n0 3e38 0\n3 0 1 2\n");
+    const std::string failing =
+        folder.write("f.toml",
+                     "name = \"f\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n[[scene]]\nkind = "
+                     "\"mesh_pair\"\nmeshes = [\"" +
+                         (folder / "a.off").string() + "\"]\nframes = 2\nnormalise = \"no\"\n");
+    CHECK(run_unread({"validate", failing}).status == 2);
+    CHECK(run_unread({"run", failing, "--out", folder / "f"}).status == 2);
+}
+
+TEST_CASE("With standard output closed nothing is begun, and no file takes its place") {
+    const temporary_folder folder;
+    const std::string out = folder / "s.aabbs";
+    const program_result refused =
+        run_program({"scene", "brownian", "--n", "20", "--frames", "1", "--out", out}, {}, closed_output);
+    CHECK(refused.status == 2);
+    CHECK(is_one_sentence(refused.err));
+    CHECK(refused.err.find("standard output is closed") != std::string::npos);
+    CHECK(folder.files() == 0);
 }
 
 TEST_CASE("list shows every strategy, engine, scene, shape and metric") {

@@ -42,9 +42,12 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
 
 }  // namespace program_detail
 
+inline constexpr int closed_output = -2;
+
 /// Runs the program under test to its end.
 /// @param input what it reads from standard input
-/// @param output an open file that it writes standard output to, in place of one whose content is returned
+/// @param output an open file that it writes standard output to, in place of one whose content is returned; or
+/// closed_output
 [[nodiscard]] inline program_result run_program(std::vector<std::string> arguments, const std::string& input = {},
                                                 int output = -1) {
     const auto in = program_detail::make_file(input);
@@ -57,7 +60,10 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_adddup2(&files, fileno(in.get()), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&files, output < 0 ? fileno(out.get()) : output, STDOUT_FILENO);
+    if (output == closed_output)
+        posix_spawn_file_actions_addclose(&files, STDOUT_FILENO);
+    else
+        posix_spawn_file_actions_adddup2(&files, output < 0 ? fileno(out.get()) : output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, fileno(err.get()), STDERR_FILENO);
     pid_t child = 0;
     const int failed = posix_spawn(&child, argv[0], &files, nullptr, argv.data(), environ);
