@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -98,6 +99,8 @@ int main_of(int argc, char** argv) {
         return fail(bad_input, error.what());
     } catch (const defect& error) {
         return fail(check_failed, error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return fail(bad_input, error.path1().string() + ": " + error.code().message());
     } catch (const std::bad_alloc&) {
         return fail(bad_input, "this does not fit into memory");
     } catch (const std::length_error&) {

@@ -8,6 +8,7 @@ module;
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -56,8 +57,9 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
 }
 
 bool is_there(const std::string& mesh) {
+    std::error_code ignored;
     return std::ranges::find(shapes(), mesh.substr(0, mesh.find(':')), &shape_info::name) != shapes().end() ||
-           std::filesystem::exists(mesh) || std::filesystem::exists(data_folder() / mesh);
+           std::filesystem::exists(mesh, ignored) || std::filesystem::exists(data_folder() / mesh, ignored);
 }
 
 std::vector<std::string> names_of(const document& doc, const node& scene, const std::string& key) {

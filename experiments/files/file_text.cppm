@@ -36,6 +36,7 @@ struct file_text {
     const auto status = std::filesystem::status(file, error);
     if (status.type() == std::filesystem::file_type::not_found)
         throw aabb::input_error(file.string() + ": no such file");
+    if (!status_known(status)) throw aabb::input_error(file.string() + ": cannot be read: " + error.message());
     if (is_directory(status)) throw aabb::input_error(file.string() + ": is a folder, not a file");
     if (!is_regular_file(status)) throw aabb::input_error(file.string() + ": is not a regular file");
     const auto size = std::filesystem::file_size(file, error);

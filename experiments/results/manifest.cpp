@@ -85,7 +85,8 @@ std::string manifest_text(const experiment& e, const std::string& date, const sc
                         {"config", {{"file", e.file}, {"hash", hash_of(e)}, {"quick", e.quick}, {"text", e.text}}},
                         {"scenes", scenes},
                         {"notes", e.notes}};
-    return manifest.dump(2) + "\n";
+    // The file's name need not be UTF-8.
+    return manifest.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment& e) {

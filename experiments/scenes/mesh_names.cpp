@@ -82,7 +82,8 @@ loaded_mesh make_mesh(std::string_view name) {
     for (const std::filesystem::path& file : {std::filesystem::path(name), data_folder() / name})
         if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
     if (is_shape(name.substr(0, name.find(':')))) return {make_shape(shape_types{}, aabb::parse_strategy(name)), {}};
-    if (std::filesystem::exists(name, ignored)) return read_mesh(name);  // says what it is instead of a file
+    if (std::filesystem::status(name, ignored).type() != std::filesystem::file_type::not_found)
+        return read_mesh(name);  // says what it is instead of a file
     throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here or in " +
                             data_folder().string() + ", or a shape)");
 }

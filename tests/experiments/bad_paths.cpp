@@ -1,0 +1,206 @@
+#include <sys/stat.h>
+
+#include <catch2/catch_test_macros.hpp>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh_bytes.hpp"
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace {
+
+using arguments = std::vector<std::string>;
+using command_with = std::function<arguments(const std::string& path)>;
+
+/// What every command needs beside the path in question.
+class inputs {
+public:
+    inputs()
+        : mesh_(folder_.write("a.off", tetrahedron)),
+          motion_(folder_.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n")),
+          config_(folder_.write("c.toml", config_of("brownian", ""))),
+          recording_(folder_ / "s.aabbs") {
+        REQUIRE(run_program(joined(small_, {"--out", recording_})).status == 0);
+    }
+
+    [[nodiscard]] const temporary_folder& folder() const { return folder_; }
+    [[nodiscard]] const std::string& recording() const { return recording_; }
+
+    /// Commands that read a file of the user's.
+    [[nodiscard]] std::vector<command_with> readers() const {
+        return {
+            [&](const std::string& path) { return arguments{"pairs", path}; },
+            [&](const std::string& path) { return arguments{"collide", path, mesh_}; },
+            [&](const std::string& path) { return arguments{"collide", mesh_, path}; },
+            [&](const std::string& path) { return arguments{"contacts", path, mesh_}; },
+            [&](const std::string& path) { return arguments{"contacts", motion_, path}; },
+            [&](const std::string& path) { return arguments{"classify", path}; },
+            [&](const std::string& path) { return arguments{"compare", path, folder_.path()}; },
+            [&](const std::string& path) { return arguments{"explain", path}; },
+            [&](const std::string& path) { return arguments{"validate", path}; },
+            [&](const std::string& path) { return arguments{"run", path}; },
+            [&](const std::string& path) { return arguments{"reproduce", "--judge", "--out", path}; },
+            [&](const std::string& path) {
+                return arguments{"scene", "mesh_pair", "--mesh", path, "--out", folder_ / "x.aabbs"};
+            },
+            [&](const std::string& path) {
+                return arguments{"explain", folder_.write("p.toml", config_of("mesh_pair", path))};
+            },
+        };
+    }
+
+    /// Commands that write a file.
+    [[nodiscard]] std::vector<command_with> writers() const {
+        return {
+            [&](const std::string& path) { return arguments{"pairs", recording_, "--out", path}; },
+            [&](const std::string& path) { return arguments{"collide", mesh_, mesh_, "--out", path}; },
+            [&](const std::string& path) { return arguments{"contacts", motion_, mesh_, "--out", path}; },
+            [&](const std::string& path) { return joined(small_, {"--out", path}); },
+            [&](const std::string& path) { return joined(small_, {"--picture", path}); },
+            [&](const std::string& path) {
+                return arguments{"scene", "mesh_pair", "--frames", "1",        "--normalise",
+                                 "no",    "--mesh",    mesh_,      "--motion", path};
+            },
+        };
+    }
+
+    /// Commands that fill a folder.
+    [[nodiscard]] std::vector<command_with> folder_writers() const {
+        return {
+            [&](const std::string& path) { return arguments{"run", config_, "--out", path}; },
+            [&](const std::string& path) { return arguments{"run", config_, "--resume", "--out", path}; },
+            [&](const std::string& path) { return arguments{"reproduce", "--quick", "--out", path}; },
+        };
+    }
+
+    [[nodiscard]] static std::string config_of(const std::string& kind, const std::string& mesh) {
+        return "name = \"c\"\n[[scene]]\nkind = \"" + kind + "\"\nframes = 1\n" +
+               (kind == "brownian" ? "objects = 20" : "meshes = [\"" + mesh + "\"]") + "\n[measure]\nrepeats = 1\n";
+    }
+
+private:
+    temporary_folder folder_;
+    std::string mesh_, motion_, config_, recording_;
+    const arguments small_ = {"scene", "brownian", "--n", "20", "--frames", "1"};
+};
+
+void require_refused(const arguments& command, const std::string& path) {
+    const program_result result = run_program(command);
+    CAPTURE(command, result.err);
+    CHECK(result.status == 2);
+    CHECK(result.out.empty());
+    CHECK(is_one_sentence(result.err));
+    CHECK(result.err.find(path) != std::string::npos);
+}
+
+std::string repeated(const std::string& part, std::size_t times) {
+    std::string all;
+    for (std::size_t i = 0; i < times; ++i) all += part;
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("A path that leads to no file gets one sentence that names it, in every command") {
+    const inputs all;
+    const temporary_folder& folder = all.folder();
+    std::filesystem::create_directory(folder / "folder.off");
+    std::filesystem::create_symlink("absent", folder / "dangling");
+    std::filesystem::create_symlink("loop", folder / "loop");
+    const std::vector<std::string> nowhere = {folder / "absent",
+                                              folder / std::string(300, 'n'),
+                                              repeated("long/", 1000) + "n",
+                                              folder / "a.off/b",
+                                              folder / "dangling",
+                                              folder / "loop",
+                                              folder / "loop/b"};
+    for (const command_with& command : all.readers())
+        for (const std::string& path : nowhere) require_refused(command(path), path);
+    const std::vector<std::string> unwritable = {folder / std::string(300, 'n'),
+                                                 repeated("long/", 1000) + "n",
+                                                 folder / "a.off/b",
+                                                 folder / "loop",
+                                                 folder / "loop/b",
+                                                 "/proc/self/b"};
+    for (const std::string& path : unwritable) {
+        for (const command_with& command : all.writers()) require_refused(command(path), path);
+        for (const command_with& command : all.folder_writers()) require_refused(command(path), path);
+    }
+    for (const command_with& command : all.writers()) {
+        for (const std::filesystem::path& path : {folder / "folder.off", folder / "absent" / "b", folder / "dangling"})
+            require_refused(command(path), path);
+        require_refused(command(""), "");
+    }
+    for (const command_with& command : all.folder_writers()) {
+        require_refused(command(folder / "a.off"), "a.off");
+        require_refused(command(""), "");
+    }
+    for (const command_with& command : all.readers()) {
+        require_refused(command(folder / "folder.off"), "folder.off");
+        require_refused(command(""), "");
+    }
+}
+
+TEST_CASE("A pipe or a device where a file is expected is refused, not waited for") {
+    const inputs all;
+    const std::string pipe = all.folder() / "pipe.off";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    for (const std::string& path : {pipe, std::string("/dev/null")})
+        for (const arguments& command : {arguments{"pairs", path},
+                                         {"collide", path, "icosphere"},
+                                         {"contacts", path, "icosphere"},
+                                         {"compare", path, path},
+                                         {"scene", "mesh_pair", "--mesh", path, "--out", all.folder() / "x"}})
+            require_refused(command, path);
+}
+
+TEST_CASE("A name that is not UTF-8 names a file like any other, and is shown with its bytes") {
+    const inputs all;
+    const temporary_folder& folder = all.folder();
+    const std::string out = folder / "x\xff";
+    for (const command_with& command : all.writers()) {
+        CHECK(run_program(command(out)).status == 0);
+        CHECK(std::filesystem::is_regular_file(out));
+        std::filesystem::remove(out);
+    }
+    const std::string mesh = folder.write("m\xff.off", tetrahedron);
+    CHECK(run_program({"collide", mesh, mesh, "--json"}).status == 0);
+    const program_result text = run_program({"collide", mesh, mesh});
+    CHECK(text.out.find("m\\xff.off (4 triangles)") != std::string::npos);
+    const std::string picture = folder / "p.svg";
+    REQUIRE(run_program({"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--picture", picture}).status == 0);
+    CHECK(bytes_of_file(picture).find("m\\xff.off") != std::string::npos);
+
+    const std::string config = folder.write("c\xff.toml", inputs::config_of("brownian", ""));
+    CHECK(run_program({"run", config, "--out", folder / "r\xff"}).status == 0);
+    CHECK(bytes_of_file(folder / "r\xff/manifest.json").find("/c\xef\xbf\xbd.toml") != std::string::npos);
+    CHECK(run_program({"run", config, "--resume", "--out", folder / "r\xff"}).status == 0);
+    CHECK(run_program({"compare", folder / "r\xff", folder / "r\xff"}).status == 0);
+    require_refused({"pairs", folder / "absent\xff"}, "/absent\\xff: no such file");
+}
+
+TEST_CASE("What a terminal would obey is shown instead") {
+    const inputs all;
+    const temporary_folder& folder = all.folder();
+    const std::string name = "a\x1b[31m\nb\x7f\xc2\x9bz\xc3\xa9.off";  // the last but one is é
+    const std::string shown = "a\\x1b[31m\\x0ab\\x7f\\xc2\\x9bz\xc3\xa9.off";
+    std::vector<command_with> readers = all.readers();
+    readers.pop_back();  // TOML takes no such names as they are
+    for (const command_with& command : readers) require_refused(command(folder / name), shown);
+    require_refused({"collide", folder.write("b.off", "OFF\n\x1b[2J 1 0\n"), "icosphere"}, "found '\\x1b[2J'");
+    const std::string config = folder.write("c.toml", inputs::config_of("mesh_pair", "x\\u001b\\n.off"));
+    require_refused({"explain", config}, "'x\\x1b\\x0a.off'");
+
+    const std::string mesh = folder.write(name, tetrahedron);
+    const arguments printed[] = {{"collide", mesh, mesh},
+                                 {"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--out", folder / name},
+                                 {"contacts", folder.write("\x1b.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"), mesh}};
+    const program_result collided = run_program(printed[0]);
+    CHECK(collided.out.find(shown + " (4 triangles) against") != std::string::npos);
+    CHECK(run_program(printed[2]).out.find("/\\x1b.txt: 1 objects") != std::string::npos);
+    require_refused(printed[1], shown);  // it would write over the mesh
+}
