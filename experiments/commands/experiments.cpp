@@ -65,8 +65,9 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> all) {
     return rows;
 }
 
-void print_scenes(std::span<const scene_summary> scenes, printed shown) {
-    for (const scene_summary& scene : scenes) {
+void print_scenes(std::vector<scene_summary> scenes, printed shown) {
+    for (scene_summary& scene : scenes) {
+        scene.parameters = visible(scene.parameters);  // names of meshes are in them
         print(heading_of(scene) + "\n" + to_text(table_of(scene), output_width()) + "\n");
         if (shown != printed::tables_and_counts) continue;
         if (const table counts = counts_table_of(scene); !counts.columns.empty())
