@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
