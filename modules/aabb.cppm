@@ -8,6 +8,7 @@ export import :build_node;
 export import :counters;
 export import :digest;
 export import :error;
+export import :floating_point;
 export import :frame_state;
 export import :geometry;
 export import :global_search;

@@ -8,6 +8,7 @@ module;
 module aabb;
 
 import :error;
+import :floating_point;
 import :frame_state;
 import :geometry;
 import :mesh;
@@ -30,6 +31,7 @@ pipeline::pipeline(const mesh_scene& scene, global_stage& global, local_stage& l
 
 void pipeline::update(std::span<const pose> poses) {
     frame_.begin();
+    require_ieee_arithmetic();
     if (poses.size() != boxes_.size())
         throw input_error("the scene has " + std::to_string(boxes_.size()) + " objects, but the frame has " +
                           std::to_string(poses.size()) + " poses");

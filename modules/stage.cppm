@@ -94,7 +94,7 @@ public:
     [[nodiscard]] virtual std::vector<std::string> left_out() const = 0;
 };
 
-/// A triangle test alone.
+/// A triangle test alone; it throws input_error as `require_ieee_arithmetic`.
 class triangle_test {
 public:
     triangle_test() = default;

@@ -11,6 +11,7 @@ export module aabb:global_search;
 
 import :append_whole;
 import :counters;
+import :floating_point;
 import :frame_state;
 import :geometry;
 import :membership;
@@ -48,10 +49,11 @@ public:
 
     /// Sorts and partitions the boxes of a frame, indexed by id. They are looked at again by `search`.
     /// @throws input_error on a box that is not finite or inverted, when ids reach beyond the boxes, when there are
-    /// boxes but no object was ever inserted, or when the partition refuses; another update must succeed before the
-    /// next search then.
+    /// boxes but no object was ever inserted, or when the partition or `require_ieee_arithmetic` refuses; another update
+    /// must succeed before the next search then.
     void update(std::span<const box> boxes) {
         frame_.begin();
+        require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
         boxes_ = boxes;
@@ -80,9 +82,10 @@ public:
     }
 
     /// Appends every overlapping pair, each once, a < b, in no particular order.
-    /// @throws input_error when the last update did not succeed, or there was none.
+    /// @throws input_error when the last update did not succeed, or there was none, and as `require_ieee_arithmetic`.
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
+        require_ieee_arithmetic();
         append_whole(pairs, [&] {
             if constexpr (cuts) {
                 for (std::uint32_t s = 0; s < subsets_.size(); ++s)
@@ -135,6 +138,7 @@ public:
 
     void update(std::span<const box> boxes) {
         frame_.begin();
+        require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
         frame_.change([&] {
@@ -146,6 +150,7 @@ public:
 
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
+        require_ieee_arithmetic();
         append_whole(pairs, [&] { sweep_.search(pairs); });
     }
 

@@ -11,6 +11,7 @@ export module aabb:local_detection;
 
 import :append_whole;
 import :counters;
+import :floating_point;
 import :geometry;
 import :leaf_test;
 import :mesh;
@@ -24,7 +25,8 @@ import :triangle_policy;
 export namespace aabb {
 
 /// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles. The work
-/// is done in A's frame (`relative_pose`). Nothing is allocated once the stacks have grown to the deepest query.
+/// is done in A's frame (`relative_pose`). Nothing is allocated once the stacks have grown to the deepest query. Every
+/// query throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(detail::is_accepted<detail::sentence_of<Tree, Triangle>()>);
@@ -115,6 +117,7 @@ private:
 
     /// Forgets an earlier query, which may have stopped half-way.
     void begin() {
+        require_ieee_arithmetic();
         stack_.clear();
         image_of_ = no_triangle;
     }

@@ -7,6 +7,7 @@ module;
 export module aabb:model;
 
 import :error;
+import :floating_point;
 import :geometry;
 import :mesh;
 import :mesh_fit;
@@ -18,16 +19,18 @@ export namespace aabb {
 template <TreePolicy Tree>
 class model {
 public:
-    /// @throws input_error on a mesh that `require_valid` refuses.
+    /// @throws input_error on a mesh that `require_valid` refuses, and as `require_ieee_arithmetic`.
     explicit model(const mesh& m, Tree tree = {}) : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
+        require_ieee_arithmetic();
         require_valid(m);
         tree_.build(m);
     }
 
     /// After vertices of the mesh have moved.
     /// @param boxes scratch, one box an internal node
-    /// @throws input_error when the mesh is no longer valid or of as many triangles.
+    /// @throws input_error when the mesh is no longer valid or of as many triangles, and as `require_ieee_arithmetic`.
     void refit(std::vector<box>& boxes) {
+        require_ieee_arithmetic();
         fit_.renew([&] {
             require_valid(*mesh_);
             if (mesh_->triangles.size() != triangles_)

@@ -141,9 +141,11 @@ public:
     explicit composed_triangle_test(Triangle triangle) : triangle_(std::move(triangle)) {}
 
     [[nodiscard]] bool intersects(const triangle3f& s, const triangle3f& t) const override {
+        require_ieee_arithmetic();
         return triangle_.intersects(s, t);
     }
     [[nodiscard]] bool intersects(const triangle3d& s, const triangle3d& t) const override {
+        require_ieee_arithmetic();
         if constexpr (DoubleTrianglePolicy<Triangle>)
             return triangle_.intersects(s, t);
         else

@@ -12,8 +12,9 @@ import aabb;
 
 export namespace aabb {
 
-/// Exact for any finite triangles of floats or doubles, zero-area ones included. The signs of at most eight
-/// orientations decide (Devillers and Guigue, "Faster triangle-triangle intersection tests", INRIA RR-4488, 2002).
+/// Exact for any finite triangles of floats or doubles, zero-area ones included; who calls it outside of a query asks
+/// `require_ieee_arithmetic` first. The signs of at most eight orientations decide (Devillers and Guigue, "Faster
+/// triangle-triangle intersection tests", INRIA RR-4488, 2002).
 /// When to use: wherever a wrong answer matters; it costs little more than an inexact test.
 struct exact_triangle {
     static constexpr std::string_view name = "exact";

@@ -1,0 +1,114 @@
+#include <xmmintrin.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+
+#include <cfenv>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+import aabb;
+import aabb.registry;
+
+using aabb::input_error;
+
+namespace {
+
+/// Of SSE's control register: results that are denormal become zero, operands that are denormal count as zero.
+constexpr unsigned flush_to_zero = 1U << 15;
+constexpr unsigned denormals_are_zero = 1U << 6;
+
+/// Another arithmetic for this thread, while it lives.
+class arithmetic {
+public:
+    arithmetic(unsigned control_bits, int rounding) {
+        std::fesetround(rounding);
+        _mm_setcsr(_mm_getcsr() | control_bits);
+    }
+    arithmetic(const arithmetic&) = delete;
+    arithmetic& operator=(const arithmetic&) = delete;
+    ~arithmetic() { std::fesetenv(&before_); }
+
+private:
+    std::fenv_t before_ = [] {
+        std::fenv_t now;
+        std::fegetenv(&now);
+        return now;
+    }();
+};
+
+/// What the query says in another arithmetic; nothing where it answers.
+std::string sentence(unsigned control_bits, int rounding, const std::function<void()>& query) {
+    const arithmetic other(control_bits, rounding);
+    try {
+        query();
+    } catch (const input_error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+struct one_mesh : aabb::mesh_scene {
+    explicit one_mesh(const aabb::mesh& m) {
+        meshes = {m};
+        mesh_of = {0};
+    }
+    [[nodiscard]] std::size_t frames() const override { return 1; }
+    bool next(std::vector<aabb::pose>&) override { return false; }
+};
+
+struct entry {
+    std::string name;
+    std::function<void()> query;
+};
+
+}  // namespace
+
+TEST_CASE("every query refuses arithmetic in which answers cannot be exact") {
+    const aabb::mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    const std::vector<aabb::box> boxes{{{0, 0, 0}, {1, 1, 1}}};
+    const auto listed = aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+    aabb::global_composition coherent;
+    coherent.sort = {"insertion", {}};
+    coherent.sweep = {"incremental", {}};
+    const auto kept = aabb::compose(coherent, aabb::instrumentation::none);
+    for (const auto& search : {listed.get(), kept.get()}) {
+        search->insert(0);
+        search->update(boxes);
+    }
+    const auto local = aabb::compose(aabb::local_composition{}, aabb::instrumentation::none);
+    REQUIRE(local->add_model(mesh) == 0);
+    const auto triangles = aabb::make_triangle_test({"exact", {}});
+    const auto in_pipeline = aabb::compose(aabb::local_composition{}, aabb::instrumentation::none);
+    const auto pieces = aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+    const one_mesh scene(mesh);
+    aabb::pipeline both(scene, *pieces, *in_pipeline);
+    const std::vector<aabb::pose> poses(1);
+    std::vector<aabb::index_pair> pairs;
+    const std::vector<entry> entries{
+        {"update", [&] { listed->update(boxes); }},
+        {"search", [&] { listed->search(pairs); }},
+        {"update of a coherent sweep", [&] { kept->update(boxes); }},
+        {"search of a coherent sweep", [&] { kept->search(pairs); }},
+        {"add_model", [&] { local->add_model(mesh); }},
+        {"refit", [&] { local->refit(0); }},
+        {"all_pairs", [&] { local->all_pairs(0, {}, 0, {}, pairs); }},
+        {"first_pair", [&] { static_cast<void>(local->first_pair(0, {}, 0, {})); }},
+        {"count_pairs", [&] { static_cast<void>(local->count_pairs(0, {}, 0, {})); }},
+        {"self_pairs", [&] { local->self_pairs(0, pairs); }},
+        {"triangles of floats", [&] { static_cast<void>(triangles->intersects(aabb::triangle3f{}, {})); }},
+        {"triangles of doubles", [&] { static_cast<void>(triangles->intersects(aabb::triangle3d{}, {})); }},
+        {"pipeline", [&] { both.update(poses); }}};
+    for (const auto& [name, query] : entries) {
+        CAPTURE(name);
+        CHECK(sentence(0, FE_TONEAREST, query).empty());
+        for (const unsigned bits : {flush_to_zero, denormals_are_zero, flush_to_zero | denormals_are_zero})
+            CHECK_THAT(sentence(bits, FE_TONEAREST, query),
+                       Catch::Matchers::ContainsSubstring("flushes denormal numbers to zero"));
+        for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
+            CHECK_THAT(sentence(0, rounding, query), Catch::Matchers::ContainsSubstring("does not round to nearest"));
+        CHECK(sentence(0, FE_TONEAREST, query).empty());
+    }
+}
