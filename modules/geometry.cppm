@@ -12,6 +12,9 @@ export module aabb:geometry;
 
 import :error;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Point or vector in 3-space; an aggregate, indexed by axis (0 = x, 1 = y, 2 = z).

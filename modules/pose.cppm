@@ -10,6 +10,9 @@ export module aabb:pose;
 import :error;
 import :geometry;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Rigid motion x -> R x + t, in double. `rotation` is row-major.

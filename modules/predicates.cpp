@@ -11,6 +11,9 @@ module aabb;
 import :geometry;
 import :predicates;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 namespace aabb {
 
 namespace {

@@ -2,10 +2,14 @@ module;
 #include <array>
 #include <limits>
 
-/// Signs of orientations of points, exact for any finite doubles: −0, denormals, the largest and the smallest together.
+/// Signs of orientations of points, exact for any finite doubles: −0, denormals, the largest and the smallest together;
+/// in the arithmetic that `require_ieee_arithmetic` accepts.
 export module aabb:predicates;
 
 import :geometry;
+
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
 

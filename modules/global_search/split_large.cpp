@@ -26,6 +26,9 @@ import :policy;
 import :split_large;
 import :stage;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 namespace aabb {
 
 std::optional<double> parse_split_large(std::string_view text) {

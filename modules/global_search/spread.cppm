@@ -10,6 +10,9 @@ import :geometry;
 import :membership;
 import :projection;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 // How boxes lie along the axes: what strategies choose axes by.
 export namespace aabb {
 

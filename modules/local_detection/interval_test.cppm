@@ -12,6 +12,9 @@ export module aabb:interval_test;
 import :geometry;
 import :policy;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Below which signed distance from a plane, scaled by the length of its normal, a corner counts as lying in the plane.

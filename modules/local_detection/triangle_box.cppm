@@ -7,6 +7,9 @@ export module aabb:triangle_box;
 
 import :geometry;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 namespace aabb::detail {
 
 /// A triangle and its edges as seen from the centre of a box, and half the box's extents.

@@ -16,6 +16,9 @@ export module aabb.partition.axial_cut;
 
 import aabb;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// The paper's axial cut (section 2): axes are cut into segments that hold the same number of projection intervals, and

@@ -15,6 +15,9 @@ export module aabb.partition.uniform_grid;
 
 import aabb;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Cubic cells of one size over the world of the frame; a box is copied into every cell it reaches into. The paper's

@@ -8,6 +8,9 @@ export module aabb.triangle.devillers_guigue;
 
 import aabb;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with orientations in plain

@@ -9,6 +9,9 @@ import :build_node;
 import :geometry;
 import :median_split;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// The unbalanced split that the balanced one is held against: at the mean of the centroids along the longest axis of

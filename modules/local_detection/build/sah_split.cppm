@@ -11,6 +11,9 @@ import :build_node;
 import :geometry;
 import :median_split;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 namespace detail {

@@ -15,6 +15,9 @@ import :mesh;
 import :sah_split;
 import :tree_build;
 
+// Sums and products as they are written: see :floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 namespace aabb {
 
 namespace {
