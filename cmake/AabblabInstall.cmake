@@ -14,7 +14,6 @@ install(
     FILE aabblabTargets.cmake
     DESTINATION ${package_dir}
     CXX_MODULES_DIRECTORY cxx-modules)
-file(WRITE ${PROJECT_BINARY_DIR}/aabblabConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/aabblabTargets.cmake)\n")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/aabblabConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/aabblabConfig.cmake ${PROJECT_BINARY_DIR}/aabblabConfigVersion.cmake
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/aabblabConfig.cmake ${PROJECT_BINARY_DIR}/aabblabConfigVersion.cmake
         DESTINATION ${package_dir})
