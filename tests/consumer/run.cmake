@@ -1,5 +1,6 @@
 # cmake -DBUILD=<our build folder> -DSOURCE=<this folder> -DWORK=<scratch folder> -DCOMPILER=<c++> -DFLAGS=<flags> -P run.cmake
-# Installs the package, builds the consumer against it, runs it, and looks at what is linked into it.
+# Installs the package, builds the consumer against it in several ways, runs it, looks at what reaches it and what is
+# linked into it, and tries what must be refused.
 function(run)
     execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
     if(NOT status EQUAL 0)
@@ -9,16 +10,90 @@ function(run)
     set(output "${output}" PARENT_SCOPE)
 endfunction()
 
+# prints(PROGRAM OUTPUT)
+function(prints program expected)
+    run(${program})
+    if(NOT output STREQUAL expected)
+        message(FATAL_ERROR "${program} prints\n${output}and not\n${expected}")
+    endif()
+endfunction()
+
+# builds(NAME FLAGS OPTIONS…): configured with these flags and options all programs build and have the right answers.
+set(answers "images: dc8da3cc70a66806\n")
+foreach(how "canonical exact" "compressed exact" "compressed_literal exact" "leafless exact" "shared_planes exact"
+        "canonical devillers_guigue" "canonical moller" "canonical moller_double")
+    string(APPEND answers "${how}: 489 contacts, 12 of its own\n")
+endforeach()
+function(builds name flags)
+    run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/${name} -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix
+        -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} ${flags}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON ${ARGN})
+    run(${CMAKE_COMMAND} --build ${WORK}/${name})
+    prints(${WORK}/${name}/boxes_only "9 pairs\n")
+    prints(${WORK}/${name}/by_name "3 triangle pairs\n")
+    prints(${WORK}/${name}/meshes_by_type "${answers}")
+endfunction()
+
+# refused(NAME SENTENCE OPTIONS…): configured like that, the sentence is all that CMake has to say.
+function(refused name sentence)
+    execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/${name} -DCMAKE_PREFIX_PATH=${WORK}/prefix ${ARGN}
+                    RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE output)
+    string(REGEX REPLACE "[ \n]+" " " words "${output}")
+    string(REGEX MATCHALL "CMake (Error|Warning)" complaints "${output}")
+    if(status EQUAL 0 OR NOT words MATCHES "${sentence}" OR NOT complaints STREQUAL "CMake Error")
+        message(FATAL_ERROR "${name}: expected one error, \"${sentence}\", not\n${output}")
+    endif()
+endfunction()
+
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix
-    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_BUILD_TYPE=Release)
-run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/boxes_only)
-run(${WORK}/build/by_name)
+
+# Both standards, with and without extensions; what is not set is left to CMake, as in the README.
+builds(readme "")
+builds(strict_20 "" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=20 -DCMAKE_CXX_EXTENSIONS=OFF)
+builds(extended_23 "-march=native -O2" -DCMAKE_CXX_STANDARD=23 -DCMAKE_CXX_EXTENSIONS=ON)
+builds(strict_23 "-march=native -O3 -ffp-contract=fast-honor-pragmas -fassociative-math -freciprocal-math -fno-signed-zeros -fno-trapping-math"
+       -DCMAKE_CXX_STANDARD=23 -DCMAKE_CXX_EXTENSIONS=OFF)
+
+set(clang -DCMAKE_CXX_COMPILER=${COMPILER})
+# Where the machine has them.
+find_program(make make)
+if(make)
+    refused(makefiles "aabblab is made of C\\+\\+ modules, which Unix Makefiles cannot build: configure with -G Ninja\\."
+            -G "Unix Makefiles" ${clang})
+endif()
+find_program(gcc g++)
+if(gcc)
+    refused(gcc "aabblab needs clang 19 or newer, not GNU [0-9.]+: configure with -DCMAKE_CXX_COMPILER=clang\\+\\+-19\\."
+            -G Ninja -DCMAKE_CXX_COMPILER=${gcc})
+endif()
+refused(unscanned "write cmake_minimum_required\\(VERSION 3\\.28\\) or set\\(CMAKE_CXX_SCAN_FOR_MODULES ON\\) before find_package\\."
+        -G Ninja ${clang} -DSCAN_POLICY=OLD)
+refused(mixed "boxes_only is compiled in C\\+\\+20 with extensions and by_name in C\\+\\+23 with extensions: give both"
+        -G Ninja ${clang} -DOTHER_STANDARD=23)
+
+# Fused where the processor can: then every query says so.
+run(${CMAKE_COMMAND} --build ${WORK}/extended_23 --target fused)
+execute_process(COMMAND ${WORK}/extended_23/fused RESULT_VARIABLE status OUTPUT_VARIABLE output)
+execute_process(COMMAND ${COMPILER} -march=native -dM -E -x c++ /dev/null OUTPUT_VARIABLE macros)
+if(macros MATCHES "__FMA__" AND NOT (status EQUAL 2 AND output MATCHES "products are fused into sums; compile with -ffp-contract=on"))
+    message(FATAL_ERROR "fused multiply-add goes unnoticed:\n${output}")
+endif()
+
+# Nothing but the standard reaches a consumer, neither its sources nor the interfaces that it compiles.
+file(READ ${WORK}/readme/compile_commands.json commands)
+string(REPLACE " ${FLAGS} " " " commands "${commands}")
+string(REGEX MATCHALL "\"command\": \"[^\n]*boxes_only.cpp\"" command "${commands}")
+string(REGEX MATCHALL " [-][^ ]+" options "${command}")
+if(NOT options STREQUAL " -std=gnu++20; -o; -c")
+    message(FATAL_ERROR "these options reach a consumer: ${options}")
+endif()
+file(READ ${WORK}/prefix/lib/cmake/aabblab/aabblabTargets.cmake targets)
+if(targets MATCHES "[^\n]*COMPILE_(OPTIONS|DEFINITIONS)[^\n]*[^\n\" ]\"")
+    message(FATAL_ERROR "these options reach the interfaces: ${CMAKE_MATCH_0}")
+endif()
 
 foreach(program boxes_only by_name)
-    run(nm --demangle ${WORK}/build/${program})
+    run(nm --demangle ${WORK}/strict_20/${program})
     set(${program}_symbols "${output}")
 endforeach()
 
