@@ -30,8 +30,8 @@ public:
     /// @param boxes scratch, one box an internal node
     /// @throws input_error when the mesh is no longer valid or of as many triangles, and as `require_ieee_arithmetic`.
     void refit(std::vector<box>& boxes) {
-        require_ieee_arithmetic();
         fit_.renew([&] {
+            require_ieee_arithmetic();
             require_valid(*mesh_);
             if (mesh_->triangles.size() != triangles_)
                 throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles_) +
