@@ -100,7 +100,8 @@ int main_of(int argc, char** argv) {
     } catch (const defect& error) {
         return fail(check_failed, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
-        return fail(bad_input, error.path1().string() + ": " + error.code().message());
+        const std::string path = error.path1().string();
+        return fail(bad_input, (path.empty() ? "" : path + ": ") + error.code().message());
     } catch (const std::bad_alloc&) {
         return fail(bad_input, "this does not fit into memory");
     } catch (const std::length_error&) {

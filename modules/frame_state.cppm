@@ -43,7 +43,7 @@ private:
     enum class state : std::uint8_t { none, taken, broken };
 
     [[noreturn]] static void throw_broken() {
-        throw input_error("this stage could not finish an earlier frame, for want of memory; make a new one");
+        throw input_error("an exception in an earlier frame left this stage half-changed; make a new one");
     }
 
     state state_ = state::none;

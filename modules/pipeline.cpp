@@ -7,6 +7,7 @@ module;
 
 module aabb;
 
+import :append_whole;
 import :error;
 import :floating_point;
 import :frame_state;
@@ -31,6 +32,7 @@ pipeline::pipeline(const mesh_scene& scene, global_stage& global, local_stage& l
 
 void pipeline::update(std::span<const pose> poses) {
     frame_.begin();
+    searched_ = false;
     require_ieee_arithmetic();
     if (poses.size() != boxes_.size())
         throw input_error("the scene has " + std::to_string(boxes_.size()) + " objects, but the frame has " +
@@ -57,17 +59,23 @@ void pipeline::update(std::span<const pose> poses) {
 
 void pipeline::search() {
     frame_.require_taken();
+    searched_ = false;
     candidates_.clear();
     global_.search(candidates_);
+    searched_ = true;
 }
 
 void pipeline::detect() {
     contacts_.clear();
-    for (const auto [a, b] : candidates_) {
-        triangle_pairs_.clear();
-        local_.all_pairs(scene_.mesh_of[a], poses_[a], scene_.mesh_of[b], poses_[b], triangle_pairs_);
-        for (const auto [s, t] : triangle_pairs_) contacts_.push_back({a, b, s, t});
-    }
+    if (!searched_)
+        throw input_error("there are no candidates to decide on: search was not called, or did not succeed");
+    append_whole(contacts_, [&] {
+        for (const auto [a, b] : candidates_) {
+            triangle_pairs_.clear();
+            local_.all_pairs(scene_.mesh_of[a], poses_[a], scene_.mesh_of[b], poses_[b], triangle_pairs_);
+            for (const auto [s, t] : triangle_pairs_) contacts_.push_back({a, b, s, t});
+        }
+    });
 }
 
 std::size_t pipeline::bytes() const noexcept {

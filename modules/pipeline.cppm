@@ -39,6 +39,7 @@ public:
     void update(std::span<const pose> poses);
     /// @throws input_error when the last update did not succeed, or there was none.
     void search();
+    /// @throws input_error when the last search did not succeed, or there was none since the last update.
     void detect();
 
     [[nodiscard]] std::span<const box> boxes() const noexcept { return boxes_; }
@@ -59,6 +60,7 @@ private:
     std::vector<index_pair> triangle_pairs_;
     std::vector<contact> contacts_;
     frame_state frame_;
+    bool searched_ = false;
 };
 
 }  // namespace aabb

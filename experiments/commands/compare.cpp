@@ -41,7 +41,7 @@ std::string heading_of(const compared_scene& s) {
 }
 
 void print_block(const std::string& heading, const table& t) {
-    if (!t.rows.empty()) print("\n" + heading + "\n" + to_text(t));
+    if (!t.rows.empty()) print("\n" + heading + "\n" + to_text(t, output_width()));
 }
 
 void print_answers(const comparison& found) {

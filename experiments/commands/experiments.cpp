@@ -57,7 +57,7 @@ void note_idle_engines(const experiment& e, const scene_choice& scene) {
 }
 
 /// The rows of a scene, whatever its seeds.
-std::vector<row> rows_of(const scene_choice& scene, std::span<const row> all) {
+std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> all) {
     const std::string parameters = without_seed(parameters_text(scene));
     std::vector<row> rows;
     for (const row& r : all)
@@ -76,7 +76,8 @@ void print_scenes(std::vector<scene_summary> scenes, printed shown) {
     flush_output();
 }
 
-bool is_of_other_seed(const scene_choice& a, const scene_choice& b) {
+/// Whatever the seeds.
+bool is_same_scene(const scene_choice& a, const scene_choice& b) {
     return a.kind == b.kind && without_seed(parameters_text(a)) == without_seed(parameters_text(b));
 }
 
@@ -89,8 +90,8 @@ std::vector<std::string> play_here(const experiment& e, results_folder& results,
             note(failure);
             failures.push_back(failure);
         }
-        if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_of_other_seed(scene, e.scenes[i + 1])))
-            print_scenes(summarise(rows_of(scene, results.rows())), shown);
+        if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_same_scene(scene, e.scenes[i + 1])))
+            print_scenes(summarise(rows_of_all_seeds(scene, results.rows())), shown);
     }
     return failures;
 }
@@ -136,8 +137,9 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
     if (shown == printed::nothing) return failures;
     if (e.processes > 1) print_scenes(scenes, shown);
     if (const table overall = overall_table_of(scenes); scenes.size() > 1 && !overall.rows.empty())
-        print(fmt::format("all {} scenes: geometric means of their ratios, fastest first\n\n{}\n", scenes.size(),
-                          to_text(overall, output_width())));
+        print(fmt::format(
+            "all {} scenes, fastest first\nratio: geometric mean of the ratios to the first composition\n\n{}\n",
+            scenes.size(), to_text(overall, output_width())));
     return failures;
 }
 

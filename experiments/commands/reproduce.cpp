@@ -91,7 +91,6 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
 
 /// Plays every experiment of the paper, and keeps what is wrong as soon as it is found.
 void measure(const std::filesystem::path& folder, bool quick) {
-    std::filesystem::create_directories(folder);  // before the configs, which take a while
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs())
         experiments.push_back(open_experiment(config.string(), quick));

@@ -41,7 +41,7 @@ int run(const run_request& request) {
         e, folder, request.resume ? existing_results::resume : existing_results::refuse,
         "the same command with --resume", request.counts ? printed::tables_and_counts : printed::tables);
     print("Every repeat is a row of " + visible((folder / "results.csv").string()) +
-          ", every line of a table one of " + visible((folder / "summary.csv").string()) + "\n");
+          ",\nevery line of a scene's table one of " + visible((folder / "summary.csv").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 

@@ -94,7 +94,7 @@ int validate(const validate_request& request) {
             ++wrong;
             note(v.failure);
         }
-        print(to_text(t) + "\n");
+        print(to_text(t, output_width()) + "\n");
         flush_output();
     }
     print(wrong == 0 ? "Every composition that must be exact is exact.\n" : std::to_string(wrong) + " are wrong.\n");

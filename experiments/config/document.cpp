@@ -94,6 +94,14 @@ int line_of_failed_assertion(std::string_view text) {
     return static_cast<int>(first - ends.begin()) + 1;
 }
 
+/// Behind as many more of the quotes before `end` as there are, at most `most`: a string of several lines may end in
+/// quotes of its own, which stand before the closing ones.
+std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t most) {
+    const std::size_t last = std::min(end + most, text.size());
+    while (end < last && text[end] == text[end - 1]) ++end;
+    return end;
+}
+
 /// Where the string that begins here ends: at its last quote, or where the text breaks off.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string_view quote = text.substr(begin, 1);
@@ -104,7 +112,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
         if (text[at] == '\\' && quote == "\"")
             ++at;
         else if (text.substr(at).starts_with(closing))
-            return at + closing.size() - 1;
+            return end_of_quotes(text, at + closing.size(), lines ? 2 : 0) - 1;
         else if (text[at] == '\n' && !lines)
             return at - 1;
     }

@@ -24,7 +24,7 @@ int digit_of(char c) {
     return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-/// None where it is no base64.
+/// None where it is not base64.
 std::optional<std::string> decoded(std::string_view text) {
     for (int i = 0; i < 2 && text.ends_with('='); ++i) text.remove_suffix(1);
     std::string bytes;
@@ -60,11 +60,13 @@ std::string bytes_of_data(std::string_view uri) {
     const std::size_t at = uri.find(mark);
     if (at == std::string_view::npos) throw aabb::input_error("is a data: URI without ;base64,");
     std::optional<std::string> bytes = decoded(uri.substr(at + mark.size()));
-    if (!bytes) throw aabb::input_error("is a data: URI that is no base64");
+    if (!bytes) throw aabb::input_error("is a data: URI that is not base64");
     return *std::move(bytes);
 }
 
-std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary) {
+/// @param loaded bytes of the buffers before it: many may name one file
+std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary,
+                     std::size_t loaded) {
     if (!buffer.uri) {
         if (!binary) throw aabb::input_error("has neither a uri nor the binary chunk of a .glb file");
         return std::string(*binary);
@@ -73,22 +75,26 @@ std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::opti
     if (buffer.uri->find("://") != std::string::npos)
         throw aabb::input_error("is at " + aabblab::quoted(*buffer.uri) + ", but only files and data: URIs are read");
     const std::filesystem::path beside = std::filesystem::path(file.name).replace_filename(unescaped(*buffer.uri));
-    return read_whole(beside, require_file(beside), 1).text;
+    const std::size_t size = require_file(beside);
+    require_memory(file.name + ": its buffers", static_cast<double>(loaded) + static_cast<double>(size));
+    return read_whole(beside, size, 1).text;
 }
 
 }  // namespace
 
 void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<std::string_view> binary) {
+    std::size_t loaded = 0;
     for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
         gltf_buffer& buffer = asset.buffers[i];
         try {
             // The binary chunk is the first buffer and no other.
-            buffer.bytes = bytes_of(buffer, file, i == 0 ? binary : std::nullopt);
+            buffer.bytes = bytes_of(buffer, file, i == 0 ? binary : std::nullopt, loaded);
+            loaded += buffer.bytes.size();
             if (buffer.bytes.size() < buffer.length)
                 throw aabb::input_error("announces " + std::to_string(buffer.length) + " bytes, but has " +
                                         std::to_string(buffer.bytes.size()));
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(file.name + ": " + gltf_place("buffers", i) + " " + error.what());
+            throw aabb::input_error(file.name + ": " + gltf_place("buffers", i) + ": " + error.what());
         }
     }
 }

@@ -1,9 +1,11 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,14 +44,14 @@ public:
     }
     [[nodiscard]] std::size_t needed_index(const char* key) const {
         const std::optional<std::size_t> found = index(key);
-        if (!found) fail_member(key, "there");
+        if (!found) throw aabb::input_error(file_.name + ": " + named(key) + " is missing");
         return *found;
     }
 
     [[nodiscard]] std::optional<std::string> text(const char* key) const {
         const auto found = content_.find(key);
         if (found == content_.end()) return {};
-        if (!found->is_string()) fail_member(key, "a text");
+        if (!found->is_string()) fail_member(key, "a string");
         return found->get<std::string>();
     }
 
@@ -104,9 +106,9 @@ public:
 
 private:
     [[noreturn]] void fail_member(const char* key, const std::string& expected) const {
-        throw aabb::input_error(file_.name + ": " + (place_.empty() ? "" : place_ + ".") + key + " must be " +
-                                expected);
+        throw aabb::input_error(file_.name + ": " + named(key) + " must be " + expected);
     }
+    [[nodiscard]] std::string named(const char* key) const { return (place_.empty() ? "" : place_ + ".") + key; }
     [[nodiscard]] const json* list(const char* key) const {
         const auto found = content_.find(key);
         if (found == content_.end()) return nullptr;
@@ -157,9 +159,12 @@ gltf_matrix placed(const std::array<double, 3>& translation, const std::array<do
 }
 
 gltf_matrix place_of(const object& node) {
-    if (!node.has("matrix"))
-        return placed(node.numbers<3>("translation", {}), node.numbers<4>("rotation", {0, 0, 0, 1}),
-                      node.numbers<3>("scale", {1, 1, 1}));
+    if (!node.has("matrix")) {
+        const auto rotation = node.numbers<4>("rotation", {0, 0, 0, 1});
+        const double square = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
+        if (!(std::abs(square - 1) < 1e-3)) node.fail("has a rotation that is not a quaternion of length 1");
+        return placed(node.numbers<3>("translation", {}), rotation, node.numbers<3>("scale", {1, 1, 1}));
+    }
     const auto m = node.numbers<16>("matrix", {});
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) node.fail("has a matrix whose last row is not 0 0 0 1");
     gltf_matrix place{};

@@ -63,7 +63,7 @@ gltf_parts gltf_parts_of(const file_text& file) {
                                 " bytes, but the file has " + std::to_string(rest.size()));
     rest.remove_prefix(header_bytes);
     const chunk first = take_chunk(file, rest);
-    if (first.type != json_chunk) throw aabb::input_error(file.name + ": is no glTF file: its first chunk is no JSON");
+    if (first.type != json_chunk) throw aabb::input_error(file.name + ": is no glTF file: its first chunk is not JSON");
     gltf_parts parts{first.bytes, {}};
     // Chunks of other types belong to extensions.
     while (!rest.empty())

@@ -20,11 +20,12 @@ namespace aabblab {
 
 namespace {
 
-/// Whether any line has a number other than 0 in this place.
+/// Whether any composition has a number other than 0 in this place.
 template <class Numbers>
 bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t place) {
-    return std::ranges::any_of(scene.lines,
-                               [&](const summary_line& line) { return (line.*numbers)[place].value_or(0) > 0; });
+    return std::ranges::any_of(scene.lines, [&](const summary_line& line) {
+        return line.name.engine.empty() && (line.*numbers)[place].value_or(0) > 0;
+    });
 }
 
 std::string spaced(std::string_view name) {
@@ -65,9 +66,11 @@ table counts_table_of(const scene_summary& scene) {
         std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
     if (trees) t.columns.push_back({"tree bytes a triangle"});
     if (inflated) t.columns.push_back({"box inflation %"});
+    std::size_t rank = 0;
     for (const summary_line* line : ranking_of(scene)) {
+        ++rank;
         if (!line->name.engine.empty()) continue;
-        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, line->name));
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, line->name, rank));
         for (const std::size_t i : works) {
             const double each = line->counts[i].value_or(0);
             cells.push_back(count_text(each));

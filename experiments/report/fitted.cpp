@@ -14,9 +14,15 @@ namespace {
 
 constexpr std::size_t gap = 2;  // between columns
 
-/// The columns before the first number: they name a row.
+bool has_numbered_rows(const table& t) {
+    return !t.columns.empty() && t.columns[0].name == row_number;
+}
+
+/// The columns before the first value: a number, and what names a row.
 std::size_t name_count(const table& t) {
-    return static_cast<std::size_t>(std::ranges::find(t.columns, true, &column::is_number) - t.columns.begin());
+    const auto names = t.columns.begin() + (has_numbered_rows(t) ? 1 : 0);
+    return static_cast<std::size_t>(std::ranges::find(names, t.columns.end(), true, &column::is_number) -
+                                    t.columns.begin());
 }
 
 std::size_t width_of(const table& t, std::size_t k) {
@@ -36,9 +42,12 @@ bool fits(const table& t, std::size_t width) {
     return width_of(t, 0, t.columns.size()) <= width;
 }
 
-void remove_column(table& t, std::size_t k) {
-    t.columns.erase(t.columns.begin() + static_cast<std::ptrdiff_t>(k));
-    for (auto& cells : t.rows) cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(k));
+void remove_columns(table& t, std::size_t begin, std::size_t end) {
+    const auto remove = [&](auto& all) {
+        all.erase(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    remove(t.columns);
+    for (auto& cells : t.rows) remove(cells);
 }
 
 /// Removes spare columns until the table fits, as far as there are any, and says which.
@@ -48,7 +57,8 @@ std::string leave_out(table& t, std::size_t width) {
         const auto spare = std::ranges::max_element(t.columns, {}, &column::spare);
         if (spare == t.columns.end() || spare->spare == 0) break;
         names += (names.empty() ? "" : ", ") + spare->name;
-        remove_column(t, static_cast<std::size_t>(spare - t.columns.begin()));
+        const auto k = static_cast<std::size_t>(spare - t.columns.begin());
+        remove_columns(t, k, k + 1);
     }
     return names.empty() ? "" : "left out, for want of room: " + names + "\n";
 }
@@ -72,43 +82,36 @@ std::string legend_of(const std::string& number, const std::vector<std::string>&
     return text + line + "\n";
 }
 
-/// Puts a number in the place of what names a row, and returns what the numbers stand for.
+/// Leaves a number in the place of what names a row, and returns what the numbers stand for.
 std::string number_rows(table& t, std::size_t width) {
-    const auto names = static_cast<std::ptrdiff_t>(name_count(t));
-    std::string legend;
-    std::size_t row = 0;
-    for (auto& cells : t.rows) {
-        std::string number = std::to_string(++row);
-        number.insert(0, std::to_string(t.rows.size()).size() - number.size(), ' ');
-        legend += legend_of(number, {cells.begin(), cells.begin() + names}, width);
-        cells.erase(cells.begin(), cells.begin() + names);
-        cells.insert(cells.begin(), number);
+    if (!has_numbered_rows(t)) {
+        t.columns.insert(t.columns.begin(), {row_number});
+        std::size_t row = 0;
+        for (auto& cells : t.rows) cells.insert(cells.begin(), std::to_string(++row));
     }
-    t.columns.erase(t.columns.begin(), t.columns.begin() + names);
-    t.columns.insert(t.columns.begin(), {"#", false});
+    const std::size_t names = name_count(t);
+    std::string legend;
+    for (const auto& cells : t.rows)
+        legend += legend_of(std::string(width_of(t, 0) - cells[0].size(), ' ') + cells[0],
+                            {cells.begin() + 1, cells.begin() + static_cast<std::ptrdiff_t>(names)}, width);
+    remove_columns(t, 1, names);
     return legend;
 }
 
 /// The names of the rows with columns from `begin` to before `end`.
-table block_of(const table& t, std::size_t names, std::size_t begin, std::size_t end) {
-    const auto pick = [&](const auto& all) {
-        auto some = std::vector(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(names));
-        some.insert(some.end(), all.begin() + static_cast<std::ptrdiff_t>(begin),
-                    all.begin() + static_cast<std::ptrdiff_t>(end));
-        return some;
-    };
-    table block{pick(t.columns), {}};
-    for (const auto& cells : t.rows) block.rows.push_back(pick(cells));
-    return block;
+table block_of(table t, std::size_t names, std::size_t begin, std::size_t end) {
+    remove_columns(t, end, t.columns.size());
+    remove_columns(t, names, begin);
+    return t;
 }
 
 }  // namespace
 
 std::string to_text(table t, std::size_t width) {
-    const std::string left_out = leave_out(t, width);
-    if (fits(t, width)) return to_text(t) + left_out;
     // Names that leave half of the width stay; longer ones would be repeated in every block.
-    const std::string legend = width_of(t, 0, name_count(t)) > width / 2 ? number_rows(t, width) : "";
+    const bool long_names = width_of(t, 0, name_count(t)) > width / 2;
+    const std::string legend = !fits(t, width) && long_names ? number_rows(t, width) : "";
+    const std::string left_out = leave_out(t, width);
     const std::size_t names = name_count(t);
     const std::size_t room = width - std::min(width, width_of(t, 0, names) + gap);
     std::string text;

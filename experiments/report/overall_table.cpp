@@ -64,7 +64,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     if (inexact) t.columns.push_back({"answer", false});
     t.columns.insert(t.columns.end(), {{"ratio"}, {"least"}, {"greatest"}, {"scenes"}, {"fastest in"}});
     for (const standing& one : all) {
-        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name));
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name, t.rows.size() + 1));
         if (inexact) cells.emplace_back(one.exact ? "exact" : "inexact");
         for (const double ratio : {one.ratio(), one.least, one.greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
         cells.push_back(number_text(one.scenes));

@@ -17,6 +17,9 @@ import aabblab.statistics;
 
 export namespace aabblab {
 
+/// The name of a first column that numbers the rows.
+inline constexpr const char* row_number = "#";
+
 struct column {
     std::string name;
     bool is_number = true;  ///< stands at the right
@@ -31,9 +34,9 @@ struct table {
 };
 /// Columns lined up with spaces, for terminals.
 [[nodiscard]] std::string to_text(const table& t);
-/// The same in lines of at most `width` characters, as far as a name or a number is not longer. Spare columns go first,
-/// and a last line says which; then rows are numbered in place of their names, which stand below; then the columns are
-/// shared among several blocks.
+/// The same in lines of at most `width` characters, as far as a name or a number is not longer. Where names take more
+/// than half of it, numbers stand for them, which are explained below; then spare columns are left out, and a last line
+/// says which; then the columns are shared among several blocks.
 [[nodiscard]] std::string to_text(table t, std::size_t width);
 [[nodiscard]] std::string to_csv(const table& t);
 [[nodiscard]] std::string to_markdown(const table& t);
@@ -132,8 +135,9 @@ inline constexpr std::array<name_part, 6> composition_parts{{{"sort", &contender
                                                              {"triangle", &contender_name::triangle}}};
 /// Those in which some of these names of compositions differ.
 [[nodiscard]] std::vector<name_part> differing_parts(std::span<const contender_name> names);
-/// The columns that name the rows of a table, and a row's cells in them. An engine stands in the first.
+/// The columns that name the rows of a table, with the rank, and a row's cells in them. An engine stands in the first.
 [[nodiscard]] std::vector<column> name_columns_of(std::span<const name_part> differing);
-[[nodiscard]] std::vector<std::string> name_cells_of(std::span<const name_part> differing, const contender_name& name);
+[[nodiscard]] std::vector<std::string> name_cells_of(std::span<const name_part> differing, const contender_name& name,
+                                                     std::size_t rank);
 
 }  // namespace aabblab

@@ -6,6 +6,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,14 +58,14 @@ struct shared_column {
 };
 
 /// The answers, which are the same for all exact lines, and the bytes.
-std::vector<shared_column> shared_columns(const scene_summary& scene) {
+std::vector<shared_column> shared_columns(std::span<const summary_line* const> ranking) {
     shared_column answer{{"answer"}, "answer {}", {}};
     shared_column pairs{{"pairs"}, "{} pairs", {}};
     shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
     shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
     bool meshes = false;
     bool sized = false;
-    for (const summary_line* line : ranking_of(scene)) {
+    for (const summary_line* line : ranking) {
         answer.cells.push_back(answer_of(*line));
         pairs.cells.push_back(number_text(line->pairs));
         contacts.cells.push_back(line->contacts ? number_text(*line->contacts) : "-");
@@ -103,19 +104,21 @@ table table_of(const scene_summary& scene) {
     const bool meshes = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.contacts.has_value(); });
     const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_a_frame.has_value(); });
     const int decimals = decimals_of(scene);
+    const std::vector<const summary_line*> ranking = ranking_of(scene);
     table t{name_columns_of(scene.differing), {}};
-    for (const summary_line* line : ranking_of(scene)) t.rows.push_back(name_cells_of(scene.differing, line->name));
+    for (const summary_line* line : ranking)
+        t.rows.push_back(name_cells_of(scene.differing, line->name, t.rows.size() + 1));
     if (timed) {
         t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles", true, 4}, {"ratio"}, {"95 %"}});
         if (meshes) t.columns.push_back({"build", true, 3});
         std::size_t i = 0;
-        for (const summary_line* line : ranking_of(scene)) {
+        for (const summary_line* line : ranking) {
             std::vector<std::string>& cells = t.rows[i++];
             for (std::string& cell : time_cells(*line, decimals)) cells.push_back(std::move(cell));
             if (meshes) cells.push_back(text_or_dash(line->build_ms, 2));
         }
     }
-    for (const shared_column& one : shared_columns(scene)) {
+    for (const shared_column& one : shared_columns(ranking)) {
         if (one.is_constant()) continue;
         t.columns.push_back(one.shown);
         for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(one.cells[i]);
@@ -130,10 +133,11 @@ std::string heading_of(const scene_summary& scene) {
     if (scene.seeds.size() == 1 && !scene.seeds[0].empty())
         parameters += (parameters.empty() ? "seed=" : " seed=") + scene.seeds[0];
     text += parameters + "\n";
-    if (scene.seeds.size() > 1) text += fmt::format("pooled over {} seeds\n", scene.seeds.size());
+    if (scene.seeds.size() > 1)
+        text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
     if (!scene.common.empty()) text += "all compositions: " + scene.common + "\n";
     std::string same;
-    for (const shared_column& one : shared_columns(scene))
+    for (const shared_column& one : shared_columns(ranking_of(scene)))
         if (one.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(one.above), one.cells[0]);
     if (!same.empty()) text += "all lines: " + same + "\n";
     if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";

@@ -96,17 +96,17 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
         if (ms_a_frame(*b).value_or(0) > 0)
             base_ms.emplace(std::pair(std::string_view(b->scene_parameters), b->repeat), *ms_a_frame(*b));
     std::map<std::string_view, std::size_t> seeds;
-    std::size_t processes = 0;
+    std::map<std::uint64_t, std::size_t> processes;
     for (const row* r : repeats) {
         seeds.emplace(r->scene_parameters, seeds.size());
-        processes = std::max<std::size_t>(processes, r->process + 1);
+        processes.emplace(r->process, processes.size());
     }
-    cells ratios(processes, seeds.size());
+    cells ratios(processes.size(), seeds.size());
     std::size_t count = 0;
     for (const row* r : repeats) {
         const auto under = base_ms.find({r->scene_parameters, r->repeat});
         if (under == base_ms.end() || ms_a_frame(*r).value_or(0) <= 0) continue;
-        ratios.add(r->process, seeds.at(r->scene_parameters), std::log(*ms_a_frame(*r) / under->second));
+        ratios.add(processes.at(r->process), seeds.at(r->scene_parameters), std::log(*ms_a_frame(*r) / under->second));
         ++count;
     }
     if (count == 0) return;

@@ -25,11 +25,15 @@ folder_lock::folder_lock(const std::filesystem::path& folder) {
     // Processes that this one starts keep it too (no O_CLOEXEC): what they still do when this one is killed must end
     // before another begins.
     descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-    // A file system that locks no folders cannot tell.
-    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    // A process that was killed leaves others that are about to end.
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        // A file system that locks no folders cannot tell.
+        if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+        usleep(50'000);
+    }
     close(descriptor_);
     throw aabb::input_error("another aabblab writes into " + folder.string() +
-                            " at this moment; wait for its end, or name another folder with --out");
+                            " at this moment; wait until it ends, or name another folder with --out");
 }
 
 folder_lock::~folder_lock() {

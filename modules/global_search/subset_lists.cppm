@@ -126,9 +126,9 @@ private:
         std::uint64_t copies = 0;
         for (const projection& p : any) copies += partition.copies(p.id, boxes[p.id]);
         throw input_error(std::string(Partition::name) + " makes " + std::to_string(copies) + " copies of " +
-                          std::to_string(any.size()) + " objects, more than the " +
+                          std::to_string(any.size()) + " objects, but at most " +
                           std::to_string(most_copies(any.size())) +
-                          " (2^24 and 64 an object) that it may; fewer cuts make fewer");
+                          " (2^24 + 64 an object) are allowed; fewer cuts make fewer");
     }
 
     std::vector<std::size_t> starts_{0};

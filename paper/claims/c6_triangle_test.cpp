@@ -126,7 +126,7 @@ claim_result triangle_for_box(const measurements& m) {
     claim.experiments = {"figure2"};
     const test_times times = read_tests(m.folder());
     std::vector<candidate> candidates;
-    for (const std::string frame : {std::string(), std::string(in_place)})
+    for (const std::string& frame : {std::string(), std::string(in_place)})
         for (const std::string test : {"triangle_box", "triangle_aabb"})
             if (const cells ratios = ratios_of(times, "test/" + test + frame, "test/box" + frame); !ratios.empty())
                 candidates.push_back({{{"quantity", "one test"},

@@ -113,7 +113,7 @@ struct candidate {
     factors where;
     estimate log_ratio;
     bool primary = false;
-    std::optional<expectation> expected;  ///< where it is not the claim's
+    std::optional<expectation> expected{};  ///< where it is not the claim's
 };
 
 /// Endpoint by its own 95 % interval.

@@ -5,6 +5,7 @@ module;
 #include <cstddef>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 module aabblab.statistics;
@@ -41,7 +42,7 @@ outcome decide(const evidence& e) {
 std::vector<outcome> decide_together(std::span<const evidence> all) {
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return all[i].p; });
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(all[i].p, i); });
     std::vector<outcome> outcomes(all.size(), outcome::open);
     for (std::size_t done = 0; done < order.size(); ++done) {
         const evidence& next = all[order[done]];

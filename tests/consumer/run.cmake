@@ -60,12 +60,22 @@ find_program(make make)
 if(make)
     refused(makefiles "aabblab is made of C\\+\\+ modules, which Unix Makefiles cannot build: configure with -G Ninja\\."
             -G "Unix Makefiles" ${clang})
+else()
+    message(STATUS "not tried, for want of make: Makefiles")
 endif()
 find_program(gcc g++)
 if(gcc)
     refused(gcc "aabblab needs clang 19 or newer, not GNU [0-9.]+: configure with -DCMAKE_CXX_COMPILER=clang\\+\\+-19\\."
             -G Ninja -DCMAKE_CXX_COMPILER=${gcc})
+else()
+    message(STATUS "not tried, for want of g++: GCC")
 endif()
+refused(optional "not found: aabblab is made of C\\+\\+ modules, which are not looked for here" -G Ninja ${clang}
+        -DSCAN_POLICY=OLD -DOPTIONAL=ON)
+refused(no_language "aabblab is a C\\+\\+ library, and this project has no C\\+\\+: write project\\(NAME LANGUAGES CXX\\)\\."
+        -G Ninja -DLANGUAGE=NONE)
+refused(unscannable "${COMPILER} has none: install it, on Debian with clang-tools-19, and configure afresh\\." -G Ninja
+        ${clang} -DCMAKE_CXX_COMPILER_CLANG_SCAN_DEPS=)
 refused(unscanned "write cmake_minimum_required\\(VERSION 3\\.28\\) or set\\(CMAKE_CXX_SCAN_FOR_MODULES ON\\) before find_package\\."
         -G Ninja ${clang} -DSCAN_POLICY=OLD)
 refused(mixed "boxes_only is compiled in C\\+\\+20 with extensions and by_name in C\\+\\+23 with extensions: give both"

@@ -63,6 +63,19 @@ TEST_CASE("Keys and values that go deep are refused before the library follows t
     CHECK(refusal_of(head + "a = " + std::string(parts, '[')).find("maximum nested value depth") != std::string::npos);
 }
 
+TEST_CASE("A string that ends in quotes of its own hides no key behind it") {
+    const std::string key = repeated("c", 60'000, ".");
+    for (const std::string& quote : {std::string("\""), std::string("'")})
+        for (std::size_t own = 0; own < 3; ++own) {
+            const std::string text = repeated(quote, 3, "") + "x" + repeated(quote, 3 + own, "");
+            INFO(text);
+            CHECK(refusal_of(head + "a = {b = " + text + ", " + key + " = 1}\n") ==
+                  "test.toml:2: a key has more than 16 parts");
+            // Short enough to be read: the string ends where TOML says.
+            CHECK(refusal_of(head + "a = {b = " + text + ", c.c = 1}\n").find("unknown key 'a'") != std::string::npos);
+        }
+}
+
 TEST_CASE("Dots that join no parts of a key do not count") {
     const std::string many = repeated("a", 100, ".");
     const std::string sizes = "displacement = [" + repeated("0.5", 30, ", ") + "]\n";

@@ -138,8 +138,8 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     engine.name.engine = "cgal";
     const auto scene = aabblab::summarise(std::vector<row>{counted, engine, again})[0];
     REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene)) ==
-            "composition,comparisons,subset copies,copies an object,KiB projections\n"
-            "this composition,100,22.5,2.250,4.0\n");
+            "#,composition,comparisons,subset copies,copies an object,KiB projections\n"
+            "1,this composition,100,22.5,2.250,4.0\n");
     REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0]).columns.empty());
 }
 
@@ -176,10 +176,10 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
     rows.push_back(engine);
     const auto scenes = aabblab::summarise(rows);
     CHECK(aabblab::to_csv(aabblab::overall_table_of(scenes)) ==
-          "sort,ratio,least,greatest,scenes,fastest in\n"
-          "std,1.00,1.00,1.00,2,1\n"
-          "insertion,2.00,0.50,8.00,2,1\n"
-          "cgal,4.00,4.00,4.00,1,0\n");
+          "#,sort,ratio,least,greatest,scenes,fastest in\n"
+          "1,std,1.00,1.00,1.00,2,1\n"
+          "2,insertion,2.00,0.50,8.00,2,1\n"
+          "3,cgal,4.00,4.00,4.00,1,0\n");
 }
 
 TEST_CASE("Tables are written for programs too") {
@@ -188,25 +188,34 @@ TEST_CASE("Tables are written for programs too") {
     REQUIRE(aabblab::to_html({{{"a", false}}, {{"<x>"}}}).find("<td>&lt;x&gt;</td>") != std::string::npos);
 }
 
-TEST_CASE("A table fits the width it is given: spare columns go, then names, then it is shared among blocks") {
+TEST_CASE("A table fits the width it is given: long names, then spare columns go, then blocks share it") {
     const aabblab::table t{{{"sort", false}, {"tree", false}, {"ms"}, {"spare", true, 1}, {"first", true, 2}},
                            {{"insertion", "canonical", "1", "2", "3"}, {"std", "compressed:build=sah", "4", "5", "6"}}};
     const std::string whole = aabblab::to_text(t);
     CHECK(aabblab::to_text(t, 80) == whole);
-    CHECK(aabblab::to_text(t, 45) ==
-          "sort       tree                  ms  spare\n"
-          "insertion  canonical              1      2\n"
-          "std        compressed:build=sah   4      5\n"
-          "left out, for want of room: first\n");
+    // Numbers in place of long names make room for all else.
     CHECK(aabblab::to_text(t, 30) ==
-          "#  ms\n"
-          "1   1\n"
-          "2   4\n"
+          "#  ms  spare  first\n"
+          "1   1      2      3\n"
+          "2   4      5      6\n"
           "\n"
           "1  insertion + canonical\n"
           "2  std +\n"
-          "   compressed:build=sah\n"
-          "left out, for want of room: first, spare\n");
+          "   compressed:build=sah\n");
+    CHECK(aabblab::to_text(t, 13).starts_with("#  ms  spare\n"));
+    CHECK(aabblab::to_text(t, 13).ends_with("left out, for want of room: first\n"));
+    CHECK(aabblab::to_text(t, 10).ends_with("left out, for want of room: first, spare\n"));
+    // Numbers that are there stay.
+    aabblab::table ranked{{{aabblab::row_number}, {"sort", false}, {"ms"}}, {{"3", "a sort of many words", "1"}}};
+    CHECK(aabblab::to_text(ranked, 20) == "#  ms\n3   1\n\n3  a sort of many words\n");
+    // Short names do, and spare columns go.
+    aabblab::table short_names = t;
+    for (auto& cells : short_names.rows) cells[1] = "t";
+    CHECK(aabblab::to_text(short_names, 35) ==
+          "sort       tree  ms  spare\n"
+          "insertion  t      1      2\n"
+          "std        t      4      5\n"
+          "left out, for want of room: first\n");
     aabblab::table wide{{{"sort", false}}, {{"insertion"}, {"std"}}};
     for (int k = 0; k < 5; ++k) {
         wide.columns.push_back({"column " + std::to_string(k)});

@@ -36,8 +36,11 @@ TEST_CASE("a frame that a pipeline refused is not searched, and the next one is"
     CHECK_THROWS_MATCHES(both.update(poses), input_error, Message("object 1 lies beyond the range of float"));
     CHECK_THROWS_MATCHES(both.search(), input_error,
                          Message("there is no frame to search: update was not called, or did not succeed"));
+    const auto none = Message("there are no candidates to decide on: search was not called, or did not succeed");
+    CHECK_THROWS_MATCHES(both.detect(), input_error, none);
     poses[1].translation[0] = 9;
     both.update(poses);
+    CHECK_THROWS_MATCHES(both.detect(), input_error, none);
     both.search();
     both.detect();
     CHECK(both.candidates().size() == 1);
