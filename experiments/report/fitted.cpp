@@ -108,6 +108,7 @@ table block_of(table t, std::size_t names, std::size_t begin, std::size_t end) {
 }  // namespace
 
 std::string to_text(table t, std::size_t width) {
+    if (name_count(t) == t.columns.size()) return to_text(t);
     // Names that leave half of the width stay; longer ones would be repeated in every block.
     const bool long_names = width_of(t, 0, name_count(t)) > width / 2;
     const std::string legend = !fits(t, width) && long_names ? number_rows(t, width) : "";

@@ -205,13 +205,16 @@ TEST_CASE("A table fits the width it is given: long names, then spare columns go
     CHECK(aabblab::to_text(t, 13).starts_with("#  ms  spare\n"));
     CHECK(aabblab::to_text(t, 13).ends_with("left out, for want of room: first\n"));
     CHECK(aabblab::to_text(t, 10).ends_with("left out, for want of room: first, spare\n"));
-    // Numbers that are there stay.
+    // Numbers that are there are kept.
     aabblab::table ranked{{{aabblab::row_number}, {"sort", false}, {"ms"}}, {{"3", "a sort of many words", "1"}}};
     CHECK(aabblab::to_text(ranked, 20) == "#  ms\n3   1\n\n3  a sort of many words\n");
-    // Short names do, and spare columns go.
+    // A table of nothing but names is as wide as it is.
+    const aabblab::table names{{{"sort", false}, {"tree", false}}, {{"insertion", "canonical"}}};
+    CHECK(aabblab::to_text(names, 10) == aabblab::to_text(names));
+    // Short names stay, and spare columns go.
     aabblab::table short_names = t;
     for (auto& cells : short_names.rows) cells[1] = "t";
-    CHECK(aabblab::to_text(short_names, 35) ==
+    CHECK(aabblab::to_text(short_names, 30) ==
           "sort       tree  ms  spare\n"
           "insertion  t      1      2\n"
           "std        t      4      5\n"
@@ -247,7 +250,7 @@ TEST_CASE("run fits its tables to the terminal, prints work on request, and leav
     CHECK(has_lines_of(tables, 80));
     CHECK(tables.find("box tests") == std::string::npos);
     CHECK(tables.find("pooled over 2 seeds") != std::string::npos);
-    CHECK(tables.find("all 2 scenes: ") != std::string::npos);
+    CHECK(tables.find("all 2 scenes, fastest first") != std::string::npos);
 
     const program_result counted = run_program({"run", config, "--counts", "--out", (folder / "b").string()});
     REQUIRE(counted.status == 0);
