@@ -109,10 +109,15 @@ table block_of(table t, std::size_t names, std::size_t begin, std::size_t end) {
 
 std::string to_text(table t, std::size_t width) {
     if (name_count(t) == t.columns.size()) return to_text(t);
+    table fewer = t;
+    std::string left_out = leave_out(fewer, width);
     // Names that leave half of the width stay; longer ones would be repeated in every block.
-    const bool long_names = width_of(t, 0, name_count(t)) > width / 2;
-    const std::string legend = !fits(t, width) && long_names ? number_rows(t, width) : "";
-    const std::string left_out = leave_out(t, width);
+    const bool long_names = !fits(fewer, width) && width_of(t, 0, name_count(t)) > width / 2;
+    const std::string legend = long_names ? number_rows(t, width) : "";
+    if (long_names)
+        left_out = leave_out(t, width);
+    else
+        t = std::move(fewer);
     const std::size_t names = name_count(t);
     const std::size_t room = width - std::min(width, width_of(t, 0, names) + gap);
     std::string text;

@@ -34,9 +34,9 @@ struct table {
 };
 /// Columns lined up with spaces, for terminals.
 [[nodiscard]] std::string to_text(const table& t);
-/// The same in lines of at most `width` characters, as far as a name or a number is not longer. Where names take more
-/// than half of it, numbers stand for them, which are explained below; then spare columns are left out, and a last line
-/// says which; then the columns are shared among several blocks.
+/// The same in lines of at most `width` characters, as far as a name or a number is not longer. Spare columns are left
+/// out, and a last line says which; where that does not help, numbers stand for names of more than half of the width,
+/// which are explained below, and the columns are shared among several blocks.
 [[nodiscard]] std::string to_text(table t, std::size_t width);
 [[nodiscard]] std::string to_csv(const table& t);
 [[nodiscard]] std::string to_markdown(const table& t);

@@ -49,8 +49,8 @@ public:
 
     /// Sorts and partitions the boxes of a frame, indexed by id. They are looked at again by `search`.
     /// @throws input_error on a box that is not finite or inverted, when ids reach beyond the boxes, when there are
-    /// boxes but no object was ever inserted, or when the partition or `require_ieee_arithmetic` refuses; another update
-    /// must succeed before the next search then.
+    /// boxes but no object was ever inserted, or when the partition or `require_ieee_arithmetic` refuses; another
+    /// update must succeed before the next search then.
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();
