@@ -74,7 +74,7 @@ refused(optional "not found: aabblab is made of C\\+\\+ modules, which are not l
         -DSCAN_POLICY=OLD -DOPTIONAL=ON)
 refused(no_language "aabblab is a C\\+\\+ library, and this project has no C\\+\\+: write project\\(NAME LANGUAGES CXX\\)\\."
         -G Ninja -DLANGUAGE=NONE)
-refused(unscannable "${COMPILER} has none: install it, on Debian with clang-tools-19, and configure afresh\\." -G Ninja
+refused(unscannable "has none: install it, on Debian with clang-tools-19, and configure afresh\\." -G Ninja
         ${clang} -DCMAKE_CXX_COMPILER_CLANG_SCAN_DEPS=)
 refused(unscanned "write cmake_minimum_required\\(VERSION 3\\.28\\) or set\\(CMAKE_CXX_SCAN_FOR_MODULES ON\\) before find_package\\."
         -G Ninja ${clang} -DSCAN_POLICY=OLD)
