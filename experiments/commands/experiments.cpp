@@ -5,6 +5,8 @@
 #include <csignal>
 #include <cstddef>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <system_error>
@@ -50,10 +52,16 @@ private:
     }
 };
 
-void note_idle_engines(const experiment& e, const scene_choice& scene) {
-    for (const aabb::engine_info& engine : aabb::engines())
-        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !contender_of(engine, has_meshes(scene)))
-            note(engine.name + " has no part in " + scene.kind + ": it searches no boxes");
+/// Once for each kind of scene.
+void note_idle_engines(const experiment& e) {
+    std::set<std::string> kinds;
+    for (const scene_choice& scene : e.scenes) {
+        if (!kinds.insert(scene.kind).second) continue;
+        for (const aabb::engine_info& engine : aabb::engines())
+            if (std::ranges::find(e.engines, engine.name) != e.engines.end() &&
+                !contender_of(engine, has_meshes(scene)))
+                note(engine.name + " has no part in " + scene.kind + ": it searches no boxes");
+    }
 }
 
 /// The rows of a scene, whatever its seeds.
@@ -74,6 +82,16 @@ void print_scenes(std::vector<scene_summary> scenes, printed shown) {
             print("work a frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
     }
     flush_output();
+}
+
+/// A table for scenes whose ratios are to the same composition; those of boxes and of meshes are not.
+void print_overall(std::span<const scene_summary> scenes) {
+    std::map<contender_name, std::vector<scene_summary>> alike;
+    for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
+    for (const auto& [base, some] : alike)
+        if (const table overall = overall_table_of(some); some.size() > 1 && !overall.rows.empty())
+            print(fmt::format("{} scenes with {},\nthe ratio to it as a geometric mean, fastest first\n\n{}\n",
+                              some.size(), text_of(base), to_text(overall, output_width())));
 }
 
 /// Whatever the seeds.
@@ -121,10 +139,10 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
                                          existing_results existing, const std::string& resume_with, printed shown) {
     const interruption said(resume_with);
     const folder_lock alone(folder);
-    for (const scene_choice& scene : e.scenes) note_idle_engines(e, scene);
     std::vector<std::string> failures;
     {
         results_folder results(folder, e, existing);
+        note_idle_engines(e);
         if (!results.replaced().empty()) note(results.replaced() + "; this run replaces them");
         // It is of a whole run.
         std::error_code ignored;
@@ -136,10 +154,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
     write_file(folder / "summary.csv", to_csv(full_table_of(scenes)));
     if (shown == printed::nothing) return failures;
     if (e.processes > 1) print_scenes(scenes, shown);
-    if (const table overall = overall_table_of(scenes); scenes.size() > 1 && !overall.rows.empty())
-        print(fmt::format(
-            "all {} scenes, fastest first\nratio: geometric mean of the ratios to the first composition\n\n{}\n",
-            scenes.size(), to_text(overall, output_width())));
+    print_overall(scenes);
     return failures;
 }
 

@@ -87,7 +87,11 @@ std::vector<std::uint64_t> seeds_of(const document& doc, const node* seed) {
     if (seed->kind != node_kind::list) return {doc.integer_of("seed", *seed, 0)};
     if (seed->items.empty()) doc.fail(seed->line, "seed is an empty list; expected at least one number");
     std::vector<std::uint64_t> seeds;
-    for (const node& one : seed->items) seeds.push_back(doc.integer_of("seed", one, 0));
+    std::set<std::uint64_t> seen;
+    for (const node& one : seed->items) {
+        seeds.push_back(doc.integer_of("seed", one, 0));
+        if (!seen.insert(seeds.back()).second) doc.fail(one.line, "seed lists '" + one.text + "' twice");
+    }
     return seeds;
 }
 

@@ -61,7 +61,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     std::ranges::sort(all, {}, [](const standing& one) { return std::tuple(!one.exact, one.ratio(), one.name); });
     const bool inexact = std::ranges::any_of(all, [](const standing& one) { return !one.exact; });
     table t{name_columns_of(differing), {}};
-    if (inexact) t.columns.push_back({"answer", false});
+    if (inexact) t.columns.push_back({"answer"});
     t.columns.insert(t.columns.end(), {{"ratio"}, {"least"}, {"greatest"}, {"scenes"}, {"fastest in"}});
     for (const standing& one : all) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name, t.rows.size() + 1));

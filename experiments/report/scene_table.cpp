@@ -142,11 +142,13 @@ std::string heading_of(const scene_summary& scene) {
     if (!same.empty()) text += "all lines: " + same + "\n";
     if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
-    if (std::ranges::any_of(scene.lines, is_inexact))
-        text += "an answer -3 +5 misses 3 of the exact answer and invents 5\n";
+    const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
+    if (inexact) text += "an answer -3 +5 misses 3 of the exact answer and invents 5\n";
     const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
     if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
-        text += "fastest first; ratio to " + scene.lines[0].label + "\n";
+        text += (inexact ? "exact answers before inexact ones, each fastest first; ratio to "
+                         : "fastest first; ratio to ") +
+                scene.lines[0].label + "\n";
     return text;
 }
 

@@ -169,6 +169,7 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
         {minimal + "frames = [1, 1]\n", ":5: ", "frames lists '1' twice"},
         {minimal + "frames = { a = 1 }\n", ":5: ", "frames is a table; expected a value or a list of values"},
         {minimal + "frames = 1979-05-27\n", ":5: ", "frames is a date or time"},
+        {minimal + "seed = [1,\n2, 1]\n", ":6: ", "seed lists '1' twice"},
         {minimal + "seed = -1\n", ":5: ", "seed must be a whole number, at least 0, not -1"},
         {minimal + minimal.substr(14), ":5: ", "this scene is listed twice: brownian objects=10 seed=1"},
         {"engines = [\"cgall\"]\n" + minimal, ":1: ", "unknown engine 'cgall'; did you mean 'cgal'?"},

@@ -157,7 +157,8 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
     CHECK(column_of(t, "sort") == texts{"fast", "slow", "wrong", "untimed"});
     CHECK(column_of(t, "ratio") == texts{"0.20", "1.00", "0.10", "-"});
     CHECK(column_of(t, "answer") == texts{"exact", "exact", "-3 +5", "exact"});
-    CHECK(aabblab::heading_of(scene).find("fastest first; ratio to slow\n") != std::string::npos);
+    CHECK(aabblab::heading_of(scene).find("exact answers before inexact ones, each fastest first; ratio to slow\n") !=
+          std::string::npos);
     CHECK(aabblab::heading_of(scene).find("all lines: 1,234,567 pairs\n") != std::string::npos);
     CHECK(std::ranges::find(t.columns, "pairs", &aabblab::column::name) == t.columns.end());
 }
@@ -255,7 +256,7 @@ TEST_CASE("run fits its tables to the terminal, prints work on request, and leav
     CHECK(has_lines_of(tables, 80));
     CHECK(tables.find("box tests") == std::string::npos);
     CHECK(tables.find("pooled over 2 seeds") != std::string::npos);
-    CHECK(tables.find("all 2 scenes, fastest first") != std::string::npos);
+    CHECK(tables.find("2 scenes with insertion + none + one_axis,\n") != std::string::npos);
 
     const program_result counted = run_program({"run", config, "--counts", "--out", (folder / "b").string()});
     REQUIRE(counted.status == 0);
