@@ -105,7 +105,8 @@ struct scene_summary {
 /// rank. Copies have their number per object beside them. Without columns where nothing was counted.
 [[nodiscard]] table counts_table_of(const scene_summary& scene);
 
-/// All scenes in one, which have the same first composition: those who play from the fastest to the slowest by the geometric mean of their ratios.
+/// All scenes in one, which have the same first composition: those who play from the fastest to the slowest by the
+/// geometric mean of their ratios.
 [[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
 
 /// The table of a summary.csv: every line of every scene with its rank, every number in full.
