@@ -13,7 +13,7 @@
 #include "output.hpp"
 
 import aabblab.comparison;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.statistics;
 
 namespace aabblab {

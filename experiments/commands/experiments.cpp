@@ -18,11 +18,11 @@
 #include "experiments.hpp"
 
 import aabb.validation;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.files;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.results;
-import aabblab.runner;
+import aabblab.play;
 import aabblab.scenes;
 
 namespace aabblab {

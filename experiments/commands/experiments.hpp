@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-import aabblab.config;
+import aabblab.configs;
 import aabblab.results;
 
 // Imports modules, so it is included after every other header.

@@ -14,8 +14,8 @@
 import aabb;
 import aabb.registry;
 import aabb.validation;
-import aabblab.config;
-import aabblab.runner;
+import aabblab.configs;
+import aabblab.play;
 import aabblab.scenes;
 
 namespace aabblab {

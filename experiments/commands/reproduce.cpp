@@ -19,9 +19,9 @@
 
 import aabb;
 import aabblab.claims;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.files;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.reproduction;
 import aabblab.results;
 
@@ -32,7 +32,7 @@ namespace {
 /// Configs of the paper's experiments.
 std::vector<std::filesystem::path> configs() {
     std::vector<std::filesystem::path> all;
-    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "paper"))
+    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS)))
         if (file.path().extension() == ".toml") all.push_back(file.path());
     std::ranges::sort(all);
     return all;

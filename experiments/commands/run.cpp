@@ -13,7 +13,7 @@
 #include "experiments.hpp"
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.results;
 
 namespace aabblab {

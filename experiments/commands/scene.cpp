@@ -22,7 +22,7 @@
 #include "composing.hpp"
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.files;
 import aabblab.picture;
 import aabblab.progress;

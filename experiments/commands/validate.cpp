@@ -15,10 +15,10 @@
 import aabb;
 import aabb.registry;
 import aabb.validation;
-import aabblab.config;
-import aabblab.report;
+import aabblab.configs;
+import aabblab.tables;
 import aabblab.results;
-import aabblab.runner;
+import aabblab.play;
 import aabblab.scenes;
 
 namespace aabblab {

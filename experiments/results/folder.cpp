@@ -17,7 +17,7 @@ module;
 module aabblab.results;
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.files;
 import aabblab.scenes;
 

@@ -17,7 +17,7 @@ module;
 export module aabblab.results;
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.scenes;
 export import :csv;
 

@@ -12,7 +12,7 @@ module aabblab.claims;
 
 import :measurements;
 import aabblab.figures;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.statistics;
 
 namespace aabblab {

@@ -17,7 +17,7 @@ module aabblab.claims;
 import :measurements;
 import aabb;
 import aabblab.figures;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.statistics;
 
 namespace aabblab {

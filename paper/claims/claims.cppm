@@ -10,7 +10,7 @@ module;
 export module aabblab.claims;
 
 import aabblab.figures;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.statistics;
 export import :measurements;
 

@@ -9,7 +9,7 @@ module;
 module aabblab.claims;
 
 import :measurements;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.results;
 import aabblab.statistics;
 

@@ -15,7 +15,7 @@
 
 import aabb;
 import aabblab.comparison;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.results;
 import aabblab.statistics;
 

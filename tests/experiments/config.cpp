@@ -7,7 +7,7 @@
 
 import aabb;
 import aabb.registry;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.scenes;
 
 using aabblab::experiment;

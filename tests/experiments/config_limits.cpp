@@ -7,7 +7,7 @@
 #include "temporary_folder.hpp"
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.scenes;
 
 using aabblab::experiment_size;

@@ -8,8 +8,8 @@
 
 import aabb;
 import aabb.validation;
-import aabblab.config;
-import aabblab.runner;
+import aabblab.configs;
+import aabblab.play;
 import aabblab.scenes;
 
 TEST_CASE("every composition is exact on every scene of boxes") {

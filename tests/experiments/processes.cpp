@@ -21,9 +21,9 @@
 #include "temporary_folder.hpp"
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.results;
-import aabblab.runner;
+import aabblab.play;
 
 using aabblab::existing_results;
 using aabblab::results_folder;

@@ -13,7 +13,7 @@
 #include "temporary_folder.hpp"
 
 import aabb;
-import aabblab.report;
+import aabblab.tables;
 import aabblab.results;
 
 using aabblab::row;

@@ -14,9 +14,9 @@
 
 import aabb;
 import aabb.registry;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.results;
-import aabblab.runner;
+import aabblab.play;
 import aabblab.scenes;
 
 using aabblab::contender;

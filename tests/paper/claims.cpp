@@ -19,10 +19,10 @@
 #include "worlds.hpp"
 
 import aabblab.claims;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.figures;
 import aabblab.reproduction;
-import aabblab.runner;
+import aabblab.play;
 import aabblab.statistics;
 
 using aabblab::claim_result;
@@ -94,7 +94,7 @@ aabblab::reproduction reproduction_where(const std::string& experiment,
 std::string paper_text() {
     std::string text;
     for (const auto& file :
-         std::filesystem::recursive_directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "../paper/tex")) {
+         std::filesystem::recursive_directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "../tex")) {
         if (file.path().extension() != ".tex") continue;
         std::ifstream in(file.path());
         for (std::string line; std::getline(in, line);)

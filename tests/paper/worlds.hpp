@@ -15,9 +15,9 @@
 #include <vector>
 
 import aabb;
-import aabblab.config;
+import aabblab.configs;
 import aabblab.results;
-import aabblab.runner;
+import aabblab.play;
 import aabblab.scenes;
 
 // Imports modules, so it is included after every other header.
@@ -74,7 +74,7 @@ inline void write_experiment(const std::filesystem::path& folder, const aabblab:
 
 inline std::vector<aabblab::experiment> all_experiments(aabblab::experiment_size size) {
     std::vector<aabblab::experiment> all;
-    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "paper"))
+    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS)))
         all.push_back(aabblab::read_experiment(file.path(), size));
     return all;
 }

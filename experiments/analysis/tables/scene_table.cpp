@@ -1,0 +1,155 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.tables;
+
+import aabblab.results;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+std::string answer_of(const summary_line& line) {
+    if (line.status == "exact" || !line.missing) return line.status;
+    return fmt::format("-{} +{}", *line.missing, *line.invented);
+}
+
+/// Decimals that leave the fastest line of a scene three digits or more.
+int decimals_of(const scene_summary& scene) {
+    double least = 100;
+    for (const summary_line& line : scene.lines)
+        if (line.ms_a_frame) least = std::min(least, line.ms_a_frame->median);
+    return least < 1 ? 4 : least < 10 ? 3 : 2;
+}
+
+/// Three digits that count.
+std::string three_digits(double value) {
+    return fmt::format("{:.{}f}", value, value < 0.1 ? 4 : value < 1 ? 3 : value < 10 ? 2 : value < 100 ? 1 : 0);
+}
+
+/// The cells of a line from its times, "-" for what was not timed.
+std::vector<std::string> time_cells(const summary_line& line, int decimals) {
+    if (!line.ms_a_frame) return {"-", "-", "-", "-"};
+    const auto [low, median, high] = *line.ms_a_frame;
+    return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high),
+            text_or_dash(line.ratio, 2), interval_text(line.ratio_interval)};
+}
+
+/// A column that stands above the table where all lines have the same in it.
+struct shared_column {
+    column shown;
+    std::string above;  ///< "{} pairs"
+    std::vector<std::string> cells;
+
+    [[nodiscard]] bool is_constant() const {
+        return cells.size() > 1 && std::ranges::adjacent_find(cells, std::ranges::not_equal_to{}) == cells.end();
+    }
+};
+
+/// The answers, which are the same for all exact lines, and the bytes.
+std::vector<shared_column> shared_columns(std::span<const summary_line* const> ranking) {
+    shared_column answer{{"answer"}, "answer {}", {}};
+    shared_column pairs{{"pairs"}, "{} pairs", {}};
+    shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
+    shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
+    bool meshes = false;
+    bool sized = false;
+    for (const summary_line* line : ranking) {
+        answer.cells.push_back(answer_of(*line));
+        pairs.cells.push_back(number_text(line->pairs));
+        contacts.cells.push_back(line->contacts ? number_text(*line->contacts) : "-");
+        bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
+        meshes |= line->contacts.has_value();
+        sized |= line->bytes.has_value();
+    }
+    std::vector<shared_column> columns{std::move(answer), std::move(pairs)};
+    if (meshes) columns.push_back(std::move(contacts));
+    if (sized) columns.push_back(std::move(bytes));
+    return columns;
+}
+
+}  // namespace
+
+std::string number_text(std::uint64_t n) {
+    std::string digits = std::to_string(n);
+    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+    return digits;
+}
+
+std::string kib_text(std::uint64_t bytes) {
+    const double kib = static_cast<double>(bytes) / 1024;
+    return kib < 100 ? fmt::format("{:.1f}", kib) : number_text(static_cast<std::uint64_t>(std::llround(kib)));
+}
+
+std::string text_or_dash(const std::optional<double>& value, int decimals) {
+    return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+std::string interval_text(const std::optional<interval>& around) {
+    return around ? fmt::format("{:.2f}-{:.2f}", around->low, around->high) : "-";
+}
+
+table table_of(const scene_summary& scene) {
+    const bool meshes = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.contacts.has_value(); });
+    const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_a_frame.has_value(); });
+    const int decimals = decimals_of(scene);
+    const std::vector<const summary_line*> ranking = ranking_of(scene);
+    table t{name_columns_of(scene.differing), {}};
+    for (const summary_line* line : ranking)
+        t.rows.push_back(name_cells_of(scene.differing, line->name, t.rows.size() + 1));
+    if (timed) {
+        t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles", true, 4}, {"ratio"}, {"95 %"}});
+        if (meshes) t.columns.push_back({"build", true, 3});
+        std::size_t i = 0;
+        for (const summary_line* line : ranking) {
+            std::vector<std::string>& cells = t.rows[i++];
+            for (std::string& cell : time_cells(*line, decimals)) cells.push_back(std::move(cell));
+            if (meshes) cells.push_back(text_or_dash(line->build_ms, 2));
+        }
+    }
+    for (const shared_column& one : shared_columns(ranking)) {
+        if (one.is_constant()) continue;
+        t.columns.push_back(one.shown);
+        for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(one.cells[i]);
+    }
+    return t;
+}
+
+std::string heading_of(const scene_summary& scene) {
+    std::string text =
+        fmt::format("{}: {} objects, {} frames\n", scene.scene, number_text(scene.objects), scene.frames);
+    std::string parameters = scene.parameters;
+    if (scene.seeds.size() == 1 && !scene.seeds[0].empty())
+        parameters += (parameters.empty() ? "seed=" : " seed=") + scene.seeds[0];
+    text += parameters + "\n";
+    if (scene.seeds.size() > 1)
+        text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
+    if (!scene.common.empty()) text += "all compositions: " + scene.common + "\n";
+    std::string same;
+    for (const shared_column& one : shared_columns(ranking_of(scene)))
+        if (one.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(one.above), one.cells[0]);
+    if (!same.empty()) text += "all lines: " + same + "\n";
+    if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
+    const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
+    const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
+    if (inexact) text += "an answer -3 +5 misses 3 of the exact answer and invents 5\n";
+    const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
+    if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
+        text += (inexact ? "exact answers before inexact ones, each fastest first; ratio to "
+                         : "fastest first; ratio to ") +
+                scene.lines[0].label + "\n";
+    return text;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,144 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Results as tables, scene by scene.
+export module aabblab.tables;
+
+import aabb;
+import aabblab.results;
+import aabblab.statistics;
+
+export namespace aabblab {
+
+/// The name of a first column that numbers the rows.
+inline constexpr const char* row_number = "#";
+
+struct column {
+    std::string name;
+    bool is_number = true;  ///< stands at the right
+    /// Where a table is too wide, columns go from the greatest of these on; those of 0 stay.
+    int spare = 0;
+};
+
+/// A table to be shown or written; each row has a cell for each column.
+struct table {
+    std::vector<column> columns;
+    std::vector<std::vector<std::string>> rows;
+};
+/// Columns lined up with spaces, for terminals.
+[[nodiscard]] std::string to_text(const table& t);
+/// The same in lines of at most `width` characters, as far as a name or a number is not longer. Spare columns are left
+/// out, and a last line says which; where that does not help, numbers stand for names of more than half of the width,
+/// which are explained below, and the columns are shared among several blocks.
+[[nodiscard]] std::string to_text(table t, std::size_t width);
+[[nodiscard]] std::string to_csv(const table& t);
+[[nodiscard]] std::string to_markdown(const table& t);
+[[nodiscard]] std::string to_tex(const table& t);
+[[nodiscard]] std::string to_html(const table& t);
+/// Text as it stands in LaTeX and in HTML: what means something there is written so that it means itself.
+[[nodiscard]] std::string tex_text(std::string_view text);
+[[nodiscard]] std::string html_text(std::string_view text);
+
+/// All repeats of one composition or engine in one scene, over all seeds.
+struct summary_line {
+    contender_name name;
+    std::string label;        ///< the parts of the name that differ within the scene
+    std::size_t repeats = 0;  ///< of all seeds
+    std::uint64_t pairs = 0;  ///< sum over the seeds, as are contacts, missing and invented
+    std::optional<std::uint64_t> contacts;
+    std::string status;  ///< "exact", or "inexact" where it is so with any seed
+    std::optional<std::uint64_t> missing, invented;
+    std::optional<quartiles> ms_a_frame;  ///< of the frames after frame 0; of frame 0 where there is no other
+    /// Of the time to that of the first composition in the same repeat: the geometric mean over processes and seeds of
+    /// the median over repeats.
+    std::optional<double> ratio;
+    std::optional<interval> ratio_interval;  ///< of 95 %; empty where there is one repeat only
+    std::optional<double> build_ms;          ///< median
+    /// Of all parts, the most of any seed; empty for an engine that does not say.
+    std::optional<std::uint64_t> bytes;
+    /// Means a frame, over the seeds. Empty where they were not asked for, or for an engine, as are the bytes.
+    std::array<std::optional<double>, aabb::work_names.size()> counts;
+    std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes_by_part;  ///< the most of any seed
+    std::optional<double> bytes_a_triangle;  ///< of the trees; empty where there are none to be seen
+    std::optional<double> box_inflation;
+};
+
+/// One of the kinds of strategy, and where it stands in a name.
+struct name_part {
+    std::string_view kind;
+    std::string contender_name::* field;
+};
+
+/// A scene, whatever its seeds.
+struct scene_summary {
+    std::string experiment;
+    std::string scene;
+    std::string parameters;          ///< without the seed
+    std::vector<std::string> seeds;  ///< in the order of the rows
+    std::uint64_t objects = 0;
+    std::uint64_t frames = 0;
+    std::string digest;                ///< of the exact answer, where there is one seed and a line that has it
+    std::vector<name_part> differing;  ///< parts in which the compositions differ
+    std::string common;                ///< what all compositions share, "sweep one_axis, triangle exact"
+    std::vector<summary_line> lines;   ///< in the order of the rows; ratios are to the first
+};
+
+/// Scene by scene, in the order of the rows.
+[[nodiscard]] std::vector<scene_summary> summarise(std::span<const row> rows);
+
+/// The lines from the fastest to the slowest: exact ones first, then inexact ones, then those without times.
+[[nodiscard]] std::vector<const summary_line*> ranking_of(const scene_summary& scene);
+
+/// The lines of a scene by rank. What is the same in all of them stands in the heading in its place.
+[[nodiscard]] table table_of(const scene_summary& scene);
+/// What stands above the table, some lines.
+[[nodiscard]] std::string heading_of(const scene_summary& scene);
+
+/// The work of each composition, per frame after frame 0, and the bytes of its parts, as far as any line has them, by
+/// rank. Copies have their number per object beside them. Without columns where nothing was counted.
+[[nodiscard]] table counts_table_of(const scene_summary& scene);
+
+/// All scenes in one, which have the same first composition: those who play from the fastest to the slowest by the
+/// geometric mean of their ratios.
+[[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
+
+/// The table of a summary.csv: every line of every scene with its rank, every number in full.
+[[nodiscard]] table full_table_of(std::span<const scene_summary> scenes);
+
+}  // namespace aabblab
+
+// What the parts of the module share.
+namespace aabblab {
+
+/// In characters, not bytes.
+[[nodiscard]] std::size_t text_width(std::string_view text);
+/// "12,345".
+[[nodiscard]] std::string number_text(std::uint64_t n);
+/// Bytes as KiB, with three digits that count.
+[[nodiscard]] std::string kib_text(std::uint64_t bytes);
+/// "0.98-1.02", or "-" where there is none.
+[[nodiscard]] std::string interval_text(const std::optional<interval>& around);
+[[nodiscard]] std::string text_or_dash(const std::optional<double>& value, int decimals);
+
+/// The parts of a name, in the order in which tables have them.
+inline constexpr std::array<name_part, 6> composition_parts{{{"sort", &contender_name::sort},
+                                                             {"partition", &contender_name::partition},
+                                                             {"sweep", &contender_name::sweep},
+                                                             {"split_large", &contender_name::split_large},
+                                                             {"tree", &contender_name::tree},
+                                                             {"triangle", &contender_name::triangle}}};
+/// Those in which some of these names of compositions differ.
+[[nodiscard]] std::vector<name_part> differing_parts(std::span<const contender_name> names);
+/// The columns that name the rows of a table, with the rank, and a row's cells in them. An engine stands in the first.
+[[nodiscard]] std::vector<column> name_columns_of(std::span<const name_part> differing);
+[[nodiscard]] std::vector<std::string> name_cells_of(std::span<const name_part> differing, const contender_name& name,
+                                                     std::size_t rank);
+
+}  // namespace aabblab

@@ -1,0 +1,67 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Experiments as config files: which scenes, which compositions and engines, what to measure.
+export module aabblab.configs;
+
+import aabb;
+import aabb.registry;
+import aabblab.scenes;
+
+export namespace aabblab {
+
+/// One combination of strategies. Scenes of boxes use its global search only.
+struct composition {
+    aabb::global_composition global;
+    aabb::local_composition local;
+
+    friend bool operator==(const composition&, const composition&) = default;
+};
+
+/// What an experiment writes beside the pairs and their digest.
+struct metrics {
+    bool time = true;
+    bool counts = true;
+    bool bytes = true;
+    bool error = true;  ///< pairs missing and invented, by class
+};
+
+/// A config with its lists multiplied out. All names, values and combinations in it are known to be good.
+struct experiment {
+    std::string name;
+    std::string file;  ///< the config, as the user named it
+    std::string text;  ///< what stands in it
+    bool quick = false;
+    std::vector<std::string> engines;
+    std::vector<scene_choice> scenes;
+    std::string mesh_digest;  ///< of the vertices and triangles of the scenes' meshes
+    std::vector<composition> compositions;
+    std::size_t repeats = 9;
+    std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
+    metrics measured;
+    std::vector<std::string> notes;  ///< what stands in for meshes that are not there, a sentence each
+};
+
+/// `quick` takes what the config says under `quick`, for a first look.
+enum class experiment_size { full, quick };
+
+/// Reads a config and checks all of it, down to making each scene once.
+/// @throws aabb::input_error with file and line on malformed TOML (column too), an unknown key or name (with the
+/// nearest one), a value of a wrong type, a refused combination, a mesh that is not there.
+[[nodiscard]] experiment read_experiment(const std::filesystem::path& file, experiment_size size);
+
+/// The same from text. `file` is for messages.
+[[nodiscard]] experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size);
+
+/// "objects=1000 frames=20 meshes=elephant.off+torus_knot seed=1": what a scene is apart from its kind.
+[[nodiscard]] std::string parameters_text(const scene_choice& scene);
+
+/// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
+/// meshes. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
+[[nodiscard]] std::string hash_of(const experiment& e);
+
+}  // namespace aabblab

@@ -1,0 +1,254 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "toml.hpp"
+
+module aabblab.configs;
+
+import :document;
+import aabb;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::size_t most_parts = 16;  // of a dotted key; a config needs two
+constexpr std::size_t most_products = 100'000;
+
+std::string shortest(double value) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+node converted(const toml::node& value) {
+    node result;
+    result.line = static_cast<int>(value.source().begin.line);
+    if (const toml::table* table = value.as_table()) {
+        result.kind = node_kind::table;
+        // The library sorts by key; a product of lists follows the file.
+        std::vector<std::pair<toml::source_position, node>> entries;
+        for (const auto& [key, value_of_key] : *table) {
+            node entry = converted(value_of_key);
+            entry.line = static_cast<int>(key.source().begin.line);
+            entry.key = key.str();
+            entries.emplace_back(key.source().begin, std::move(entry));
+        }
+        std::ranges::sort(entries, std::ranges::less{},
+                          [](const auto& entry) { return std::pair(entry.first.line, entry.first.column); });
+        for (auto& [position, entry] : entries) result.items.push_back(std::move(entry));
+    } else if (const toml::array* list = value.as_array()) {
+        result.kind = node_kind::list;
+        for (const toml::node& item : *list) result.items.push_back(converted(item));
+    } else if (const auto* text = value.as_string()) {
+        result.kind = node_kind::text;
+        result.text = text->get();
+    } else if (const auto* integer = value.as_integer()) {
+        result.kind = node_kind::integer;
+        result.text = std::to_string(integer->get());
+    } else if (const auto* real = value.as_floating_point()) {
+        result.kind = node_kind::real;
+        result.text = shortest(real->get());
+    } else if (const auto* flag = value.as_boolean()) {
+        result.kind = node_kind::boolean;
+        result.text = flag->get() ? "true" : "false";
+    } else {
+        result.kind = node_kind::date;
+    }
+    return result;
+}
+
+std::string_view name_of(node_kind kind) {
+    constexpr std::array<std::string_view, 7> names = {"a name",         "a number", "a number", "true or false",
+                                                       "a date or time", "a list",   "a table"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+/// The first line without which no assertion of the library fails.
+int line_of_failed_assertion(std::string_view text) {
+    const auto fails = [&](std::size_t end) {
+        try {
+            (void)toml::parse(text.substr(0, end));
+        } catch (const failed_toml_assertion&) {
+            return true;
+        } catch (const toml::parse_error&) {
+            return false;
+        }
+        return false;
+    };
+    std::vector<std::size_t> ends;  // of lines
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string_view::npos;) ends.push_back(++at);
+    const auto first = std::ranges::partition_point(ends, [&](std::size_t end) { return !fails(end); });
+    return static_cast<int>(first - ends.begin()) + 1;
+}
+
+/// Behind as many more of the quotes before `end` as there are, at most `most`: a string of several lines may end in
+/// quotes of its own, which stand before the closing ones.
+std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t most) {
+    const std::size_t last = std::min(end + most, text.size());
+    while (end < last && text[end] == text[end - 1]) ++end;
+    return end;
+}
+
+/// Where the string that begins here ends: at its last quote, or where the text breaks off.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+    const std::string_view quote = text.substr(begin, 1);
+    const std::string triple(3, quote[0]);
+    const bool lines = text.substr(begin).starts_with(triple);
+    const std::string_view closing = lines ? triple : quote;
+    for (std::size_t at = begin + closing.size(); at < text.size(); ++at) {
+        if (text[at] == '\\' && quote == "\"")
+            ++at;
+        else if (text.substr(at).starts_with(closing))
+            return end_of_quotes(text, at + closing.size(), lines ? 2 : 0) - 1;
+        else if (text[at] == '\n' && !lines)
+            return at - 1;
+    }
+    return text.size();
+}
+
+/// The line of a key of too many parts; 0 where there is none. Each part is a table in the one before, and the library
+/// follows them by recursion, however many there are.
+int line_of_long_key(std::string_view text) {
+    const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
+    std::size_t parts = 1;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '.') {
+            if (++parts > most_parts) return static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1;
+        } else if (c == '"' || c == '\'') {
+            at = end_of_string(text, at);
+        } else if (c == '#') {
+            at = std::min(text.find('\n', at), text.size()) - 1;
+        } else if (!joins(static_cast<unsigned char>(c))) {
+            parts = 1;
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+
+const node* node::find(std::string_view wanted) const {
+    const auto found = std::ranges::find(items, wanted, &node::key);
+    return found == items.end() ? nullptr : &*found;
+}
+
+document::document(const std::string& text, std::string file) : file_(std::move(file)) {
+    if (text.size() > longest_config)
+        throw aabb::input_error(file_ + " is longer than " + std::to_string(longest_config) +
+                                " bytes, the most that a config may have");
+    if (const int line = line_of_long_key(text))
+        fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
+    try {
+        root_ = converted(toml::parse(text, file_));
+    } catch (const toml::parse_error& error) {
+        const toml::source_position& at = error.source().begin;
+        throw aabb::input_error(file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
+                                ": this is not TOML: " + std::string(error.description()));
+    } catch (const failed_toml_assertion&) {
+        fail(line_of_failed_assertion(text), "this is not TOML");
+    }
+}
+
+void document::fail(int line, const std::string& sentence) const {
+    throw aabb::input_error(file_ + ":" + std::to_string(line) + ": " + sentence);
+}
+
+void document::fail_type(const std::string& key, const node& value, std::string_view expected) const {
+    fail(value.line, key + " is " + std::string(name_of(value.kind)) + "; expected " + std::string(expected));
+}
+
+void document::require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const {
+    for (const node& entry : table.items)
+        if (std::ranges::find(known, entry.key) == known.end())
+            fail(entry.line, aabb::unknown_name("key" + of, entry.key, known));
+}
+
+void document::require_table(const std::string& key, const node& value) const {
+    if (value.kind != node_kind::table) fail_type(key, value, "a table");
+}
+
+const std::string& document::text_of(const std::string& key, const node& value) const {
+    if (value.kind != node_kind::text) fail_type(key, value, "a name");
+    return value.text;
+}
+
+std::uint64_t document::integer_of(const std::string& key, const node& value, std::uint64_t least) const {
+    std::uint64_t number = 0;
+    const char* end = value.text.data() + value.text.size();
+    const bool parsed = value.kind == node_kind::integer &&
+                        std::from_chars(value.text.data(), end, number) == std::from_chars_result{end, std::errc{}};
+    if (!parsed || number < least)
+        fail(value.line, key + " must be a whole number, at least " + std::to_string(least) +
+                             (value.is_scalar() ? ", not " + value.text : ", not " + std::string(name_of(value.kind))));
+    return number;
+}
+
+std::vector<located_text> document::texts_of(const std::string& key, const node& value) const {
+    if (value.kind == node_kind::text) return {{value.text, value.line}};
+    if (value.kind != node_kind::list) fail_type(key, value, "a list or a name");
+    std::vector<located_text> texts;
+    for (const node& item : value.items) {
+        if (item.kind != node_kind::text) fail_type("an entry of " + key, item, "a name");
+        texts.push_back({item.text, item.line});
+    }
+    return texts;
+}
+
+std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
+    if (value.is_scalar()) return {{value.text, value.line}};
+    if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
+    if (value.items.empty()) fail(value.line, key + " is an empty list; expected at least one value");
+    std::vector<located_text> all;
+    std::set<std::string_view> seen;
+    for (const node& item : value.items) {
+        if (!item.is_scalar()) fail_type("an entry of " + key, item, "a value");
+        if (!seen.insert(item.text).second) fail(item.line, key + " lists '" + item.text + "' twice");
+        all.push_back({item.text, item.line});
+    }
+    return all;
+}
+
+void document::require_few(int line, std::string_view of, std::span<const std::size_t> factors,
+                           std::size_t more) const {
+    auto all = static_cast<double>(more);
+    all += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
+    if (all > static_cast<double>(most_products))
+        fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(of) +
+                       ", the most that a config may have");
+}
+
+std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys) {
+    std::vector<std::size_t> sizes;
+    for (const auto& [key, values] : keys) sizes.push_back(values.size());
+    return sizes;
+}
+
+std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys) {
+    std::vector<std::vector<aabb::setting>> products{{}};
+    for (const auto& [key, values] : keys) {
+        std::vector<std::vector<aabb::setting>> longer;
+        for (const std::vector<aabb::setting>& product : products)
+            for (const located_text& value : values) {
+                longer.push_back(product);
+                longer.back().push_back({key, value.text});
+            }
+        products = std::move(longer);
+    }
+    return products;
+}
+
+}  // namespace aabblab

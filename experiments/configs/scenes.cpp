@@ -1,0 +1,177 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+module aabblab.configs;
+
+import :document;
+import aabb;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+/// The scene as this size of the experiment sees it: without `quick`, or with what stands in it.
+node sized(const document& doc, const node& scene, experiment_size size) {
+    node result = scene;
+    std::erase_if(result.items, [](const node& entry) { return entry.key == "quick"; });
+    const node* quick = scene.find("quick");
+    if (quick) doc.require_table("quick", *quick);
+    if (!quick || size == experiment_size::full) return result;
+    for (const node& entry : quick->items) {
+        const auto same = std::ranges::find(result.items, entry.key, &node::key);
+        if (same == result.items.end())
+            result.items.push_back(entry);
+        else
+            *same = entry;
+    }
+    return result;
+}
+
+const scene_info& info_of(const document& doc, const located_text& kind) {
+    const auto found = std::ranges::find(scene_kinds(), kind.text, &scene_info::name);
+    if (found == scene_kinds().end()) doc.fail(kind.line, aabb::unknown_name("scene", kind.text, scene_names()));
+    return *found;
+}
+
+/// The keys of a scene that are not settings.
+constexpr std::string_view own_keys[] = {"kind", "seed", "meshes", "without_data"};
+
+void require_known_keys(const document& doc, const node& scene, const scene_info& info) {
+    std::vector<std::string> known{"kind", "seed", "quick"};
+    if (info.has_meshes) known.insert(known.end(), {"meshes", "without_data"});
+    for (const aabb::parameter_info& p : info.parameters) known.push_back(p.name);
+    doc.require_keys(scene, " of scene " + info.name, known);
+    if (const node* quick = scene.find("quick")) doc.require_keys(*quick, " of scene " + info.name, known);
+}
+
+bool is_there(const std::string& mesh) {
+    std::error_code ignored;
+    return std::ranges::find(shapes(), mesh.substr(0, mesh.find(':')), &shape_info::name) != shapes().end() ||
+           std::filesystem::exists(mesh, ignored) || std::filesystem::exists(data_folder() / mesh, ignored);
+}
+
+std::vector<std::string> names_of(const document& doc, const node& scene, const std::string& key) {
+    std::vector<std::string> names;
+    const node* value = scene.find(key);
+    if (!value) return names;
+    for (located_text& one : doc.texts_of(key, *value)) names.push_back(std::move(one.text));
+    if (names.empty()) doc.fail(value->line, key + " is an empty list; expected at least one mesh");
+    return names;
+}
+
+std::vector<std::string> meshes_of(const document& doc, const node& scene, std::vector<std::string>& notes) {
+    std::vector<std::string> meshes = names_of(doc, scene, "meshes");
+    const std::vector<std::string> instead = names_of(doc, scene, "without_data");
+    const auto missing = std::ranges::find_if_not(meshes, is_there);
+    if (instead.empty() || missing == meshes.end()) return meshes;
+    std::string note = *missing + " is not there (./aabblab data fetches it); instead the scene has";
+    for (const std::string& mesh : instead) note += (&mesh == instead.data() ? " " : ", ") + mesh;
+    notes.push_back(note);
+    return instead;
+}
+
+std::vector<std::uint64_t> seeds_of(const document& doc, const node* seed) {
+    if (!seed) return {1};
+    if (seed->kind != node_kind::list) return {doc.integer_of("seed", *seed, 0)};
+    if (seed->items.empty()) doc.fail(seed->line, "seed is an empty list; expected at least one number");
+    std::vector<std::uint64_t> seeds;
+    std::set<std::uint64_t> seen;
+    for (const node& one : seed->items) {
+        seeds.push_back(doc.integer_of("seed", one, 0));
+        if (!seen.insert(seeds.back()).second) doc.fail(one.line, "seed lists '" + one.text + "' twice");
+    }
+    return seeds;
+}
+
+void add_meshes(aabb::digest& digest, std::span<const aabb::mesh> meshes) {
+    for (const aabb::mesh& m : meshes) {
+        for (const aabb::vec3f& v : m.vertices) digest.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
+        for (const std::array<std::uint32_t, 3>& triangle : m.triangles) digest.add(triangle);
+    }
+}
+
+/// A scene of the config, before anything is made of it.
+struct written_scene {
+    scene_choice choice;
+    bool has_meshes;
+    int line;
+};
+
+void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size,
+                std::vector<std::string>& notes, each_once<written_scene>& scenes) {
+    doc.require_table("scene", written);
+    const node scene = sized(doc, written, size);
+    const node* kinds = scene.find("kind");
+    if (!kinds)
+        doc.fail(written.line, "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
+    const std::vector<located_text> names = doc.alternatives_of("kind", *kinds);
+    for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
+    std::vector<alternatives> keys;
+    for (const node& entry : scene.items)
+        if (std::ranges::find(own_keys, entry.key) == std::end(own_keys))
+            keys.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
+    const node* own_seed = scene.find("seed");
+    const std::vector<std::uint64_t> seeds = seeds_of(doc, own_seed ? own_seed : seed);
+    std::vector<std::size_t> factors = sizes_of(keys);
+    factors.insert(factors.end(), {names.size(), seeds.size()});
+    doc.require_few(written.line, "scenes", factors, scenes.all().size());
+    for (const located_text& kind : names) {
+        const bool has_meshes = info_of(doc, kind).has_meshes;
+        const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
+        for (const std::vector<aabb::setting>& settings : multiplied(keys))
+            for (const std::uint64_t one : seeds) {
+                const scene_choice choice{kind.text, settings, meshes, one};
+                const std::string text = choice.kind + " " + parameters_text(choice);
+                if (!scenes.add({choice, has_meshes, written.line}, text))
+                    doc.fail(written.line, "this scene is listed twice: " + text);
+            }
+    }
+}
+
+/// The seeds of scenes that have none of their own, for this size of the experiment.
+const node* seed_of(const document& doc, experiment_size size) {
+    const node* quick = doc.root().find("quick");
+    if (quick) {
+        doc.require_table("quick", *quick);
+        doc.require_keys(*quick, " of quick", {"seed"});
+        if (const node* seed = quick->find("seed"); seed && size == experiment_size::quick) return seed;
+    }
+    return doc.root().find("seed");
+}
+
+}  // namespace
+
+void read_scenes(const document& doc, experiment_size size, experiment& e) {
+    const node* scenes = doc.root().find("scene");
+    if (!scenes) doc.fail(1, "this config has no scene; expected at least one [[scene]]");
+    if (scenes->kind != node_kind::list) doc.fail(scenes->line, "scene must stand in double brackets: [[scene]]");
+    const node* seed = seed_of(doc, size);
+    each_once<written_scene> written;
+    for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e.notes, written);
+    if (written.all().empty()) doc.fail(scenes->line, "this config has no scene; expected at least one [[scene]]");
+    aabb::digest meshes_made;
+    for (const auto& [choice, has_meshes, line] : written.all()) {
+        doc.at(line, [&] {
+            if (has_meshes)
+                add_meshes(meshes_made, make_mesh_scene(choice)->meshes);
+            else
+                (void)make_box_scene(choice);
+        });
+        e.scenes.push_back(choice);
+    }
+    e.mesh_digest = meshes_made.text();
+}
+
+}  // namespace aabblab

@@ -1,0 +1,84 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Plays the scenes of an experiment through every composition and engine: validates, then times.
+export module aabblab.play;
+
+import aabb;
+import aabb.validation;
+import aabblab.configs;
+import aabblab.results;
+import aabblab.scenes;
+export import :player;
+
+export namespace aabblab {
+
+/// "insertion + none + one_axis + canonical + exact", "cgal".
+[[nodiscard]] std::string text_of(const contender_name& name);
+
+[[nodiscard]] bool has_meshes(const scene_choice& scene);
+
+[[nodiscard]] contender contender_of(const composition& composition, bool meshes);
+/// An engine that does one stage only gets the default composition for the other; empty for one that has no part in the
+/// scene.
+[[nodiscard]] std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes);
+
+/// Who plays a scene of the experiment: its compositions, then its engines.
+[[nodiscard]] std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene);
+
+/// What came out of playing a scene beside the exact answer, untimed.
+struct verdict {
+    contender_name name;
+    std::string failure;  ///< the first difference where the contender must be exact; empty where there is none
+    std::uint64_t candidates = 0;
+    std::optional<std::uint64_t> contacts;
+    std::string digest;
+    std::uint64_t missing = 0;
+    std::uint64_t invented = 0;
+    std::optional<std::uint64_t> triangles;  ///< of the scene's meshes; empty in scenes of boxes
+    std::optional<double> box_inflation;     ///< empty where no tree is to be seen
+    std::vector<difference> differences;     ///< the same by class
+    /// Over the frames after frame 0, as times are; of frame 0 where there is no other.
+    std::array<std::uint64_t, aabb::work_names.size()> counts{};
+    std::array<std::uint64_t, byte_columns.size()> bytes{};
+};
+
+struct scene_verdicts {
+    std::uint64_t objects = 0;
+    std::uint64_t frames = 0;
+    std::string judge;   ///< what gave the exact answer
+    std::string digest;  ///< of the exact answer
+    std::vector<verdict> verdicts;
+};
+
+/// Plays all contenders in step with a `judge` and compares whole sets, frame by frame. Work is counted on the way.
+[[nodiscard]] scene_verdicts validate_scene(const scene_choice& scene, std::span<const contender> contenders);
+
+/// One repeat.
+struct timing {
+    double build_ms = 0;
+    double first_ms = 0;
+    double update_ms = 0;
+    double search_ms = 0;
+    double detect_ms = 0;
+    std::string digest;
+};
+[[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who);
+
+/// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
+/// adds a row for each. What the folder has already is not played again; later processes take what the first one
+/// validated as known, and compare the digest of every repeat with it.
+/// @param process from 0; each takes an equal share of the repeats, in order
+/// @returns a sentence for each contender that is wrong; it gets no row.
+[[nodiscard]] std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
+                                                 std::span<const contender> contenders, results_folder& results,
+                                                 std::size_t process = 0);
+
+}  // namespace aabblab

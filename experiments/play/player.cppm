@@ -1,0 +1,149 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Scenes and those who play them.
+export module aabblab.play:player;
+
+import aabb;
+import aabblab.results;
+import aabblab.scenes;
+
+export namespace aabblab {
+
+/// A composition of ours or a reference system, ready to be made anew for each time it plays.
+struct contender {
+    contender_name name;
+    std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
+    std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
+    bool exact_boxes = true;  ///< a difference from the exact pairs of boxes is a failure, not a measurement
+    bool exact = true;        ///< the same of contacts
+};
+
+/// A scene from its first frame to its last, of boxes or of meshes.
+class scene_play {
+public:
+    /// @throws aabb::input_error where the scene cannot be made.
+    explicit scene_play(const scene_choice& choice);
+
+    [[nodiscard]] std::size_t objects() const;
+    [[nodiscard]] std::size_t frames() const;
+    /// Goes to the next frame; false after the last.
+    bool next();
+    /// Null in a scene of boxes.
+    [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
+    [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }
+    [[nodiscard]] std::span<const aabb::pose> poses() const { return poses_; }
+    /// Objects of a scene of boxes that are in this frame and were not in the one before, and the other way round.
+    [[nodiscard]] std::span<const std::uint32_t> arrivals() const { return arrivals_; }
+    [[nodiscard]] std::span<const std::uint32_t> departures() const { return departures_; }
+
+private:
+    void note_changes(std::span<const std::uint8_t> present);
+
+    std::unique_ptr<aabb::box_scene> box_scene_;
+    std::unique_ptr<aabb::mesh_scene> meshes_;
+    std::vector<aabb::box> boxes_;
+    std::vector<aabb::pose> poses_;
+    std::vector<std::uint8_t> present_;  // by object
+    std::vector<std::uint32_t> arrivals_;
+    std::vector<std::uint32_t> departures_;
+};
+
+/// A contender in a scene: its stages, with the trees built. The scene must outlive it.
+class player {
+public:
+    player(const contender& who, const scene_play& scene, aabb::instrumentation counted);
+
+    /// One frame, in steps that can be timed apart.
+    void update();
+    void search();
+    void detect();
+
+    /// Of the frame, sorted; duplicates stay.
+    [[nodiscard]] const std::vector<aabb::index_pair>& sorted_pairs();
+    [[nodiscard]] const std::vector<aabb::contact>& sorted_contacts();
+
+    /// Over all frames so far.
+    [[nodiscard]] aabb::work_counters counters() const;
+    [[nodiscard]] std::vector<aabb::part_bytes> global_bytes() const { return global_->bytes(); }
+    [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
+    [[nodiscard]] std::size_t buffer_bytes() const;
+    [[nodiscard]] std::vector<std::string> left_out() const;
+    /// The mean over the scene's meshes of the tree's; empty where there is no tree to be seen.
+    [[nodiscard]] std::optional<double> box_inflation() const;
+
+private:
+    const scene_play& scene_;
+    std::unique_ptr<aabb::global_stage> global_;
+    std::unique_ptr<aabb::local_stage> local_;  // null in a scene of boxes, as is the pipeline
+    std::unique_ptr<aabb::pipeline> pipeline_;
+    std::vector<aabb::index_pair> pairs_;
+    std::vector<aabb::contact> contacts_;
+};
+
+/// What gives the exact answer. Pairs of boxes: brute force up to 20,000 objects, CGAL above. Contacts: CGAL's exact
+/// kernel on every two objects whose bounding spheres meet; the boxes of global search have no part in them, so that a
+/// pair of objects that wrong boxes lose shows up as missing. The scene must outlive it.
+class judge {
+public:
+    explicit judge(const scene_play& scene);
+
+    /// Says what judges.
+    [[nodiscard]] std::string name() const;
+
+    /// The scene's current frame.
+    /// @param boxes of the objects, in the world
+    void play(std::span<const aabb::box> boxes);
+
+    /// Of the frame, sorted, each once.
+    [[nodiscard]] const std::vector<aabb::index_pair>& pairs() const { return pairs_; }
+    [[nodiscard]] const std::vector<aabb::contact>& contacts() const { return contacts_; }
+
+private:
+    struct sphere {
+        aabb::vec3d centre;
+        double radius;
+    };
+    [[nodiscard]] static sphere sphere_around(const aabb::mesh& m);
+    void follow_meshes();
+    /// Every two objects that can meet, and some that cannot.
+    [[nodiscard]] std::vector<aabb::index_pair> near_objects() const;
+
+    const scene_play& scene_;
+    std::string box_engine_;
+    std::unique_ptr<aabb::global_stage> boxes_;
+    std::unique_ptr<aabb::local_stage> triangles_;  // null in a scene of boxes
+    std::vector<sphere> spheres_;                   // by mesh
+    std::vector<aabb::index_pair> pairs_;
+    std::vector<aabb::contact> contacts_;
+};
+
+/// Number and digest of what is found, frame by frame.
+class tally {
+public:
+    /// @param meshes the digest is of contacts, not of pairs of boxes
+    explicit tally(bool meshes) : meshes_(meshes) {}
+
+    /// A frame: both sorted; contacts are empty in a scene of boxes.
+    void add(const std::vector<aabb::index_pair>& pairs, const std::vector<aabb::contact>& contacts);
+
+    [[nodiscard]] std::uint64_t candidates() const { return candidates_; }
+    [[nodiscard]] std::optional<std::uint64_t> contacts() const;
+    [[nodiscard]] std::string digest() const { return digest_.text(); }
+
+private:
+    bool meshes_;
+    std::uint32_t frame_ = 0;
+    std::uint64_t candidates_ = 0;
+    std::uint64_t contacts_ = 0;
+    aabb::digest digest_;
+};
+
+}  // namespace aabblab

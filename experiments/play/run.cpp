@@ -1,0 +1,182 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+module aabblab.play;
+
+import :player;
+import aabb;
+import aabblab.configs;
+import aabblab.progress;
+import aabblab.results;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+/// A contender with the row that all its repeats have in common.
+struct timed_contender {
+    const contender* who;
+    row result;
+    bool strayed = false;
+};
+
+row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts& all, const verdict& v) {
+    row r;
+    r.experiment = e.name;
+    r.scene = scene.kind;
+    r.scene_parameters = parameters_text(scene);
+    r.objects = all.objects;
+    r.frames = all.frames;
+    r.name = v.name;
+    r.candidates = v.candidates;
+    r.contacts = v.contacts;
+    r.digest = v.digest;
+    r.triangles = v.triangles;
+    // Engines count nothing.
+    const bool counted = std::ranges::any_of(v.counts, [](std::uint64_t n) { return n > 0; });
+    if (e.measured.counts && counted) std::ranges::copy(v.counts, r.counts.begin());
+    if (e.measured.bytes) std::ranges::copy(v.bytes, r.bytes.begin());
+    if (e.measured.error) {
+        r.missing = v.missing;
+        r.invented = v.invented;
+        r.box_inflation = v.box_inflation;
+    }
+    r.status = v.differences.empty() ? "exact" : "inexact";
+    return r;
+}
+
+/// The repeats of one process.
+struct share_of_repeats {
+    share_of_repeats(const experiment& e, std::size_t process) {
+        const std::size_t repeats = e.measured.time ? e.repeats : 1;
+        begin = repeats * process / e.processes;
+        end = repeats * (process + 1) / e.processes;
+    }
+
+    std::size_t begin;
+    std::size_t end;
+};
+
+/// The rows of a scene that there are.
+std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
+    const std::string parameters = parameters_text(scene);
+    std::vector<row> found;
+    for (const row& r : rows)
+        if (r.scene == scene.kind && r.scene_parameters == parameters) found.push_back(r);
+    return found;
+}
+
+/// Ratios are formed within a repeat, so one that was interrupted is played again, whole. It can only be the last.
+void drop_interrupted_repeat(const scene_choice& scene, const share_of_repeats& share, std::size_t contenders,
+                             results_folder& results) {
+    if (results.rows().empty()) return;
+    const row last = results.rows().back();
+    if (last.scene != scene.kind || last.scene_parameters != parameters_text(scene) || last.repeat < share.begin ||
+        last.repeat >= share.end)
+        return;
+    const std::vector<row> rows = rows_of(scene, results.rows());
+    const auto played = std::ranges::count(rows, last.repeat, &row::repeat);
+    if (static_cast<std::size_t>(played) < contenders) results.drop(scene, last.repeat);
+}
+
+std::vector<contender> unfinished(std::span<const contender> contenders, const share_of_repeats& share,
+                                  std::span<const row> rows) {
+    std::vector<contender> left;
+    for (const contender& who : contenders) {
+        const auto finished = std::ranges::count_if(
+            rows, [&](const row& r) { return r.name == who.name && r.repeat >= share.begin && r.repeat < share.end; });
+        if (static_cast<std::size_t>(finished) < share.end - share.begin) left.push_back(who);
+    }
+    return left;
+}
+
+/// Times one repeat. The answer is compared again: what is timed is compiled apart from what counted its work.
+/// @returns what is wrong; empty when nothing is
+std::string time_into(const scene_choice& scene, timed_contender& timed) {
+    row& r = timed.result;
+    const timing times = time_scene(scene, *timed.who);
+    r.build_ms = times.build_ms;
+    r.first_ms = times.first_ms;
+    r.update_ms = times.update_ms;
+    r.search_ms = times.search_ms;
+    r.detect_ms = times.detect_ms;
+    if (times.digest == r.digest) return {};
+    timed.strayed = true;
+    return text_of(r.name) + " is wrong on " + scene.kind + " (" + r.scene_parameters + "): timed, its digest is " +
+           times.digest + ", validated it was " + r.digest;
+}
+
+/// Who is ready to be timed, and what is wrong with the others.
+struct admission {
+    std::vector<timed_contender> timed;
+    std::vector<std::string> failures;
+};
+
+/// Plays the scene beside the judge.
+admission validated(const experiment& e, const scene_choice& scene, std::span<const contender> contenders,
+                    results_folder& results) {
+    admission all;
+    const scene_verdicts found = validate_scene(scene, contenders);
+    results.set_digest(scene, found.digest);
+    std::vector<contender_name> names;
+    std::vector<difference> differences;
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        const verdict& v = found.verdicts[i];
+        names.push_back(v.name);
+        differences.insert(differences.end(), v.differences.begin(), v.differences.end());
+        if (v.failure.empty())
+            all.timed.push_back({&contenders[i], row_of(e, scene, found, v)});
+        else
+            all.failures.push_back(v.failure);
+    }
+    if (e.measured.error) results.set_differences(scene, names, differences);
+    return all;
+}
+
+/// Those whom the first process validated, with what it found.
+admission known(std::span<const contender> contenders, std::span<const row> rows) {
+    admission all;
+    for (const contender& who : contenders) {
+        const auto before = std::ranges::find(rows, who.name, &row::name);
+        if (before != rows.end()) all.timed.push_back({&who, *before});
+    }
+    return all;
+}
+
+}  // namespace
+
+std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
+                                   std::span<const contender> contenders, results_folder& results,
+                                   std::size_t process) {
+    const share_of_repeats share(e, process);
+    drop_interrupted_repeat(scene, share, contenders.size(), results);
+    const std::vector<row> rows = rows_of(scene, results.rows());
+    const std::vector<contender> left = unfinished(contenders, share, rows);
+    if (left.empty()) return {};
+    auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
+    progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
+    for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat)
+        for (std::size_t i = 0; i < timed.size(); ++i, shown.at(++done)) {
+            // Each repeat begins with another contender, so that none is always the first.
+            timed_contender& turn = timed[(i + repeat) % timed.size()];
+            turn.result.repeat = repeat;
+            turn.result.process = process;
+            if (turn.strayed || results.has(turn.result)) continue;
+            const std::string failure = e.measured.time ? time_into(scene, turn) : std::string();
+            if (failure.empty()) {
+                results.add(turn.result);
+                continue;
+            }
+            failures.push_back(failure);
+            results.drop(scene, turn.result.name);
+        }
+    return failures;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,206 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <iterator>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.play;
+
+import :player;
+import aabb;
+import aabb.validation;
+import aabblab.progress;
+import aabblab.results;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+std::string text_of(const aabb::index_pair& pair) {
+    return "the pair " + std::to_string(pair.a) + " " + std::to_string(pair.b);
+}
+
+std::string text_of(const aabb::contact& c) {
+    return "the contact of objects " + std::to_string(c.a) + " " + std::to_string(c.b) + " in their triangles " +
+           std::to_string(c.triangle_a) + " " + std::to_string(c.triangle_b);
+}
+
+/// What two sorted ranges do not have in common. A duplicate is one too many.
+template <class T>
+struct set_difference {
+    set_difference(const std::vector<T>& exact, const std::vector<T>& found) {
+        std::ranges::set_difference(exact, found, std::back_inserter(missing));
+        std::ranges::set_difference(found, exact, std::back_inserter(invented));
+    }
+
+    /// Says the first one; empty where there is none.
+    [[nodiscard]] std::string first() const {
+        if (missing.empty() && invented.empty()) return {};
+        if (invented.empty() || (!missing.empty() && missing[0] < invented[0]))
+            return text_of(missing[0]) + " is missing";
+        return text_of(invented[0]) + " is reported, but not once in the exact answer";
+    }
+
+    std::vector<T> missing;
+    std::vector<T> invented;
+};
+
+/// Compares one contender with the judge.
+class comparison {
+public:
+    comparison(const contender& who, const scene_choice& choice, const scene_play& scene)
+        : who_(who),
+          choice_(choice),
+          scene_(scene),
+          player_(who, scene, aabb::instrumentation::counters),
+          found_(scene.meshes() != nullptr) {}
+
+    void play(std::size_t frame, const judge& exact) {
+        player_.update();
+        player_.search();
+        player_.detect();
+        if (frame == 0) first_frame_ = player_.counters();
+        found_.add(player_.sorted_pairs(), player_.sorted_contacts());
+        const set_difference boxes(exact.pairs(), player_.sorted_pairs());
+        if (who_.exact_boxes) note(frame, boxes.first());
+        boxes_missing_ += boxes.missing.size();
+        boxes_invented_ += boxes.invented.size();
+        if (!scene_.meshes()) return;
+        const set_difference contacts(exact.contacts(), player_.sorted_contacts());
+        if (who_.exact) note(frame, contacts.first());
+        contacts_missing_ += contacts.missing.size();
+        contacts_invented_ += contacts.invented.size();
+        classify(contacts);
+    }
+
+    [[nodiscard]] verdict result() const {
+        verdict v;
+        v.name = who_.name;
+        v.failure = failure_;
+        v.candidates = found_.candidates();
+        v.contacts = found_.contacts();
+        v.digest = found_.digest();
+        v.missing = scene_.meshes() ? contacts_missing_ : boxes_missing_;
+        v.invented = scene_.meshes() ? contacts_invented_ : boxes_invented_;
+        add_differences(v.differences, "missing", boxes_missing_, classes_.missing);
+        add_differences(v.differences, "invented", boxes_invented_, classes_.invented);
+        if (scene_.meshes()) {
+            v.triangles = 0;
+            for (const aabb::mesh& m : scene_.meshes()->meshes) *v.triangles += m.triangles.size();
+            v.box_inflation = player_.box_inflation();
+        }
+        v.counts = player_.counters().counts;
+        if (scene_.frames() > 1)
+            for (std::size_t i = 0; i < v.counts.size(); ++i) v.counts[i] -= first_frame_.counts[i];
+        for (const auto& parts : {player_.global_bytes(), player_.local_bytes()})
+            for (const aabb::part_bytes& part : parts) {
+                auto column = std::ranges::find(byte_columns, part.part);
+                if (column == byte_columns.end()) --column;
+                v.bytes[static_cast<std::size_t>(column - byte_columns.begin())] += part.bytes;
+            }
+        return v;
+    }
+
+private:
+    void note(std::size_t frame, const std::string& difference) {
+        if (!failure_.empty() || difference.empty()) return;
+        failure_ = text_of(who_.name) + " is wrong on " + choice_.kind + " (" + parameters_text(choice_) + "), frame " +
+                   std::to_string(frame) + ": " + difference;
+    }
+
+    /// By class, pair of objects by pair of objects.
+    void classify(const set_difference<aabb::contact>& contacts) {
+        struct both {
+            std::vector<aabb::index_pair> missing, invented;
+        };
+        std::map<aabb::index_pair, both> by_objects;
+        for (const aabb::contact& c : contacts.missing)
+            by_objects[{c.a, c.b}].missing.push_back({c.triangle_a, c.triangle_b});
+        for (const aabb::contact& c : contacts.invented) {
+            std::vector<aabb::index_pair>& invented = by_objects[{c.a, c.b}].invented;
+            const aabb::index_pair pair{c.triangle_a, c.triangle_b};
+            if (invented.empty() || invented.back() != pair) invented.push_back(pair);
+        }
+        const aabb::mesh_scene& meshes = *scene_.meshes();
+        for (const auto& [objects, lists] : by_objects)
+            classes_ += aabb::compare_triangle_pairs(
+                lists.missing, lists.invented, meshes.meshes[meshes.mesh_of[objects.a]], scene_.poses()[objects.a],
+                meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
+    }
+
+    void add_differences(std::vector<difference>& all, std::string_view what, std::uint64_t boxes,
+                         std::span<const std::size_t> classes) const {
+        const auto add = [&](std::string_view kind, std::uint64_t count) {
+            if (count > 0)
+                all.push_back(
+                    {choice_.kind, parameters_text(choice_), who_.name, std::string(what), std::string(kind), count});
+        };
+        add("boxes", boxes);
+        for (std::size_t i = 0; i < classes.size(); ++i) add(aabb::difference_class_names[i], classes[i]);
+    }
+
+    const contender& who_;
+    const scene_choice& choice_;
+    const scene_play& scene_;
+    player player_;
+    tally found_;
+    std::string failure_;
+    aabb::work_counters first_frame_;
+    std::uint64_t boxes_missing_ = 0;
+    std::uint64_t boxes_invented_ = 0;
+    std::uint64_t contacts_missing_ = 0;
+    std::uint64_t contacts_invented_ = 0;
+    aabb::differences classes_;
+};
+
+/// In the world, as the pipeline makes them.
+/// @param mesh_bounds brought up to date where meshes have deformed
+std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::vector<aabb::box>& mesh_bounds,
+                                std::span<const aabb::pose> poses) {
+    for (std::uint32_t m = 0; m < mesh_bounds.size(); ++m)
+        if (scene.deforms(m)) mesh_bounds[m] = aabb::bounds_of(scene.meshes[m]);
+    std::vector<aabb::box> boxes;
+    for (std::size_t object = 0; object < poses.size(); ++object)
+        boxes.push_back(aabb::world_bounds(mesh_bounds[scene.mesh_of[object]], poses[object]));
+    return boxes;
+}
+
+}  // namespace
+
+scene_verdicts validate_scene(const scene_choice& choice, std::span<const contender> contenders) {
+    scene_play scene(choice);
+    judge exact(scene);
+    tally exact_tally(scene.meshes() != nullptr);
+    std::deque<comparison> comparisons;
+    for (const contender& who : contenders) comparisons.emplace_back(who, choice, scene);
+    std::vector<aabb::box> mesh_bounds;
+    if (scene.meshes())
+        for (const aabb::mesh& m : scene.meshes()->meshes) mesh_bounds.push_back(aabb::bounds_of(m));
+    progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
+    std::size_t done = 0;
+    for (std::size_t frame = 0; scene.next(); ++frame) {
+        if (scene.meshes())
+            exact.play(boxes_of(*scene.meshes(), mesh_bounds, scene.poses()));
+        else
+            exact.play(scene.boxes());
+        exact_tally.add(exact.pairs(), exact.contacts());
+        shown.at(++done);
+        for (comparison& c : comparisons) {
+            c.play(frame, exact);
+            shown.at(++done);
+        }
+    }
+    scene_verdicts result{scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), {}};
+    for (const comparison& c : comparisons) result.verdicts.push_back(c.result());
+    return result;
+}
+
+}  // namespace aabblab

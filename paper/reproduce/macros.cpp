@@ -1,0 +1,123 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.reproduction;
+
+import aabblab.claims;
+import aabblab.figures;
+import aabblab.tables;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+class macros {
+public:
+    /// Text that is TeX already.
+    void set_tex(const std::string& key, const std::string& tex) { text_ += "\\aabbset{" + key + "}{" + tex + "}\n"; }
+    void set(const std::string& key, std::string_view text) { set_tex(key, tex_text(text)); }
+    void set(const std::string& key, std::size_t number) { set(key, std::to_string(number)); }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    std::string text_ = "% Written by ./aabblab reproduce: every number that the report names.\n";
+};
+
+/// The values of every factor over all scenes: "scene brownian, still; objects 100, 1000."
+std::string setup_of(const claim_result& c) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> values;
+    for (const factors& scene : c.scenes)
+        for (const auto& [name, value] : scene) {
+            auto known = std::ranges::find(values, name, &std::pair<std::string, std::vector<std::string>>::first);
+            if (known == values.end()) known = values.insert(known, {name, {}});
+            if (std::ranges::find(known->second, value) == known->second.end()) known->second.push_back(value);
+        }
+    std::string text;
+    for (auto& [name, seen] : values) {
+        const auto is_number = [&](const std::string& value) { return !std::isnan(number_of({{"", value}}, "")); };
+        if (std::ranges::all_of(seen, is_number))
+            std::ranges::sort(seen, {}, [](const std::string& value) { return number_of({{"", value}}, ""); });
+        text += (text.empty() ? "" : "; ") + name + " ";
+        for (const std::string& value : seen) text += (&value == seen.data() ? "" : ", ") + value;
+    }
+    return text.empty() ? "none were measured." : text + ".";
+}
+
+void add_claim(macros& to, const claim_result& c) {
+    const auto set = [&](const char* key, std::string_view text) { to.set(c.id + "." + key, text); };
+    set("claim", c.claim);
+    set("measured", c.measured);
+    set("verdict", text_of(c));
+    set("because", c.because);
+    set("setup", setup_of(c));
+    set("favourable", c.expected == expectation::less ? "below 0.952" : "below 1.05");
+    set("condition", c.has_primary ? text_of(c.primary.where) : "-");
+    set("ratio", c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
+    set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
+    set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
+    to.set(c.id + ".endpoints", c.secondary.size());
+    const auto count = [&](const char* key, support what) {
+        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(c.secondary, what, &endpoint::found)));
+    };
+    count("for", support::favours);
+    count("against", support::contradicts);
+    count("same", support::no_difference);
+    count("open", support::open);
+}
+
+}  // namespace
+
+std::string macros_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
+    macros to;
+    // A layout that was wrong has no row in table 1.
+    for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
+        for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
+    for (const char* name : {"table1", "table1_builds", "c2_inversions", "c3_map", "c4_auto", "c11_stages"})
+        to.set(std::string("table.") + name + ".caption", "There are no measurements.");
+    to.set("date", made.date);
+    to.set("commit", made.commit);
+    to.set("compiler", made.compiler);
+    to.set("flags", made.flags);
+    to.set("cpu", made.cpu);
+    to.set("size", made.size);
+    to.set("rows", made.rows);
+    to.set("compositions", made.compositions);
+    to.set("scenes", made.scenes);
+    to.set("processes", made.processes);
+    to.set("seeds", made.seeds);
+    to.set("repeats", made.repeats);
+    to.set_tex("confidence", "95\\,\\%");
+    to.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
+    to.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
+    to.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
+    to.set("draws", draws_of_a_level);
+    to.set("failures",
+           failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
+    for (const claim_result& c : all.claims) {
+        add_claim(to, c);
+        for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);
+        for (const named_table& t : c.tables) to.set("table." + t.name + ".caption", t.caption);
+    }
+    to.set("table.null_control.caption", all.null_control.caption);
+    for (const figure& f : all.figures) to.set("figure." + f.name + ".caption", f.caption);
+    for (const named_table& t : all.tables) {
+        to.set("table." + t.name + ".caption", t.caption);
+        if (t.name != "table1") continue;
+        for (const std::vector<std::string>& cells : t.content.rows) {
+            to.set("table1." + cells[0] + ".paper", cells[3]);
+            to.set("table1." + cells[0] + ".allocated", cells[4]);
+        }
+    }
+    return to.text();
+}
+
+}  // namespace aabblab

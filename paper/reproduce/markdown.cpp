@@ -1,0 +1,40 @@
+module;
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.reproduction;
+
+import aabblab.claims;
+import aabblab.figures;
+import aabblab.tables;
+
+namespace aabblab {
+
+std::string markdown_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
+    std::string text = "# The paper, reproduced\n\n" + made.date + ", commit " + made.commit + ", " + made.compiler +
+                       ", " + made.cpu + "; " + made.size + " size, " + std::to_string(made.rows) + " rows, up to " +
+                       std::to_string(made.processes) + " processes, up to " + std::to_string(made.seeds) +
+                       " seeds.\n\n";
+    for (const std::string& failure : failures) text += "**Wrong:** " + failure + ".\n\n";
+    for (const std::string& note : made.notes) text += "Note: " + note + ".\n\n";
+    text += to_markdown(verdict_table(all)) + "\n";
+    const auto add_table = [&](const named_table& t) { text += t.caption + "\n\n" + to_markdown(t.content) + "\n"; };
+    const auto add_figure = [&](const figure& f) {
+        text += "![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n";
+    };
+    for (const figure& f : all.figures) add_figure(f);
+    for (const claim_result& c : all.claims) {
+        text += "## " + c.id + ": " + c.claim + "\n\n**" + text_of(c) + ".** " + c.because + "\n\n";
+        for (const figure& f : c.figures) add_figure(f);
+        for (const named_table& t : c.tables) add_table(t);
+    }
+    text += "## How a verdict comes about\n\n";
+    for (const std::string_view paragraph : rule_text) text += std::string(paragraph) + "\n\n";
+    add_table(all.null_control);
+    text += "## Table 1\n\n";
+    for (const named_table& t : all.tables) add_table(t);
+    return text + "## What the paper leaves open\n\n" + to_markdown(choice_table(all));
+}
+
+}  // namespace aabblab

@@ -1,0 +1,145 @@
+module;
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.reproduction;
+
+import aabb;
+import aabblab.claims;
+import aabblab.figures;
+import aabblab.files;
+import aabblab.tables;
+import aabblab.results;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// Every endpoint of every claim, for programs.
+table endpoints_of(const reproduction& all) {
+    table t{{{"claim", false}, {"endpoint", false}, {"where", false}, {"ratio"}, {"low"}, {"high"}, {"outcome", false}},
+            {}};
+    const auto add = [&](const claim_result& c, const std::string& kind, const endpoint& e) {
+        std::string where;
+        for (const auto& [name, value] : e.where) where += (where.empty() ? "" : " ") + name + "=" + value;
+        t.rows.push_back({c.id, kind, where, std::to_string(e.ratio), std::to_string(e.range.low),
+                          std::to_string(e.range.high), text_of(e.found)});
+    };
+    for (const claim_result& c : all.claims) {
+        if (c.has_primary) add(c, "primary", c.primary);
+        for (const endpoint& e : c.secondary) add(c, "secondary", e);
+    }
+    return t;
+}
+
+/// The primary ratio of every claim against the band of no difference.
+figure verdict_figure(const reproduction& all) {
+    figure f{
+        "verdicts",
+        "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference. Ratios "
+        "below 0.2 are left out.",
+        {"claim", false, {}},
+        {"ratio", true, {}},
+        {},
+        {}};
+    series ratios{"primary ratio, 95 % interval", series_style::points, {}};
+    for (std::size_t i = 0; i < all.claims.size(); ++i) {
+        f.x.names.emplace_back(static_cast<double>(i), all.claims[i].id);
+        if (!all.claims[i].has_primary || all.claims[i].primary.ratio < 0.2) continue;
+        const endpoint& e = all.claims[i].primary;
+        ratios.points.push_back({static_cast<double>(i), e.ratio, e.range.low, e.range.high});
+    }
+    f.lines = {ratios,
+               {"no difference", series_style::level, {{0, 1, 1 / (1 + equivalence_band), 1 + equivalence_band}}}};
+    return f;
+}
+
+void write_table(const std::filesystem::path& folder, const named_table& t) {
+    write_file(folder / (t.name + ".csv"), to_csv(t.content));
+    write_file(folder / (t.name + ".md"), to_markdown(t.content));
+    write_file(folder / (t.name + ".tex"), paper_table(t.content));
+}
+
+}  // namespace
+
+std::string text_of_file(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!in) throw aabb::input_error(file.string() + " cannot be read");
+    return text;
+}
+
+provenance provenance_of(const std::filesystem::path& folder, const reproduction& all) {
+    provenance made;
+    std::vector<std::string> experiments;
+    for (const claim_result& c : all.claims)
+        for (const std::string& experiment : c.experiments)
+            if (std::ranges::find(experiments, experiment) == experiments.end() &&
+                std::filesystem::exists(folder / experiment / "manifest.json"))
+                experiments.push_back(experiment);
+    for (const char* experiment : {"choices", "null_control"})
+        if (std::filesystem::exists(folder / experiment / "manifest.json")) experiments.emplace_back(experiment);
+    for (const std::string& experiment : experiments) {
+        const std::string text = text_of_file(folder / experiment / "manifest.json");
+        const nlohmann::json manifest = nlohmann::json::parse(text);
+        const nlohmann::json& build = manifest["build"];
+        made.configs.push_back({experiment, manifest["config"].value("text", ""), text});
+        made.size = manifest["config"].value("quick", false) ? "quick" : "full";
+        made.date = std::max(made.date, manifest.value("date", "").substr(0, 10));
+        made.commit = build.value("commit", "unknown") + (build.value("dirty", false) ? " (changed)" : "");
+        made.compiler = build.value("compiler", "");
+        made.flags = build.value("flags", "");
+        made.cpu = build.value("cpu", "");
+        for (const std::string& note : manifest.value("notes", std::vector<std::string>{}))
+            if (std::ranges::find(made.notes, note) == made.notes.end()) made.notes.push_back(note);
+        std::set<contender_name> names;
+        std::set<std::string> scenes, seeds;
+        for (const row& r : read_rows(folder / experiment / "results.csv")) {
+            ++made.rows;
+            names.insert(r.name);
+            scenes.insert(r.scene + r.scene_parameters);
+            seeds.insert(r.scene_parameters.substr(r.scene_parameters.rfind('=') + 1));
+            made.processes = std::max<std::size_t>(made.processes, r.process + 1);
+            made.repeats = std::max<std::size_t>(made.repeats, r.repeat + 1);
+        }
+        made.compositions += names.size();
+        made.scenes += scenes.size();
+        made.seeds = std::max(made.seeds, seeds.size());
+    }
+    return made;
+}
+
+void write_reproduction(const std::filesystem::path& folder, const reproduction& judged_claims,
+                        const std::vector<std::string>& failures) {
+    reproduction all = judged_claims;
+    all.figures.push_back(verdict_figure(all));
+    const provenance made = provenance_of(folder, all);
+    std::filesystem::create_directories(folder / "tables");
+    std::vector<named_table> tables = all.tables;
+    tables.push_back({"verdicts", "The verdicts.", verdict_table(all)});
+    tables.push_back(all.null_control);
+    tables.push_back({"open", "What the paper leaves open.", choice_table(all)});
+    std::vector<figure> figures = all.figures;
+    for (const claim_result& c : all.claims) {
+        tables.insert(tables.end(), c.tables.begin(), c.tables.end());
+        figures.insert(figures.end(), c.figures.begin(), c.figures.end());
+    }
+    for (const named_table& t : tables) write_table(folder / "tables", t);
+    draw(folder / "figures", figures);
+    write_file(folder / "verdicts.csv", to_csv(verdict_table(all)));
+    write_file(folder / "endpoints.csv", to_csv(endpoints_of(all)));
+    write_file(folder / "macros.tex", macros_of(all, made, failures));
+    write_file(folder / "report.md", markdown_of(all, made, failures));
+    write_file(folder / "report.html", html_of(folder, all, made, failures));
+}
+
+}  // namespace aabblab
