@@ -1,5 +1,35 @@
+# aabblab_kind(KIND STAGE DEFAULT [APART]): declares a kind of strategy of a stage (global_search or local_detection), and
+# the strategy that a composition has where it names none. The kinds of a stage are compiled together, every combination
+# of them; one that stands APART is compiled alone and handed to the stage when that is made.
+function(aabblab_kind kind stage default)
+    cmake_parse_arguments(PARSE_ARGV 3 of APART "" "")
+    set_property(GLOBAL APPEND PROPERTY aabblab_kinds ${kind})
+    if(of_APART)
+        set(apart true)
+    else()
+        set(apart false)
+        set_property(GLOBAL APPEND PROPERTY aabblab_${stage}_kinds ${kind})
+    endif()
+    set_property(GLOBAL APPEND PROPERTY aabblab_kind_infos "{\"${kind}\", stage::${stage}, \"${default}\", ${apart}}")
+endfunction()
+
 # aabblab_strategy(KIND NAME): declares a strategy.
 function(aabblab_strategy kind name)
+    get_property(kinds GLOBAL PROPERTY aabblab_kinds)
+    if(NOT kind IN_LIST kinds)
+        list(JOIN kinds ", " known)
+        message(FATAL_ERROR "aabblab_strategy(${kind} ${name}): ${kind} is not a kind of strategy; those are ${known}")
+    endif()
+    aabblab_strategy_module(${kind} ${name})
+    set_property(GLOBAL APPEND PROPERTY aabblab_${kind}_names ${name})
+endfunction()
+
+# aabblab_family(KIND NAME): declares a module aabb.KIND.NAME that strategies of the kind share.
+function(aabblab_family kind name)
+    aabblab_strategy_module(${kind} ${name})
+endfunction()
+
+function(aabblab_strategy_module kind name)
     if(NOT TARGET aabblab_strategies)
         add_library(aabblab_strategies STATIC)
         add_library(aabblab::strategies ALIAS aabblab_strategies)
@@ -11,64 +41,79 @@ function(aabblab_strategy kind name)
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${kind}/${name}.cpp)
         target_sources(aabblab_strategies PRIVATE ${kind}/${name}.cpp)
     endif()
-    set_property(GLOBAL APPEND PROPERTY aabblab_${kind}_names ${name})
 endfunction()
 
-# Sets <kind>_imports, <kind>_exports and <kind>_types for the templates of the registry.
-macro(aabblab_collect kind)
-    get_property(${kind}_names GLOBAL PROPERTY aabblab_${kind}_names)
-    set(${kind}_imports "")
-    set(${kind}_exports "")
-    foreach(name IN LISTS ${kind}_names)
-        string(APPEND ${kind}_imports "import aabb.${kind}.${name}[semicolon]\n")
-        string(APPEND ${kind}_exports "export import aabb.${kind}.${name}[semicolon]\n")
+# Sets <result> to FORMAT for each of the words, KIND and NAME replaced, with the separator between; ! stands for a
+# semicolon, which a list of CMake would lose.
+function(aabblab_each result format separator)
+    set(all "")
+    foreach(word IN LISTS ARGN)
+        string(REPLACE "WORD" "${word}" one "${format}")
+        list(APPEND all "${one}")
     endforeach()
-    string(REPLACE "[semicolon]" ";" ${kind}_imports "${${kind}_imports}")
-    string(REPLACE "[semicolon]" ";" ${kind}_exports "${${kind}_exports}")
-    list(TRANSFORM ${kind}_names APPEND "_${kind}" OUTPUT_VARIABLE ${kind}_types)
-    list(JOIN ${kind}_types ", " ${kind}_types)
-endmacro()
+    list(JOIN all "${separator}" all)
+    string(REPLACE "!" ";" all "${all}")
+    set(${result} "${all}" PARENT_SCOPE)
+endfunction()
 
-# Sets <stage>_declarations and <stage>_functions: one function a generated unit.
-macro(aabblab_collect_functions stage row names)
-    set(${stage}_declarations "")
-    set(${stage}_functions "")
-    foreach(name IN LISTS ${names})
-        string(APPEND ${stage}_declarations "std::vector<composed::${row}> ${stage}_${name}()[semicolon]\n")
-        list(APPEND ${stage}_functions "${stage}_${name}")
-    endforeach()
-    string(REPLACE "[semicolon]" ";" ${stage}_declarations "${${stage}_declarations}")
-    list(JOIN ${stage}_functions ", " ${stage}_functions)
-endmacro()
-
-# aabblab_registry(): the module aabb.registry over all declared strategies. Its interface names no strategy; generated
-# implementation units do, one for each partition and each tree, so that a changed strategy rebuilds few of them.
+# aabblab_registry(): the module aabb.registry over all declared kinds and strategies. Its interface names no strategy;
+# generated implementation units do, one for each strategy of a stage's first kind, so that a changed strategy rebuilds
+# few of them.
 function(aabblab_registry)
-    foreach(kind sort partition sweep tree triangle)
-        aabblab_collect(${kind})
-    endforeach()
     set(from ${CMAKE_CURRENT_SOURCE_DIR}/registry)
     set(to ${CMAKE_CURRENT_BINARY_DIR}/registry)
-    aabblab_collect_functions(global_search global_row partition_names)
-    aabblab_collect_functions(local_detection local_row tree_names)
-    configure_file(${from}/catalog.cpp.in ${to}/catalog.cpp @ONLY)
-    set(units ${to}/catalog.cpp)
-    foreach(partition IN LISTS partition_names)
-        configure_file(${from}/global_search.cpp.in ${to}/global_search_${partition}.cpp @ONLY)
-        list(APPEND units ${to}/global_search_${partition}.cpp)
-    endforeach()
-    foreach(tree IN LISTS tree_names)
-        configure_file(${from}/local_detection.cpp.in ${to}/local_detection_${tree}.cpp @ONLY)
-        list(APPEND units ${to}/local_detection_${tree}.cpp)
+    get_property(kinds GLOBAL PROPERTY aabblab_kinds)
+    get_property(infos GLOBAL PROPERTY aabblab_kind_infos)
+    aabblab_each(kind_names "WORD" ", " ${kinds})
+    aabblab_each(kind_infos "WORD" ",\n    " ${infos})
+    configure_file(${from}/kinds.cppm.in ${to}/kinds.cppm @ONLY)
+
+    set(exports "")
+    set(type_lists "")
+    foreach(kind IN LISTS kinds)
+        get_property(names GLOBAL PROPERTY aabblab_${kind}_names)
+        aabblab_each(imports_of_${kind} "import aabb.${kind}.WORD!\n" "" ${names})
+        aabblab_each(types_of_${kind} "WORD_${kind}" ", " ${names})
+        aabblab_each(more "export import aabb.${kind}.WORD!\n" "" ${names})
+        string(APPEND exports "${more}")
+        string(APPEND type_lists "using ${kind}s = type_list<${types_of_${kind}}>;\n")
     endforeach()
     configure_file(${from}/strategies.cppm.in ${to}/strategies.cppm @ONLY)
+
+    aabblab_each(cases "        case strategy_kind::WORD: return take(WORDs{})!" "\n" ${kinds})
+    set(units "")
+    foreach(stage global_search local_detection)
+        get_property(others GLOBAL PROPERTY aabblab_${stage}_kinds)
+        list(POP_FRONT others first)
+        set(other_imports "")
+        set(other_types "")
+        foreach(kind IN LISTS others)
+            string(APPEND other_imports "${imports_of_${kind}}")
+            string(APPEND other_types ", type_list<${types_of_${kind}}>{}")
+        endforeach()
+        get_property(names GLOBAL PROPERTY aabblab_${first}_names)
+        aabblab_each(${stage}_declarations "composed::${stage}_rows ${stage}_WORD()!" "\n" ${names})
+        aabblab_each(${stage}_functions "${stage}_WORD" ", " ${names})
+        foreach(name IN LISTS names)
+            configure_file(${from}/stage.cpp.in ${to}/${stage}_${name}.cpp @ONLY)
+            list(APPEND units ${to}/${stage}_${name}.cpp)
+        endforeach()
+    endforeach()
+    configure_file(${from}/catalog.cpp.in ${to}/catalog.cpp @ONLY)
+
     target_sources(aabblab_strategies PUBLIC FILE_SET CXX_MODULES BASE_DIRS ${CMAKE_CURRENT_BINARY_DIR}
                                              FILES ${to}/strategies.cppm)
     add_library(aabblab_registry STATIC)
     add_library(aabblab::registry ALIAS aabblab_registry)
     set_target_properties(aabblab_registry PROPERTIES EXPORT_NAME registry)
-    target_sources(aabblab_registry PUBLIC FILE_SET CXX_MODULES BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}
-                                           FILES registry/registry.cppm registry/composed.cppm)
-    target_sources(aabblab_registry PRIVATE registry/registry.cpp ${units})
+    target_sources(
+        aabblab_registry
+        PUBLIC FILE_SET CXX_MODULES BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}
+               FILES registry/registry.cppm
+                     registry/composed.cppm
+                     registry/composed_global_search.cppm
+                     registry/composed_local_detection.cppm
+                     ${to}/kinds.cppm
+        PRIVATE registry/registry.cpp ${to}/catalog.cpp ${units})
     target_link_libraries(aabblab_registry PUBLIC aabblab_core PRIVATE aabblab_strategies)
 endfunction()

@@ -3,6 +3,7 @@ module;
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <compare>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +33,7 @@ struct setting {
     std::string name;
     std::string value;
 
-    friend bool operator==(const setting&, const setting&) = default;
+    friend auto operator<=>(const setting&, const setting&) = default;
 };
 
 /// A strategy by name, with the settings that differ from its defaults.
@@ -40,7 +41,7 @@ struct strategy_choice {
     std::string name;
     std::vector<setting> settings;
 
-    friend bool operator==(const strategy_choice&, const strategy_choice&) = default;
+    friend auto operator<=>(const strategy_choice&, const strategy_choice&) = default;
 };
 
 /// The choice as the command line takes it: `shell:gaps=ciura,other=2`.

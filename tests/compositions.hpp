@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +20,8 @@ inline std::vector<std::string> values_of(const aabb::parameter_info& parameter)
             to = names.find(", ", from);
             values.push_back(names.substr(from, to == std::string::npos ? to : to - from));
         }
+    } else if (parameter.expected == "a number above 0") {
+        values = {"1.5"};
     } else if (parameter.expected == "a whole number from 1 to 3") {
         values = {"1", "2", "3"};
     } else {
@@ -47,23 +49,45 @@ inline std::vector<aabb::strategy_choice> all_choices(aabb::strategy_kind kind) 
     return all;
 }
 
-/// Every combination of sort, partition and sweep that makes sense, without and with splitting of large objects.
-inline std::vector<aabb::global_composition> all_global_compositions() {
-    std::vector<aabb::global_composition> all;
-    for (const auto& sort : all_choices(aabb::strategy_kind::sort))
-        for (const auto& partition : all_choices(aabb::strategy_kind::partition))
-            for (const auto& sweep : all_choices(aabb::strategy_kind::sweep))
-                for (const std::optional<double> split_large : {std::optional<double>(), std::optional(1.5)})
-                    if (const aabb::global_composition c{sort, partition, sweep, split_large}; refusal_of(c).empty())
-                        all.push_back(c);
+/// Every combination of a stage's strategies that makes sense.
+inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
+    std::vector<aabb::composition> all(1);
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        if (info_of(kind).stage != stage) continue;
+        std::vector<aabb::composition> longer;
+        for (const aabb::composition& c : all)
+            for (const aabb::strategy_choice& choice : all_choices(kind)) longer.emplace_back(c)[kind] = choice;
+        all = std::move(longer);
+    }
+    std::erase_if(all, [&](const aabb::composition& c) { return !refusal_of(c, stage).empty(); });
     return all;
 }
+inline std::vector<aabb::composition> all_global_compositions() {
+    return all_compositions(aabb::stage::global_search);
+}
+inline std::vector<aabb::composition> all_local_compositions() {
+    return all_compositions(aabb::stage::local_detection);
+}
 
-/// Every combination of tree and triangle test that makes sense.
-inline std::vector<aabb::local_composition> all_local_compositions() {
-    std::vector<aabb::local_composition> all;
-    for (const auto& tree : all_choices(aabb::strategy_kind::tree))
-        for (const auto& triangle : all_choices(aabb::strategy_kind::triangle))
-            if (const aabb::local_composition c{tree, triangle}; refusal_of(c).empty()) all.push_back(c);
-    return all;
+/// The default composition with other strategies, as the command line takes them: `composed({{kind::sort, "shell"}})`.
+inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy_kind, const char*>> choices) {
+    aabb::composition c;
+    for (const auto& [kind, text] : choices) c[kind] = aabb::parse_strategy(text);
+    return c;
+}
+
+inline std::string text_of_global(const aabb::composition& c) {
+    return to_text(c, aabb::stage::global_search);
+}
+inline std::string text_of_local(const aabb::composition& c) {
+    return to_text(c, aabb::stage::local_detection);
+}
+inline auto global_of(const aabb::composition& c, aabb::instrumentation counted = aabb::instrumentation::none) {
+    return aabb::compose_global_search(c, counted);
+}
+inline auto local_of(const aabb::composition& c, aabb::instrumentation counted = aabb::instrumentation::none) {
+    return aabb::compose_local_detection(c, counted);
+}
+inline bool is_exact_locally(const aabb::composition& c) {
+    return is_exact(c, aabb::stage::local_detection);
 }

@@ -10,6 +10,7 @@ module;
 export module aabblab.walked_pairs;
 
 import aabb;
+import aabb.build.median;
 import aabb.tree.canonical;
 import aabb.triangle.exact;
 import aabblab.scenes;
@@ -118,8 +119,8 @@ private:
         make_mesh_scene({"mesh_pair",
                          {{"frames", "0"}, {"distance", "0.25"}},
                          {"noise_sphere:triangles=5000", "torus_knot:triangles=5000"}});
-    aabb::model<walked_tree> a_{scene_->meshes[0]};
-    aabb::model<walked_tree> b_{scene_->meshes[1]};
+    aabb::model<walked_tree> a_{scene_->meshes[0], aabb::median_build()};
+    aabb::model<walked_tree> b_{scene_->meshes[1], aabb::median_build()};
     std::vector<aabb::pose> poses_ = first_poses(*scene_);
     aabb::relative_pose to_a_{poses_[0], poses_[1], b_.bounds()};
     std::vector<node_pair> open_;

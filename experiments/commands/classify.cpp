@@ -30,7 +30,7 @@ namespace {
 
 struct classify_request {
     std::string file;
-    std::string triangle = aabb::local_composition{}.triangle.name;
+    std::string triangle{info_of(aabb::strategy_kind::triangle).fallback};
     bool keep_doubles = false;
 };
 

@@ -31,7 +31,7 @@ struct collide_request {
     std::string a;
     std::optional<std::string> b;
     std::array<std::optional<std::string>, 2> poses;
-    local_options local;
+    stage_options local{aabb::stage::local_detection};
     std::optional<std::string> engine, out;
     bool self = false;
     bool first = false;
@@ -60,12 +60,14 @@ struct detection_result {
 detection_method method_of(const collide_request& request) {
     if (request.engine) {
         if (request.local.any())
-            throw aabb::input_error("--engine stands in for --tree and --triangle, so give it alone");
+            throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it alone");
         return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_mesh_engine(*request.engine)};
     }
-    const aabb::local_composition composition = request.local.composition();
-    return {aabb::to_text(composition), aabb::is_exact(composition),
-            aabb::compose(composition, aabb::instrumentation::none)};
+    aabb::composition composition;
+    request.local.set(composition);
+    return {aabb::to_text(composition, aabb::stage::local_detection),
+            aabb::is_exact(composition, aabb::stage::local_detection),
+            aabb::compose_local_detection(composition, aabb::instrumentation::none)};
 }
 
 /// @param text the rows of [R t]

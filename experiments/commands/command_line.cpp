@@ -7,6 +7,7 @@
 #include <vector>
 
 import aabb;
+import aabb.registry;
 
 namespace aabblab {
 
@@ -27,6 +28,12 @@ std::vector<std::string> option_names(const CLI::App& command) {
 }
 
 std::string unknown_option(const CLI::App& command, const std::string& argument) {
+    std::string name = argument.substr(0, argument.find('='));
+    name.erase(0, name.find_first_not_of('-'));
+    std::ranges::replace(name, '-', '_');
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const auto names = aabb::strategy_names(kind); std::ranges::find(names, name) != names.end())
+            return "'" + name + "' is a strategy; write --" + std::string(name_of(kind)) + " " + name;
     return aabb::unknown_name("option", argument.substr(0, argument.find('=')), option_names(command));
 }
 

@@ -13,6 +13,7 @@
 #include "output.hpp"
 
 import aabblab.comparison;
+import aabblab.scenes;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -37,7 +38,7 @@ constexpr std::string_view text_of(outcome found) {
 }
 
 std::string heading_of(const compared_scene& s) {
-    return fmt::format("{}: {}, {}", s.experiment, s.scene, s.parameters);
+    return fmt::format("{}: {}, {}", s.experiment, s.scene.kind, settings_text(s.scene));
 }
 
 void print_block(const std::string& heading, const table& t) {
@@ -48,7 +49,7 @@ void print_answers(const comparison& found) {
     table t{{{"experiment", false}, {"scene", false}, {"parameters", false}, {"digest in A", false}, {"in B", false}},
             {}};
     for (const different_answer& d : found.answers)
-        t.rows.push_back({d.experiment, d.scene, d.parameters, d.in_a, d.in_b});
+        t.rows.push_back({d.experiment, d.scene.kind, parameters_text(d.scene), d.in_a, d.in_b});
     print_block(fmt::format("the answers differ in {} of {} scenes", t.rows.size(), found.answers_compared), t);
 }
 

@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,35 +20,49 @@ import aabblab.scenes;
 
 namespace aabblab {
 
-void global_options::add_to(CLI::App& command) {
-    command.add_option("--sort", sort, "Sort (default std)")->type_name("S");
-    command.add_option("--partition", partition, "Partition (default none)")->type_name("P");
-    command.add_option("--sweep", sweep, "Sweep, as in one_axis:axis=x (default one_axis)")->type_name("W");
-    command
-        .add_option("--split-large,--split_large", split_large,
-                    "Split boxes longer than this many mean extents first (default off)")
-        ->type_name("SIZE");
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
 }
 
-aabb::global_composition global_options::composition() const {
-    aabb::global_composition made;
-    if (sort) made.sort = aabb::parse_strategy(*sort);
-    if (partition) made.partition = aabb::parse_strategy(*partition);
-    if (sweep) made.sweep = aabb::parse_strategy(*sweep);
-    if (split_large) made.split_large = aabb::parse_split_large(*split_large);
-    return made;
+}  // namespace
+
+void stage_options::add_to(CLI::App& command) {
+    for (const aabb::strategy_kind kind : kinds()) {
+        const std::string name(name_of(kind));
+        command
+            .add_option("--" + name, given_[kind],
+                        "One of " + joined(aabb::strategy_names(kind)) + " (default " +
+                            std::string(info_of(kind).fallback) + "), as in NAME:parameter=value")
+            ->type_name("S");
+    }
 }
 
-void local_options::add_to(CLI::App& command) {
-    command.add_option("--tree", tree, "Tree (default canonical)")->type_name("T");
-    command.add_option("--triangle", triangle, "Triangle test (default exact)")->type_name("R");
+bool stage_options::any() const {
+    return std::ranges::any_of(given_.all, [](const auto& one) { return one.has_value(); });
 }
 
-aabb::local_composition local_options::composition() const {
-    aabb::local_composition made;
-    if (tree) made.tree = aabb::parse_strategy(*tree);
-    if (triangle) made.triangle = aabb::parse_strategy(*triangle);
-    return made;
+std::string stage_options::names() const {
+    std::string text;
+    const std::vector<aabb::strategy_kind> all = kinds();
+    for (std::size_t i = 0; i < all.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == all.size() ? " and " : ", ") + ("--" + std::string(name_of(all[i])));
+    return text;
+}
+
+void stage_options::set(aabb::composition& c) const {
+    for (const aabb::strategy_kind kind : kinds())
+        if (given_[kind]) c[kind] = aabb::parse_strategy(*given_[kind]);
+}
+
+std::vector<aabb::strategy_kind> stage_options::kinds() const {
+    std::vector<aabb::strategy_kind> all;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (info_of(kind).stage == stage_) all.push_back(kind);
+    return all;
 }
 
 void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes) {

@@ -13,24 +13,24 @@ import aabb.registry;
 
 namespace aabblab {
 
-/// Options of a command that compose a global search.
-struct global_options {
-    std::optional<std::string> sort, partition, sweep, split_large;
+/// Options of a command that compose a stage, one a kind of strategy.
+class stage_options {
+public:
+    explicit stage_options(aabb::stage stage) : stage_(stage) {}
 
     void add_to(CLI::App& command);
-    [[nodiscard]] bool any() const { return sort || partition || sweep || split_large; }
+    [[nodiscard]] bool any() const;
+    /// "--sort, --partition and --sweep".
+    [[nodiscard]] std::string names() const;
+    /// Takes over what was given.
     /// @throws aabb::input_error on what is not a strategy with its parameters.
-    [[nodiscard]] aabb::global_composition composition() const;
-};
+    void set(aabb::composition& c) const;
 
-/// Options of a command that compose a local detection.
-struct local_options {
-    std::optional<std::string> tree, triangle;
+private:
+    [[nodiscard]] std::vector<aabb::strategy_kind> kinds() const;
 
-    void add_to(CLI::App& command);
-    [[nodiscard]] bool any() const { return tree || triangle; }
-    /// @throws aabb::input_error on what is not a strategy with its parameters.
-    [[nodiscard]] aabb::local_composition composition() const;
+    aabb::stage stage_;
+    aabb::by_kind<std::optional<std::string>> given_;
 };
 
 /// Meshes by the names that the user gave them; what was fanned, dropped or rounded is said.

@@ -31,8 +31,8 @@ namespace {
 struct contacts_request {
     std::string motion;
     std::vector<std::string> meshes;
-    global_options global;
-    local_options local;
+    stage_options global{aabb::stage::global_search};
+    stage_options local{aabb::stage::local_detection};
     std::optional<std::string> engine, out;
     bool json = false;
 };
@@ -55,16 +55,21 @@ struct contacts_result {
 };
 
 both_stages stages_of(const contacts_request& request) {
-    const aabb::global_composition global = request.global.composition();
+    aabb::composition c;
+    request.global.set(c);
+    request.local.set(c);
+    const std::string global = to_text(c, aabb::stage::global_search);
+    const bool exact = is_exact(c, aabb::stage::global_search);
     if (request.engine) {
         if (request.local.any())
-            throw aabb::input_error("--engine stands in for --tree and --triangle, so give it without them");
-        return {to_text(global) + ", " + *request.engine, is_exact(global) && aabb::is_exact_engine(*request.engine),
-                aabb::compose(global, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)};
+            throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it without them");
+        return {global + ", " + *request.engine, exact && aabb::is_exact_engine(*request.engine),
+                aabb::compose_global_search(c, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)};
     }
-    const aabb::local_composition local = request.local.composition();
-    return {to_text(global) + ", " + to_text(local), is_exact(global) && is_exact(local),
-            aabb::compose(global, aabb::instrumentation::none), aabb::compose(local, aabb::instrumentation::none)};
+    return {global + ", " + to_text(c, aabb::stage::local_detection),
+            exact && is_exact(c, aabb::stage::local_detection),
+            aabb::compose_global_search(c, aabb::instrumentation::none),
+            aabb::compose_local_detection(c, aabb::instrumentation::none)};
 }
 
 std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {

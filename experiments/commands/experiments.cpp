@@ -17,6 +17,7 @@
 
 #include "experiments.hpp"
 
+import aabb;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.files;
@@ -64,19 +65,30 @@ void note_idle_engines(const experiment& e) {
     }
 }
 
+/// Whatever the seeds.
+bool is_same_scene(const scene_choice& a, const scene_choice& b) {
+    return whatever_seed(a) == whatever_seed(b);
+}
+
 /// The rows of a scene, whatever its seeds.
 std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> all) {
-    const std::string parameters = without_seed(parameters_text(scene));
     std::vector<row> rows;
     for (const row& r : all)
-        if (r.scene == scene.kind && without_seed(r.scene_parameters) == parameters) rows.push_back(r);
+        if (is_same_scene(r.scene, scene)) rows.push_back(r);
     return rows;
 }
 
-void print_scenes(std::vector<scene_summary> scenes, printed shown) {
+/// Names of files are in it.
+scene_choice visible_scene(scene_choice scene) {
+    for (aabb::setting& s : scene.settings) s.value = visible(s.value);
+    for (std::string& mesh : scene.meshes) mesh = visible(mesh);
+    return scene;
+}
+
+void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printed shown) {
     for (scene_summary& scene : scenes) {
-        scene.parameters = visible(scene.parameters);  // names of meshes are in them
-        print(heading_of(scene) + "\n" + to_text(table_of(scene), output_width()) + "\n");
+        scene.scene = visible_scene(scene.scene);
+        print(heading_of(scene) + "\n" + to_text(table_of(scene, e.shown), output_width()) + "\n");
         if (shown != printed::tables_and_counts) continue;
         if (const table counts = counts_table_of(scene); !counts.columns.empty())
             print("work a frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
@@ -94,11 +106,6 @@ void print_overall(std::span<const scene_summary> scenes) {
                               some.size(), text_of(base), to_text(overall, output_width())));
 }
 
-/// Whatever the seeds.
-bool is_same_scene(const scene_choice& a, const scene_choice& b) {
-    return a.kind == b.kind && without_seed(parameters_text(a)) == without_seed(parameters_text(b));
-}
-
 /// Shows a scene as soon as its last seed is played.
 std::vector<std::string> play_here(const experiment& e, results_folder& results, printed shown) {
     std::vector<std::string> failures;
@@ -109,7 +116,7 @@ std::vector<std::string> play_here(const experiment& e, results_folder& results,
             failures.push_back(failure);
         }
         if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_same_scene(scene, e.scenes[i + 1])))
-            print_scenes(summarise(rows_of_all_seeds(scene, results.rows())), shown);
+            print_scenes(e, summarise(rows_of_all_seeds(scene, results.rows())), shown);
     }
     return failures;
 }
@@ -141,7 +148,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
     const folder_lock alone(folder);
     std::vector<std::string> failures;
     {
-        results_folder results(folder, e, existing);
+        results_folder results(folder, record_of(e), existing);
         note_idle_engines(e);
         if (!results.replaced().empty()) note(results.replaced() + "; this run replaces them");
         // It is of a whole run.
@@ -153,13 +160,13 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
     const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
     write_file(folder / "summary.csv", to_csv(full_table_of(scenes)));
     if (shown == printed::nothing) return failures;
-    if (e.processes > 1) print_scenes(scenes, shown);
+    if (e.processes > 1) print_scenes(e, scenes, shown);
     print_overall(scenes);
     return failures;
 }
 
 bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
-    results_folder results(folder, e, existing_results::resume);
+    results_folder results(folder, record_of(e), existing_results::resume);
     bool right = true;
     for (const scene_choice& scene : e.scenes)
         for (const std::string& failure : run_scene(e, scene, contenders_for(e, scene), results, process)) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,6 +28,22 @@ void print_parts(std::string_view stage, const std::string& made_of, const std::
     for (const aabb::part_bytes& part : parts) print(fmt::format("      {:<12}{:>12} bytes\n", part.part, part.bytes));
 }
 
+/// What the stage is made of.
+std::string text_of(const contender_name& name, aabb::stage stage) {
+    std::string text;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string one = info_of(kind).stage == stage ? text_in_line(kind, name[kind]) : ""; !one.empty())
+            text += (text.empty() ? "" : " + ") + one;
+    return text.empty() ? name.engine : text;
+}
+
+/// What a composition does without where it has this strategy that stands apart; stages say the rest themselves.
+std::string left_out_by(aabb::strategy_kind kind, const std::string& choice) {
+    if (!info_of(kind).apart) return {};
+    const auto found = std::ranges::find(aabb::strategies(kind), choice, &aabb::strategy_info::name);
+    return found == aabb::strategies(kind).end() ? "" : found->leaves_out;
+}
+
 /// Two frames, so that buffers have grown and what is kept between frames is there.
 void explain_contender(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
@@ -38,16 +55,14 @@ void explain_contender(const scene_choice& choice, const contender& who) {
     }
     const contender_name& name = who.name;
     print("  " + text_of(name) + "\n");
-    const std::string global =
-        name.sort.empty() ? name.engine : name.sort + " + " + name.partition + " + " + name.sweep;
-    print_parts("global search", global, p.global_bytes());
+    print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
-    if (scene.meshes())
-        print_parts("local detection", name.tree.empty() ? name.engine : name.tree + " + " + name.triangle,
-                    p.local_bytes());
+    if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     print("    left out\n");
     for (const std::string& sentence : p.left_out()) print("      " + sentence + "\n");
-    if (name.split_large == "off") print("      no split_large: large objects are searched whole\n");
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string sentence = left_out_by(kind, name[kind]); !sentence.empty())
+            print("      " + sentence + "\n");
 }
 
 /// Parts of the config that a scene has no use for.
@@ -56,7 +71,12 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
         for (const std::string& name : e.engines)
             if (name == engine.name && !contender_of(engine, has_meshes(scene)))
                 print("  " + name + " has no part in this scene: it searches no boxes\n");
-    if (!has_meshes(scene)) print("  tree and triangle have no part in this scene: it has no meshes\n");
+    if (has_meshes(scene)) return;
+    std::string kinds;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (info_of(kind).stage == aabb::stage::local_detection)
+            kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
+    print("  " + kinds + " have no part in this scene: it has no meshes\n");
 }
 
 void explain(const std::string& config) {

@@ -16,25 +16,16 @@
 import aabb;
 import aabb.registry;
 import aabb.validation;
+import aabblab.metrics;
 import aabblab.scenes;
 
 namespace aabblab {
 
 namespace {
 
-struct metric_info {
-    std::string_view name;
-    std::string_view summary;
-};
-constexpr metric_info metrics[] = {
-    {"time", "wall time of build, update and search, apart, in milliseconds"},
-    {"counts", "work done, counted in a pass of its own"},
-    {"bytes", "memory allocated, by part"},
-    {"error", "pairs missed and pairs invented against the exact answer"},
-};
-
-constexpr std::string_view split_large_summary =
-    "splits boxes longer than this many mean extents: off or a number above 0";
+const metric_group_info& group_of(const metric& m) {
+    return metric_groups[static_cast<std::size_t>(m.group)];
+}
 
 nlohmann::ordered_json to_json(std::span<const aabb::parameter_info> parameters) {
     auto all = nlohmann::ordered_json::array();
@@ -50,7 +41,6 @@ nlohmann::ordered_json everything() {
         for (const auto& s : aabb::strategies(kind))
             of_kind.push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
     }
-    all["split_large"] = {{"default", "off"}, {"summary", split_large_summary}};
     for (const auto& e : aabb::engines())
         all["engines"].push_back({{"name", e.name},
                                   {"summary", e.summary},
@@ -64,7 +54,14 @@ nlohmann::ordered_json everything() {
                                  {"parameters", to_json(s.parameters)}});
     for (const auto& s : shapes())
         all["shapes"].push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
-    for (const auto& m : metrics) all["metrics"].push_back({{"name", m.name}, {"summary", m.summary}});
+    for (const metric_group_info& group : metric_groups)
+        all["recorded"].push_back({{"name", group.name}, {"summary", group.summary}});
+    for (const metric& m : metrics())
+        all["metrics"].push_back({{"name", m.name},
+                                  {"summary", m.summary},
+                                  {"unit", m.unit},
+                                  {"recorded", group_of(m).name},
+                                  {"better", m.direction == better::less ? "less" : "more"}});
     return all;
 }
 
@@ -108,8 +105,6 @@ void print_text() {
             all.parameters(s.parameters);
         }
     }
-    all.heading("before the search");
-    all.entry("split_large=off", std::string(split_large_summary));
     all.heading("engines");
     for (const auto& e : aabb::engines()) all.entry(e.name, e.summary + " (" + scope_of(e) + ")");
     all.heading("scenes");
@@ -122,8 +117,11 @@ void print_text() {
         all.entry(s.name, s.summary);
         all.parameters(s.parameters);
     }
+    all.heading("recorded, for metrics of each");
+    for (const metric_group_info& group : metric_groups) all.entry(group.name, group.summary);
     all.heading("metrics");
-    for (const auto& m : metrics) all.entry(m.name, m.summary);
+    for (const metric& m : metrics())
+        all.entry(m.name, fmt::format("{} ({}{})", m.summary, m.unit.empty() ? "" : m.unit + ", ", group_of(m).name));
     all.print_all();
 }
 

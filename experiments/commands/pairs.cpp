@@ -30,7 +30,7 @@ namespace {
 
 struct pairs_request {
     std::string recording;
-    global_options global;
+    stage_options global{aabb::stage::global_search};
     std::optional<std::string> engine, out;
     bool json = false;
 };
@@ -50,12 +50,13 @@ struct search_result {
 search_method method_of(const pairs_request& request) {
     if (request.engine) {
         if (request.global.any())
-            throw aabb::input_error(
-                "--engine stands in for --sort, --partition, --sweep and --split-large, so give it alone");
+            throw aabb::input_error("--engine stands in for " + request.global.names() + ", so give it alone");
         return {*request.engine, aabb::make_box_engine(*request.engine)};
     }
-    const aabb::global_composition composition = request.global.composition();
-    return {aabb::to_text(composition), aabb::compose(composition, aabb::instrumentation::none)};
+    aabb::composition composition;
+    request.global.set(composition);
+    return {aabb::to_text(composition, aabb::stage::global_search),
+            aabb::compose_global_search(composition, aabb::instrumentation::none)};
 }
 
 search_result search_all(aabb::box_scene& scene, const search_method& method, std::optional<number_table>& table) {

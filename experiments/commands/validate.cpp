@@ -27,22 +27,10 @@ namespace {
 
 /// Every global search once and every local detection once. The stages know nothing of each other, so that combinations
 /// of both would show nothing new.
-std::vector<composition> every_composition() {
-    std::vector<composition> all;
-    const auto names = aabb::strategy_names;
-    for (const std::string& sort : names(aabb::strategy_kind::sort))
-        for (const std::string& partition : names(aabb::strategy_kind::partition))
-            for (const std::string& sweep : names(aabb::strategy_kind::sweep)) {
-                composition c;
-                c.global = {{sort, {}}, {partition, {}}, {sweep, {}}};
-                if (aabb::refusal_of(c.global).empty()) all.push_back(c);
-            }
-    for (const std::string& tree : names(aabb::strategy_kind::tree))
-        for (const std::string& triangle : names(aabb::strategy_kind::triangle)) {
-            composition c;
-            c.local = {{tree, {}}, {triangle, {}}};
-            if (aabb::refusal_of(c.local).empty() && std::ranges::find(all, c) == all.end()) all.push_back(c);
-        }
+std::vector<aabb::composition> every_composition() {
+    std::vector<aabb::composition> all = aabb::every_composition(aabb::stage::global_search);
+    for (const aabb::composition& c : aabb::every_composition(aabb::stage::local_detection))
+        if (std::ranges::find(all, c) == all.end()) all.push_back(c);
     return all;
 }
 

@@ -1,11 +1,10 @@
 module;
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 module aabblab.configs;
@@ -43,9 +42,8 @@ void add_strategies(const document& doc, aabb::strategy_kind kind, const node& v
         for (const std::vector<aabb::setting>& settings : multiplied(parameters)) add({one.text, settings});
 }
 
-std::vector<aabb::strategy_choice> strategies_of(const document& doc, aabb::strategy_kind kind, const node* value,
-                                                 const aabb::strategy_choice& fallback) {
-    if (!value) return {fallback};
+std::vector<aabb::strategy_choice> strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
+    if (!value) return {aabb::composition()[kind]};
     each_once<aabb::strategy_choice> choices;
     if (value->kind != node_kind::list) {
         add_strategies(doc, kind, *value, choices);
@@ -57,63 +55,64 @@ std::vector<aabb::strategy_choice> strategies_of(const document& doc, aabb::stra
     return choices.all();
 }
 
-}  // namespace
-
-namespace {
-
-std::vector<std::optional<double>> splits_of(const document& doc, const node* value) {
-    if (!value) return {std::nullopt};
-    std::vector<std::optional<double>> sizes;
-    for (const located_text& one : doc.alternatives_of("split_large", *value))
-        sizes.push_back(doc.at(one.line, [&] { return aabb::parse_split_large(one.text); }));
-    return sizes;
+/// A key that nobody knows; the name of a strategy says of which kind it is.
+[[noreturn]] void fail_key(const document& doc, const node& entry, const std::vector<std::string>& known) {
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (std::ranges::find(aabb::strategies(kind), entry.key, &aabb::strategy_info::name) !=
+            aabb::strategies(kind).end())
+            doc.fail(entry.line, "'" + entry.key + "' is a strategy, not a kind of them; write " +
+                                     std::string(name_of(kind)) + " = \"" + entry.key + "\", or { name = \"" +
+                                     entry.key + "\", … } with its parameters");
+    doc.fail(entry.line, aabb::unknown_name("key of [compose]", entry.key, known));
 }
 
-void add_composition(const document& doc, int line, const composition& c, each_once<composition>& list) {
-    if (const std::string_view reason = aabb::refusal_of(c.global); !reason.empty())
-        doc.fail(line, to_text(c.global) + ": " + std::string(reason));
-    if (const std::string_view reason = aabb::refusal_of(c.local); !reason.empty())
-        doc.fail(line, to_text(c.local) + ": " + std::string(reason));
-    const std::string text = to_text(c.global) + " + " + to_text(c.local);
-    if (!list.add(c, text)) doc.fail(line, "this composition is listed twice: " + text);
-}
-
-void add_compositions(const document& doc, const node& compose, each_once<composition>& list) {
-    doc.require_table("compose", compose);
+void require_kinds(const document& doc, const node& compose) {
     std::vector<std::string> known;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) known.emplace_back(name_of(kind));
-    known.emplace_back("split_large");
-    doc.require_keys(compose, " of [compose]", known);
-    const composition fallback;
-    const auto of = [&](aabb::strategy_kind kind, const aabb::strategy_choice& otherwise) {
-        return strategies_of(doc, kind, compose.find(name_of(kind)), otherwise);
-    };
-    const auto sorts = of(aabb::strategy_kind::sort, fallback.global.sort);
-    const auto partitions = of(aabb::strategy_kind::partition, fallback.global.partition);
-    const auto sweeps = of(aabb::strategy_kind::sweep, fallback.global.sweep);
-    const auto splits = splits_of(doc, compose.find("split_large"));
-    const auto trees = of(aabb::strategy_kind::tree, fallback.local.tree);
-    const auto triangles = of(aabb::strategy_kind::triangle, fallback.local.triangle);
-    const std::array<std::size_t, 6> factors = {sorts.size(),  partitions.size(), sweeps.size(),
-                                                splits.size(), trees.size(),      triangles.size()};
+    for (const node& entry : compose.items)
+        if (std::ranges::find(known, entry.key) == known.end()) fail_key(doc, entry, known);
+}
+
+/// What tells it from others.
+std::string text_of(const aabb::composition& c) {
+    return to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection);
+}
+
+void add_composition(const document& doc, int line, const aabb::composition& c, each_once<aabb::composition>& list) {
+    for (const aabb::stage stage : {aabb::stage::global_search, aabb::stage::local_detection})
+        if (const std::string_view reason = aabb::refusal_of(c, stage); !reason.empty())
+            doc.fail(line, to_text(c, stage) + ": " + std::string(reason));
+    if (!list.add(c, text_of(c))) doc.fail(line, "this composition is listed twice: " + text_of(c));
+}
+
+void add_compositions(const document& doc, const node& compose, each_once<aabb::composition>& list) {
+    doc.require_table("compose", compose);
+    require_kinds(doc, compose);
+    aabb::by_kind<std::vector<aabb::strategy_choice>> choices;
+    std::vector<std::size_t> factors;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        choices[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
+        factors.push_back(choices[kind].size());
+    }
     doc.require_few(compose.line, "compositions", factors, list.all().size());
-    for (const auto& sort : sorts)
-        for (const auto& partition : partitions)
-            for (const auto& sweep : sweeps)
-                for (const auto& split : splits)
-                    for (const auto& tree : trees)
-                        for (const auto& triangle : triangles)
-                            add_composition(doc, compose.line, {{sort, partition, sweep, split}, {tree, triangle}},
-                                            list);
+    // The last kind varies fastest.
+    std::vector<aabb::composition> products(1);
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        std::vector<aabb::composition> longer;
+        for (const aabb::composition& product : products)
+            for (const aabb::strategy_choice& choice : choices[kind]) longer.emplace_back(product)[kind] = choice;
+        products = std::move(longer);
+    }
+    for (const aabb::composition& c : products) add_composition(doc, compose.line, c, list);
 }
 
 }  // namespace
 
 /// One [compose], or several [[compose]], whose lists multiply each for itself.
 /// @param compose null where the config has none.
-std::vector<composition> compositions_of(const document& doc, const node* compose) {
+std::vector<aabb::composition> compositions_of(const document& doc, const node* compose) {
     static const node nothing{};
-    each_once<composition> list;
+    each_once<aabb::composition> list;
     if (compose && compose->kind == node_kind::list)
         for (const node& one : compose->items) add_compositions(doc, one, list);
     else

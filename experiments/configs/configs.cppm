@@ -2,6 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -10,25 +11,11 @@ export module aabblab.configs;
 
 import aabb;
 import aabb.registry;
+import aabblab.metrics;
+import aabblab.results;
 import aabblab.scenes;
 
 export namespace aabblab {
-
-/// One combination of strategies. Scenes of boxes use its global search only.
-struct composition {
-    aabb::global_composition global;
-    aabb::local_composition local;
-
-    friend bool operator==(const composition&, const composition&) = default;
-};
-
-/// What an experiment writes beside the pairs and their digest.
-struct metrics {
-    bool time = true;
-    bool counts = true;
-    bool bytes = true;
-    bool error = true;  ///< pairs missing and invented, by class
-};
 
 /// A config with its lists multiplied out. All names, values and combinations in it are known to be good.
 struct experiment {
@@ -38,12 +25,16 @@ struct experiment {
     bool quick = false;
     std::vector<std::string> engines;
     std::vector<scene_choice> scenes;
-    std::string mesh_digest;  ///< of the vertices and triangles of the scenes' meshes
-    std::vector<composition> compositions;
+    std::string mesh_digest;                      ///< of the vertices and triangles of the scenes' meshes
+    std::vector<aabb::composition> compositions;  ///< scenes of boxes use the global search of each only
     std::size_t repeats = 9;
     std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
-    metrics measured;
+    /// What rows hold beside the pairs and their digest; compute metrics later what they will.
+    std::set<metric_group> recorded{metric_group::time, metric_group::counts, metric_group::bytes, metric_group::error};
+    std::vector<std::string> shown;  ///< metrics that tables have columns of beside the usual ones
     std::vector<std::string> notes;  ///< what stands in for meshes that are not there, a sentence each
+
+    [[nodiscard]] bool records(metric_group group) const { return recorded.contains(group); }
 };
 
 /// `quick` takes what the config says under `quick`, for a first look.
@@ -57,11 +48,11 @@ enum class experiment_size { full, quick };
 /// The same from text. `file` is for messages.
 [[nodiscard]] experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size);
 
-/// "objects=1000 frames=20 meshes=elephant.off+torus_knot seed=1": what a scene is apart from its kind.
-[[nodiscard]] std::string parameters_text(const scene_choice& scene);
-
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
 /// meshes. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
+
+/// The experiment as its results folder remembers it.
+[[nodiscard]] experiment_record record_of(const experiment& e);
 
 }  // namespace aabblab

@@ -5,11 +5,13 @@ module;
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <ios>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,13 +20,16 @@ module aabblab.configs;
 
 import :document;
 import aabb;
+import aabb.registry;
 import aabb.validation;
+import aabblab.metrics;
+import aabblab.results;
 import aabblab.scenes;
 
 namespace aabblab {
 
 // Defined in compose.cpp and scenes.cpp.
-std::vector<composition> compositions_of(const document& doc, const node* compose);
+std::vector<aabb::composition> compositions_of(const document& doc, const node* compose);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
 
 namespace {
@@ -59,20 +64,26 @@ std::vector<std::string> engines_of(const document& doc) {
     return names;
 }
 
-void read_metrics(const document& doc, const node& value, metrics& measured) {
-    const std::vector<std::pair<std::string, bool metrics::*>> all{
-        {"time", &metrics::time}, {"counts", &metrics::counts}, {"bytes", &metrics::bytes}, {"error", &metrics::error}};
+/// Names of groups, all of whose numbers are recorded, and of metrics, whose groups are and which tables show.
+void read_metrics(const document& doc, const node& value, experiment& e) {
+    e.recorded.clear();
     std::vector<std::string> known;
-    for (const auto& [name, field] : all) {
-        known.push_back(name);
-        measured.*field = false;
-    }
+    for (const metric_group_info& group : metric_groups) known.emplace_back(group.name);
+    const std::vector<std::string> names = metric_names();
+    known.insert(known.end(), names.begin(), names.end());
     const std::vector<located_text> wanted = doc.texts_of("metrics", value);
     if (wanted.empty()) doc.fail(value.line, "metrics is an empty list; expected at least one metric");
     for (const located_text& one : wanted) {
-        const auto found = std::ranges::find(known, one.text);
-        if (found == known.end()) doc.fail(one.line, aabb::unknown_name("metric", one.text, known));
-        measured.*all[static_cast<std::size_t>(found - known.begin())].second = true;
+        const auto group = std::ranges::find(metric_groups, one.text, &metric_group_info::name);
+        const auto found = std::ranges::find(names, one.text);
+        if (group != metric_groups.end()) {
+            e.recorded.insert(static_cast<metric_group>(group - metric_groups.begin()));
+        } else if (found != names.end()) {
+            e.recorded.insert(metric_named(one.text).group);
+            if (std::ranges::find(e.shown, one.text) == e.shown.end()) e.shown.push_back(one.text);
+        } else {
+            doc.fail(one.line, aabb::unknown_name("metric", one.text, known));
+        }
     }
 }
 
@@ -86,7 +97,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     const node* repeats = measure->find("repeats");
     if (repeats && !quick) e.repeats = doc.integer_of("repeats", *repeats, 1);
     if (e.repeats > most_repeats) doc.fail(repeats->line, "repeats must be at most " + std::to_string(most_repeats));
-    if (const node* value = measure->find("metrics")) read_metrics(doc, *value, e.measured);
+    if (const node* value = measure->find("metrics")) read_metrics(doc, *value, e);
     const node* in_quick = measure->find("quick");
     if (!in_quick) return;
     doc.require_table("quick", *in_quick);
@@ -100,7 +111,7 @@ void read_processes(const document& doc, experiment& e) {
     const node* processes = measure ? measure->find("processes") : nullptr;
     if (!processes) return;
     e.processes = doc.integer_of("processes", *processes, 1);
-    if (e.quick || !e.measured.time)
+    if (e.quick || !e.records(metric_group::time))
         e.processes = std::min(e.processes, e.repeats);
     else if (e.processes > e.repeats)
         doc.fail(processes->line, "processes must be at most repeats, which is " + std::to_string(e.repeats));
@@ -127,7 +138,12 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
 }
 
 experiment read_experiment(const std::filesystem::path& file, experiment_size size) {
-    if (!std::filesystem::exists(file)) throw aabb::input_error(file.string() + " is not there; expected a config");
+    if (!std::filesystem::exists(file)) {
+        const std::filesystem::path of_project = std::filesystem::path(AABBLAB_CONFIGS) / file.filename();
+        throw aabb::input_error(
+            file.string() + " is not there; " +
+            (std::filesystem::exists(of_project) ? "did you mean " + of_project.string() + "?" : "expected a config"));
+    }
     if (std::filesystem::is_directory(file)) throw aabb::input_error(file.string() + " is a folder; expected a config");
     std::ifstream in(file, std::ios::binary);
     std::string text(longest_config + 1, ' ');  // one byte more shows that it is too long
@@ -137,26 +153,24 @@ experiment read_experiment(const std::filesystem::path& file, experiment_size si
     return parse_experiment(text, file.string(), size);
 }
 
-std::string parameters_text(const scene_choice& scene) {
-    std::string text;
-    for (const aabb::setting& s : scene.settings) text += s.name + "=" + s.value + " ";
-    for (const std::string& mesh : scene.meshes) text += (&mesh == scene.meshes.data() ? "meshes=" : "+") + mesh;
-    if (!scene.meshes.empty()) text += " ";
-    return text + "seed=" + std::to_string(scene.seed);
-}
-
 std::string hash_of(const experiment& e) {
     std::string all = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
-    for (const bool metric : {e.measured.time, e.measured.counts, e.measured.bytes, e.measured.error})
-        all += metric ? '+' : '-';
+    for (std::size_t i = 0; i < metric_groups.size(); ++i) all += e.records(static_cast<metric_group>(i)) ? '+' : '-';
     for (const std::string& engine : e.engines) all += "\n" + engine;
-    for (const composition& c : e.compositions) all += "\n" + to_text(c.global) + " + " + to_text(c.local);
+    for (const aabb::composition& c : e.compositions) {
+        all += "\n";
+        for (const aabb::strategy_kind kind : aabb::strategy_kinds) all += to_text(c[kind]) + " + ";
+    }
     for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
     all += "\n" + e.mesh_digest;
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx",
                   static_cast<unsigned long long>(XXH3_64bits(all.data(), all.size())));
     return digits.data();
+}
+
+experiment_record record_of(const experiment& e) {
+    return {e.name, e.file, e.text, hash_of(e), e.quick, e.scenes, e.notes};
 }
 
 }  // namespace aabblab

@@ -20,29 +20,25 @@ namespace aabblab {
 
 namespace {
 
-void use_global(contender& who, const aabb::global_composition& composition) {
-    who.name.sort = to_text(composition.sort);
-    who.name.partition = to_text(composition.partition);
-    who.name.sweep = to_text(composition.sweep);
-    who.name.split_large = split_large_text(composition);
-    who.exact_boxes = is_exact(composition);
-    who.exact = who.exact && who.exact_boxes;
-    who.make_global = [composition](aabb::instrumentation counted) { return aabb::compose(composition, counted); };
-}
-
-void use_local(contender& who, const aabb::local_composition& composition) {
-    who.name.tree = to_text(composition.tree);
-    who.name.triangle = to_text(composition.triangle);
-    who.exact = who.exact && is_exact(composition);
-    who.make_local = [composition](aabb::instrumentation counted) { return aabb::compose(composition, counted); };
+/// Takes a stage of the composition.
+void use(contender& who, const aabb::composition& c, aabb::stage stage) {
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (info_of(kind).stage == stage) who.name[kind] = to_text(c[kind]);
+    who.exact = who.exact && is_exact(c, stage);
+    if (stage == aabb::stage::global_search) {
+        who.exact_boxes = is_exact(c, stage);
+        who.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
+    } else {
+        who.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
+    }
 }
 
 }  // namespace
 
-contender contender_of(const composition& composition, bool meshes) {
+contender contender_of(const aabb::composition& c, bool meshes) {
     contender who;
-    use_global(who, composition.global);
-    if (meshes) use_local(who, composition.local);
+    use(who, c, aabb::stage::global_search);
+    if (meshes) use(who, c, aabb::stage::local_detection);
     return who;
 }
 
@@ -54,11 +50,11 @@ std::optional<contender> contender_of(const aabb::engine_info& engine, bool mesh
     if (engine.searches_boxes)
         who.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
     else
-        use_global(who, {});
+        use(who, {}, aabb::stage::global_search);
     if (meshes && engine.collides_meshes)
         who.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
     else if (meshes)
-        use_local(who, {});
+        use(who, {}, aabb::stage::local_detection);
     return who;
 }
 
@@ -71,7 +67,7 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
     const bool meshes = has_meshes(scene);
     std::vector<contender> all;
     std::set<contender_name> names;
-    for (const composition& c : e.compositions) {
+    for (const aabb::composition& c : e.compositions) {
         contender who = contender_of(c, meshes);
         // In a scene of boxes, compositions that differ in local detection only are one.
         if (names.insert(who.name).second) all.push_back(std::move(who));
@@ -84,12 +80,10 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
 }
 
 std::string text_of(const contender_name& name) {
-    std::string text;
-    const std::string split =
-        name.split_large.empty() || name.split_large == "off" ? "" : "split_large=" + name.split_large;
-    for (const std::string* part :
-         {&name.engine, &name.sort, &name.partition, &name.sweep, &split, &name.tree, &name.triangle})
-        if (!part->empty()) text += (text.empty() ? "" : " + ") + *part;
+    std::string text = name.engine;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string one = text_in_line(kind, name[kind]); !one.empty())
+            text += (text.empty() ? "" : " + ") + one;
     return text;
 }
 

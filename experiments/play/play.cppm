@@ -12,6 +12,7 @@ module;
 export module aabblab.play;
 
 import aabb;
+import aabb.registry;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.results;
@@ -25,7 +26,7 @@ export namespace aabblab {
 
 [[nodiscard]] bool has_meshes(const scene_choice& scene);
 
-[[nodiscard]] contender contender_of(const composition& composition, bool meshes);
+[[nodiscard]] contender contender_of(const aabb::composition& c, bool meshes);
 /// An engine that does one stage only gets the default composition for the other; empty for one that has no part in the
 /// scene.
 [[nodiscard]] std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes);

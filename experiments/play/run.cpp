@@ -11,6 +11,7 @@ module aabblab.play;
 import :player;
 import aabb;
 import aabblab.configs;
+import aabblab.metrics;
 import aabblab.progress;
 import aabblab.results;
 import aabblab.scenes;
@@ -29,8 +30,7 @@ struct timed_contender {
 row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts& all, const verdict& v) {
     row r;
     r.experiment = e.name;
-    r.scene = scene.kind;
-    r.scene_parameters = parameters_text(scene);
+    r.scene = scene;
     r.objects = all.objects;
     r.frames = all.frames;
     r.name = v.name;
@@ -40,9 +40,9 @@ row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts&
     r.triangles = v.triangles;
     // Engines count nothing.
     const bool counted = std::ranges::any_of(v.counts, [](std::uint64_t n) { return n > 0; });
-    if (e.measured.counts && counted) std::ranges::copy(v.counts, r.counts.begin());
-    if (e.measured.bytes) std::ranges::copy(v.bytes, r.bytes.begin());
-    if (e.measured.error) {
+    if (e.records(metric_group::counts) && counted) std::ranges::copy(v.counts, r.counts.begin());
+    if (e.records(metric_group::bytes)) std::ranges::copy(v.bytes, r.bytes.begin());
+    if (e.records(metric_group::error)) {
         r.missing = v.missing;
         r.invented = v.invented;
         r.box_inflation = v.box_inflation;
@@ -54,7 +54,7 @@ row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts&
 /// The repeats of one process.
 struct share_of_repeats {
     share_of_repeats(const experiment& e, std::size_t process) {
-        const std::size_t repeats = e.measured.time ? e.repeats : 1;
+        const std::size_t repeats = e.records(metric_group::time) ? e.repeats : 1;
         begin = repeats * process / e.processes;
         end = repeats * (process + 1) / e.processes;
     }
@@ -65,10 +65,9 @@ struct share_of_repeats {
 
 /// The rows of a scene that there are.
 std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
-    const std::string parameters = parameters_text(scene);
     std::vector<row> found;
     for (const row& r : rows)
-        if (r.scene == scene.kind && r.scene_parameters == parameters) found.push_back(r);
+        if (r.scene == scene) found.push_back(r);
     return found;
 }
 
@@ -77,9 +76,7 @@ void drop_interrupted_repeat(const scene_choice& scene, const share_of_repeats& 
                              results_folder& results) {
     if (results.rows().empty()) return;
     const row last = results.rows().back();
-    if (last.scene != scene.kind || last.scene_parameters != parameters_text(scene) || last.repeat < share.begin ||
-        last.repeat >= share.end)
-        return;
+    if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
     const auto played = std::ranges::count(rows, last.repeat, &row::repeat);
     if (static_cast<std::size_t>(played) < contenders) results.drop(scene, last.repeat);
@@ -108,7 +105,7 @@ std::string time_into(const scene_choice& scene, timed_contender& timed) {
     r.detect_ms = times.detect_ms;
     if (times.digest == r.digest) return {};
     timed.strayed = true;
-    return text_of(r.name) + " is wrong on " + scene.kind + " (" + r.scene_parameters + "): timed, its digest is " +
+    return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): timed, its digest is " +
            times.digest + ", validated it was " + r.digest;
 }
 
@@ -135,7 +132,7 @@ admission validated(const experiment& e, const scene_choice& scene, std::span<co
         else
             all.failures.push_back(v.failure);
     }
-    if (e.measured.error) results.set_differences(scene, names, differences);
+    if (e.records(metric_group::error)) results.set_differences(scene, names, differences);
     return all;
 }
 
@@ -168,7 +165,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
             turn.result.repeat = repeat;
             turn.result.process = process;
             if (turn.strayed || results.has(turn.result)) continue;
-            const std::string failure = e.measured.time ? time_into(scene, turn) : std::string();
+            const std::string failure = e.records(metric_group::time) ? time_into(scene, turn) : std::string();
             if (failure.empty()) {
                 results.add(turn.result);
                 continue;

@@ -139,9 +139,7 @@ private:
     void add_differences(std::vector<difference>& all, std::string_view what, std::uint64_t boxes,
                          std::span<const std::size_t> classes) const {
         const auto add = [&](std::string_view kind, std::uint64_t count) {
-            if (count > 0)
-                all.push_back(
-                    {choice_.kind, parameters_text(choice_), who_.name, std::string(what), std::string(kind), count});
+            if (count > 0) all.push_back({choice_, who_.name, std::string(what), std::string(kind), count});
         };
         add("boxes", boxes);
         for (std::size_t i = 0; i < classes.size(); ++i) add(aabb::difference_class_names[i], classes[i]);

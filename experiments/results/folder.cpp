@@ -17,7 +17,6 @@ module;
 module aabblab.results;
 
 import aabb;
-import aabblab.configs;
 import aabblab.files;
 import aabblab.scenes;
 
@@ -33,19 +32,15 @@ void drop_torn_row(const std::filesystem::path& file) {
     if (complete != text.size()) std::filesystem::resize_file(file, complete);
 }
 
-std::string scene_key(const scene_choice& scene) {
-    return scene.kind + " " + parameters_text(scene);
-}
-
 }  // namespace
 
-results_folder::results_folder(std::filesystem::path folder, const experiment& e, existing_results existing)
-    : folder_(std::move(folder)), experiment_(e), date_(date_now()) {
+results_folder::results_folder(std::filesystem::path folder, experiment_record e, existing_results existing)
+    : folder_(std::move(folder)), experiment_(std::move(e)), date_(date_now()) {
     make_folder(folder_);
     const std::filesystem::path table = folder_ / "results.csv";
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
-        replaced_ = refusal_to_resume(manifest, e);
+        replaced_ = refusal_to_resume(manifest, experiment_);
         // Hours may be in them, so they are set aside. The table last: until it is gone, the next run finds them all to
         // replace.
         if (!replaced_.empty())
@@ -62,7 +57,7 @@ results_folder::results_folder(std::filesystem::path folder, const experiment& e
         drop_torn_row(table);
     }
     if (!rows_.empty()) {
-        resumed_manifest before = resume_manifest(manifest, e);
+        resumed_manifest before = resume_manifest(manifest, experiment_);
         date_ = std::move(before.date);
         digests_ = std::move(before.digests);
         if (std::filesystem::exists(folder_ / "differences.csv"))
@@ -101,28 +96,22 @@ void results_folder::drop_where(const std::function<bool(const row&)>& dropped) 
 }
 
 void results_folder::drop(const scene_choice& scene, const contender_name& name) {
-    drop_where([&, parameters = parameters_text(scene)](const row& r) {
-        return r.scene == scene.kind && r.scene_parameters == parameters && r.name == name;
-    });
+    drop_where([&](const row& r) { return r.scene == scene && r.name == name; });
 }
 
 void results_folder::drop(const scene_choice& scene, std::uint64_t repeat) {
-    drop_where([&, parameters = parameters_text(scene)](const row& r) {
-        return r.scene == scene.kind && r.scene_parameters == parameters && r.repeat == repeat;
-    });
+    drop_where([&](const row& r) { return r.scene == scene && r.repeat == repeat; });
 }
 
 void results_folder::set_digest(const scene_choice& scene, const std::string& digest) {
-    digests_[scene_key(scene)] = digest;
+    digests_[scene] = digest;
     write_manifest();
 }
 
 void results_folder::set_differences(const scene_choice& scene, std::span<const contender_name> of,
                                      std::span<const difference> found) {
-    std::erase_if(differences_, [&](const difference& d) {
-        return d.scene == scene.kind && d.scene_parameters == parameters_text(scene) &&
-               std::ranges::find(of, d.name) != of.end();
-    });
+    std::erase_if(differences_,
+                  [&](const difference& d) { return d.scene == scene && std::ranges::find(of, d.name) != of.end(); });
     differences_.insert(differences_.end(), found.begin(), found.end());
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }

@@ -5,6 +5,7 @@ module;
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -17,7 +18,6 @@ module;
 module aabblab.results;
 
 import aabb;
-import aabblab.configs;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -71,43 +71,42 @@ std::string date_now() {
     return text.data();
 }
 
-std::string manifest_text(const experiment& e, const std::string& date, const scene_digests& digests) {
+std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests) {
     json scenes = json::array();
     for (const scene_choice& scene : e.scenes) {
-        const std::string parameters = parameters_text(scene);
-        const auto digest = digests.find(scene.kind + " " + parameters);
-        scenes.push_back({{"kind", scene.kind}, {"parameters", parameters}, {"seed", scene.seed}});
+        const auto digest = digests.find(scene);
+        scenes.push_back(
+            {{"kind", scene.kind}, {"parameters", json::parse(parameters_json(scene))}, {"seed", scene.seed}});
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
-    const json manifest{{"experiment", e.name},
-                        {"date", date},
-                        {"build", build()},
-                        {"config", {{"file", e.file}, {"hash", hash_of(e)}, {"quick", e.quick}, {"text", e.text}}},
-                        {"scenes", scenes},
-                        {"notes", e.notes}};
+    const json manifest{
+        {"experiment", e.name}, {"date", date},
+        {"build", build()},     {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
+        {"scenes", scenes},     {"notes", e.notes}};
     // The file's name need not be UTF-8.
     return manifest.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment& e) {
+std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
     const json before = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
-    if (before["config"].value("hash", "") != hash_of(e))
-        return where + " are of another config, size or set of meshes";
+    if (before["config"].value("hash", "") != e.hash) return where + " are of another config, size or set of meshes";
     if (before["build"] != build())
         return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
                "), whose times cannot be compared";
     return {};
 }
 
-resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment& e) {
+resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
     if (const std::string refusal = refusal_to_resume(file, e); !refusal.empty())
         throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
     const json before = read_json(file);
     resumed_manifest manifest{before.value("date", ""), {}};
-    for (const json& scene : before.value("scenes", json::array()))
-        if (scene.contains("digest"))
-            manifest.digests[scene.value("kind", "") + " " + scene.value("parameters", "")] = scene["digest"];
+    for (const json& scene : before.value("scenes", json::array())) {
+        scene_choice played{scene.value("kind", ""), {}, {}, scene.value("seed", std::uint64_t{0})};
+        if (scene.contains("digest") && set_parameters(played, scene.value("parameters", json()).dump()))
+            manifest.digests[played] = scene["digest"];
+    }
     return manifest;
 }
 

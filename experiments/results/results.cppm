@@ -17,30 +17,33 @@ module;
 export module aabblab.results;
 
 import aabb;
-import aabblab.configs;
+import aabb.registry;
 import aabblab.scenes;
 export import :csv;
 
 export namespace aabblab {
 
-/// What played a scene, as it stands in the columns of every table. Empty where there is no such part.
+/// What played a scene, as it stands in the columns of every table: the choice of each kind, as the command line takes
+/// it, and an engine. Empty where there is no such part.
 struct contender_name {
-    std::string sort, partition, sweep, split_large, tree, triangle, engine;
+    aabb::by_kind<std::string> choices;
+    std::string engine;
 
+    [[nodiscard]] std::string& operator[](aabb::strategy_kind kind) { return choices[kind]; }
+    [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return choices[kind]; }
     friend auto operator<=>(const contender_name&, const contender_name&) = default;
 };
 
 /// Parts of a stage that have a column; what an engine calls otherwise is under `engine`. `triangles` and `vertices`
 /// are the scene's meshes, which every composition reads and none of them holds.
 inline constexpr std::array<std::string_view, 12> byte_columns = {"projections", "sort",      "partition", "sweep",
-                                                                  "split_large", "nodes",     "indices",   "stack",
+                                                                  "prepare",     "nodes",     "indices",   "stack",
                                                                   "refit",       "triangles", "vertices",  "engine"};
 
 /// One row: one scene played once from a fresh start. Metrics that were not asked for are empty.
 struct row {
     std::string experiment;
-    std::string scene;
-    std::string scene_parameters;
+    scene_choice scene;
     std::uint64_t objects = 0;
     std::uint64_t frames = 0;
     contender_name name;
@@ -67,9 +70,8 @@ struct row {
     [[nodiscard]] std::string key() const;
 };
 
-/// The parameters of a scene as a row has them end in its seed: what stands before it, and the seed itself.
-[[nodiscard]] std::string without_seed(const std::string& scene_parameters);
-[[nodiscard]] std::string seed_of(const std::string& scene_parameters);
+/// The settings of a scene, and its meshes, as a JSON object: what stands in the column `scene_parameters`.
+[[nodiscard]] std::string parameters_json(const scene_choice& scene);
 
 /// Rows of a results.csv. A last one that was cut off in the middle of being written is left out.
 /// @throws aabb::input_error with file and line where it is not a results.csv, or two rows are of the same measurement.
@@ -77,8 +79,7 @@ struct row {
 
 /// A line of differences.csv: how many pairs of one class a contender missed or invented in a scene.
 struct difference {
-    std::string scene;
-    std::string scene_parameters;
+    scene_choice scene;
     contender_name name;
     std::string what;  ///< "missing" or "invented"
     std::string kind;  ///< a class of aabb::difference_class_names, or "boxes" for pairs of boxes
@@ -104,14 +105,28 @@ private:
 /// sets others aside, as results.csv.old.
 enum class existing_results { refuse, resume, replace };
 
+/// The experiment that a folder of results is of.
+struct experiment_record {
+    std::string name;
+    std::string file;  ///< the config, as the user named it
+    std::string text;  ///< what stands in it
+    std::string hash;  ///< of all that decides the results
+    bool quick;
+    std::vector<scene_choice> scenes;
+    std::vector<std::string> notes;  ///< a sentence each
+};
+
+/// Of the exact answers.
+using scene_digests = std::map<scene_choice, std::string>;
+
 /// The folder of a running experiment, which holds its lock, or was started by a process that does. What is written
 /// stays, whatever happens to the program afterwards.
 class results_folder {
 public:
-    /// Creates the folder and its manifest, or takes up what is there. The experiment must outlive the folder.
+    /// Creates the folder and its manifest, or takes up what is there.
     /// @throws aabb::input_error when results are there and are not to be resumed, or are of another config or build
     /// and not to be replaced, or when the folder cannot be written.
-    results_folder(std::filesystem::path folder, const experiment& e, existing_results existing);
+    results_folder(std::filesystem::path folder, experiment_record e, existing_results existing);
     results_folder(const results_folder&) = delete;
     results_folder& operator=(const results_folder&) = delete;
     ~results_folder();
@@ -141,13 +156,13 @@ private:
     [[noreturn]] void fail_table() const;
 
     std::filesystem::path folder_;
-    const experiment& experiment_;
+    experiment_record experiment_;
     std::string date_;
     std::string replaced_;
     std::vector<row> rows_;
     std::set<std::string> keys_;  // of the rows
     std::vector<difference> differences_;
-    std::map<std::string, std::string> digests_;  // by scene and parameters
+    scene_digests digests_;
     std::FILE* file_ = nullptr;
 };
 
@@ -169,24 +184,27 @@ struct manifest_summary {
 // What the parts of the module share.
 namespace aabblab {
 
-using scene_digests = std::map<std::string, std::string>;  // by scene and parameters
-
 void make_folder(const std::filesystem::path& folder);
+
+/// The inverse of `parameters_json`.
+/// @returns false where the text is not such an object
+[[nodiscard]] bool set_parameters(scene_choice& scene, const std::string& json);
 
 [[nodiscard]] std::string csv_header_of_rows();
 [[nodiscard]] std::string csv_of(const row& r);
 [[nodiscard]] std::string csv_of(std::span<const difference> differences);
 
 [[nodiscard]] std::string date_now();
-[[nodiscard]] std::string manifest_text(const experiment& e, const std::string& date, const scene_digests& digests);
+[[nodiscard]] std::string manifest_text(const experiment_record& e, const std::string& date,
+                                        const scene_digests& digests);
 
 struct resumed_manifest {
     std::string date;
     scene_digests digests;
 };
 /// Why results cannot be continued: they are of another config, build or machine. Empty where they can.
-[[nodiscard]] std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment& e);
+[[nodiscard]] std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e);
 /// @throws aabb::input_error where that is so.
-[[nodiscard]] resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment& e);
+[[nodiscard]] resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment_record& e);
 
 }  // namespace aabblab

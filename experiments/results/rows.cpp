@@ -16,6 +16,8 @@ module aabblab.results;
 
 import :csv;
 import aabb;
+import aabb.registry;
+import aabblab.scenes;
 
 namespace aabblab {
 
@@ -24,20 +26,27 @@ namespace {
 /// The columns of a table in one place: calls `field(name, member)` for each.
 template <class Name, class Field>
 void for_each_name(Name& name, Field field) {
-    field("sort", name.sort);
-    field("partition", name.partition);
-    field("sweep", name.sweep);
-    field("split_large", name.split_large);
-    field("tree", name.tree);
-    field("triangle", name.triangle);
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) field(std::string(name_of(kind)), name[kind]);
     field("engine", name.engine);
+}
+
+/// A scene without kind and seed, which have columns of their own.
+template <class Scene>
+struct parameters_of {
+    Scene& scene;
+};
+
+template <class Scene, class Field>
+void for_each_column_of_scene(Scene& scene, Field field) {
+    field("scene", scene.kind);
+    field("scene_parameters", parameters_of<Scene>{scene});
+    field("seed", scene.seed);
 }
 
 template <class Row, class Field>
 void for_each_key(Row& r, Field field) {
     field("experiment", r.experiment);
-    field("scene", r.scene);
-    field("scene_parameters", r.scene_parameters);
+    for_each_column_of_scene(r.scene, field);
     field("objects", r.objects);
     field("frames", r.frames);
     for_each_name(r.name, field);
@@ -67,8 +76,7 @@ void for_each_column(Row& r, Field field) {
 
 template <class Difference, class Field>
 void for_each_column_of_difference(Difference& d, Field field) {
-    field("scene", d.scene);
-    field("scene_parameters", d.scene_parameters);
+    for_each_column_of_scene(d.scene, field);
     for_each_name(d.name, field);
     field("what", d.what);
     field("class", d.kind);
@@ -86,6 +94,10 @@ std::string written(double number) {
     const auto end = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, 6).ptr;
     return {text.data(), end};
 }
+template <class Scene>
+std::string written(const parameters_of<Scene>& parameters) {
+    return parameters_json(parameters.scene);
+}
 template <class T>
 std::string written(const std::optional<T>& value) {
     return value ? written(*value) : "";
@@ -100,9 +112,20 @@ bool taken(Number& to, const std::string& text) {
     const char* end = text.data() + text.size();
     return std::from_chars(text.data(), end, to) == std::from_chars_result{end, std::errc{}};
 }
+bool taken(parameters_of<scene_choice>& to, const std::string& text) {
+    return set_parameters(to.scene, text);
+}
 template <class T>
 bool taken(std::optional<T>& to, const std::string& text) {
     return text.empty() || taken(to.emplace(), text);
+}
+
+std::string expected_of(const parameters_of<scene_choice>&) {
+    return "a JSON object of settings";
+}
+template <class T>
+std::string expected_of(const T&) {
+    return "a number";
 }
 
 constexpr auto columns_of_row = [](auto& r, auto field) { for_each_column(r, field); };
@@ -139,10 +162,10 @@ std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, 
     for (const auto& [fields, line] : std::span(records).subspan(1)) {
         const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         std::size_t at = 0;
-        columns(rows.emplace_back(), [&](const std::string& name, auto& value) {
+        columns(rows.emplace_back(), [&](const std::string& name, auto&& value) {
             if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
             if (!taken(value, fields[at]))
-                throw aabb::input_error(place + name + " must be a number, not '" + fields[at] + "'");
+                throw aabb::input_error(place + name + " must be " + expected_of(value) + ", not '" + fields[at] + "'");
             ++at;
         });
         if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
@@ -157,15 +180,6 @@ std::string row::key() const {
     std::vector<std::string> fields;
     for_each_key(*this, [&](const std::string&, const auto& value) { fields.push_back(written(value)); });
     return csv_line(fields);
-}
-
-std::string without_seed(const std::string& scene_parameters) {
-    const std::size_t seed = scene_parameters.rfind("seed=");
-    return scene_parameters.substr(0, seed == std::string::npos || seed == 0 ? seed : seed - 1);
-}
-std::string seed_of(const std::string& scene_parameters) {
-    const std::size_t seed = scene_parameters.rfind("seed=");
-    return seed == std::string::npos ? "" : scene_parameters.substr(seed + 5);
 }
 
 std::string csv_header_of_rows() {

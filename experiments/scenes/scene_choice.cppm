@@ -1,4 +1,5 @@
 module;
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,6 +25,20 @@ struct scene_choice {
     std::vector<aabb::setting> settings;  ///< "objects", "frames", "displacement", … as text
     std::vector<std::string> meshes;
     std::uint64_t seed = 1;
+
+    friend auto operator<=>(const scene_choice&, const scene_choice&) = default;
 };
+
+/// The same for all scenes that differ in their seed only.
+[[nodiscard]] inline scene_choice whatever_seed(scene_choice scene) {
+    scene.seed = 0;
+    return scene;
+}
+
+/// What a scene is apart from its kind and its seed, to be read, not to be taken apart again:
+/// "objects=1000 frames=20 meshes=elephant.off+torus_knot".
+[[nodiscard]] std::string settings_text(const scene_choice& scene);
+/// The same with "seed=1" behind.
+[[nodiscard]] std::string parameters_text(const scene_choice& scene);
 
 }  // namespace aabblab

@@ -37,6 +37,21 @@ std::vector<std::string> scene_names() {
     return names;
 }
 
+std::string settings_text(const scene_choice& scene) {
+    std::string text;
+    const auto add = [&](const std::string& one) { text += (text.empty() ? "" : " ") + one; };
+    for (const aabb::setting& s : scene.settings) add(s.name + "=" + s.value);
+    std::string meshes;
+    for (const std::string& mesh : scene.meshes) meshes += (meshes.empty() ? "" : "+") + mesh;
+    if (!meshes.empty()) add("meshes=" + meshes);
+    return text;
+}
+
+std::string parameters_text(const scene_choice& scene) {
+    const std::string settings = settings_text(scene);
+    return settings + (settings.empty() ? "" : " ") + "seed=" + std::to_string(scene.seed);
+}
+
 std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice) {
     const scene_kind& kind = kind_named(choice.kind);
     if (kind.make_boxes == nullptr) throw aabb::input_error(choice.kind + " is a scene of meshes, not of boxes");

@@ -7,13 +7,11 @@ export module aabb:leafless_config;
 
 import :leaf_test;
 import :policy;
-import :tree_build;
 
 export namespace aabb {
 
 /// Parameters of a layout that keeps no leaf boxes.
 struct leafless_config {
-    build_method build = build_method::median;
     leaf_test_choice leaf_test = leaf_test_choice::none;
 
     /// Möller's original may cull a pair that touches.
@@ -23,7 +21,6 @@ struct leafless_config {
 };
 
 inline constexpr std::tuple leafless_parameters{
-    build_parameter(&leafless_config::build),
     choice_parameter{"leaf_test", &leafless_config::leaf_test,
                      std::array<std::string_view, 4>{"none", "triangle_box", "triangle_aabb", "moller_triangle_box"},
                      "what is tested in place of a leaf's box: nothing, the triangle against the other box, or the "

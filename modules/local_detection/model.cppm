@@ -6,6 +6,7 @@ module;
 
 export module aabb:model;
 
+import :build_policy;
 import :error;
 import :floating_point;
 import :geometry;
@@ -20,10 +21,13 @@ template <TreePolicy Tree>
 class model {
 public:
     /// @throws input_error on a mesh that `require_valid` refuses, and as `require_ieee_arithmetic`.
-    explicit model(const mesh& m, Tree tree = {}) : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
+    /// @param builder of the nodes that the tree packs
+    template <TreeBuilder Builder>
+    model(const mesh& m, const Builder& builder, Tree tree = {})
+        : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
         require_ieee_arithmetic();
         require_valid(m);
-        tree_.build(m);
+        tree_.pack(builder.build(m, leaf_pairing_of<Tree>));
     }
 
     /// After vertices of the mesh have moved.

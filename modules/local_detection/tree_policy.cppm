@@ -3,10 +3,12 @@ module;
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 export module aabb:tree_policy;
 
+import :build_node;
 import :geometry;
 import :leaf_test;
 import :mesh;
@@ -22,25 +24,36 @@ struct tree_bytes {
     [[nodiscard]] constexpr std::size_t all() const noexcept { return nodes + indices; }
 };
 
-/// A bounding-volume tree over the triangles of a mesh, one triangle a leaf. A cursor stands at a node; what it carries
-/// is the layout's own business. `bounds(cursor)` is a box that holds the node's triangles; that of a leaf in a layout
-/// without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit` takes a mesh of the same triangles whose
-/// vertices have moved; it uses the boxes as scratch.
+/// A bounding-volume tree over the triangles of a mesh, one triangle a leaf: a layout, which packs the nodes that a
+/// build made. One that wants them in pairs of leaves says `static constexpr leaf_pairing pairing`. A cursor stands at
+/// a node; what it carries is the layout's own business. `bounds(cursor)` is a box that holds the node's triangles;
+/// that of a leaf in a layout without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit` takes a mesh
+/// of the same triangles whose vertices have moved; it uses the boxes as scratch.
 template <class T>
-concept TreePolicy =
-    Strategy<T> &&
-    requires(T tree, const T built, const mesh& m, const typename T::cursor at, std::vector<box>& boxes) {
-        tree.build(m);
-        tree.refit(m, boxes);
-        { built.root(m) } -> std::same_as<typename T::cursor>;
-        { built.is_leaf(at) } -> std::same_as<bool>;
-        { built.children(at, m) } -> std::same_as<std::array<typename T::cursor, 2>>;
-        { built.bounds(at) } -> std::convertible_to<box>;
-        { built.triangle(at) } -> std::same_as<std::uint32_t>;
-        { built.bytes() } -> std::same_as<tree_bytes>;
-        { T::has_leaf_boxes } -> std::convertible_to<bool>;
-    } && (T::has_leaf_boxes || requires(const T built) {
-        { built.leaf_test() } -> std::same_as<leaf_test_choice>;
-    });
+concept TreePolicy = Strategy<T> &&
+                     requires(T tree, const T built, std::span<const build_node> nodes, const mesh& m,
+                              const typename T::cursor at, std::vector<box>& boxes) {
+                         tree.pack(nodes);
+                         tree.refit(m, boxes);
+                         { built.root(m) } -> std::same_as<typename T::cursor>;
+                         { built.is_leaf(at) } -> std::same_as<bool>;
+                         { built.children(at, m) } -> std::same_as<std::array<typename T::cursor, 2>>;
+                         { built.bounds(at) } -> std::convertible_to<box>;
+                         { built.triangle(at) } -> std::same_as<std::uint32_t>;
+                         { built.bytes() } -> std::same_as<tree_bytes>;
+                         { T::has_leaf_boxes } -> std::convertible_to<bool>;
+                     } &&
+                     (T::has_leaf_boxes || requires(const T built) {
+                         { built.leaf_test() } -> std::same_as<leaf_test_choice>;
+                     });
+
+/// How the nodes of a tree are to be built for it.
+template <TreePolicy T>
+inline constexpr leaf_pairing leaf_pairing_of = [] {
+    if constexpr (requires { T::pairing; })
+        return T::pairing;
+    else
+        return leaf_pairing::any;
+}();
 
 }  // namespace aabb

@@ -7,6 +7,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.statistics;
 
@@ -15,13 +17,13 @@ namespace aabblab {
 namespace {
 
 selection limited(const std::string& limit, const std::string& segments) {
-    return {"", "axial_cut:limit=" + limit + ",segments=" + segments, "", "", ""};
+    return {{kind::partition, "axial_cut:limit=" + limit + ",segments=" + segments}};
 }
 
 /// Where no box would be cut twice, the limit changes nothing.
 bool limit_acts(const condition& c, const std::string& segments) {
-    const auto with = c.spread(limited("on", segments), count_of("segments_got"));
-    const auto without = c.spread(limited("off", segments), count_of("segments_got"));
+    const auto with = c.spread(limited("on", segments), measured("segments_got"));
+    const auto without = c.spread(limited("off", segments), measured("segments_got"));
     return !with || !without || with->median != without->median;
 }
 
@@ -48,8 +50,8 @@ claim_result one_cut_a_box(const measurements& m) {
     for (const condition& c : m.of("c10"))
         for (const char* segments : {"auto", "32"}) {
             if (!limit_acts(c, segments)) continue;
-            candidates.push_back(candidate_of(c, limited("on", segments), limited("off", segments), frame_ms(),
-                                              {{"segments", segments}}));
+            candidates.push_back(candidate_of(c, limited("on", segments), limited("off", segments),
+                                              measured("frame_ms"), {{"segments", segments}}));
             candidate& one = candidates.back();
             const std::string span = value_of(c.of(), "span");
             const bool automatic = std::string(segments) == "auto";

@@ -8,6 +8,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.results;
@@ -19,20 +21,15 @@ namespace {
 
 constexpr const char* compressed = "compressed:leaf_test=triangle_box";
 
-selection with_tree(selection global, const std::string& tree) {
-    global.tree = tree;
-    return global;
-}
-
 struct method {
     const char* label;
     selection who;
 };
 const std::vector<method>& methods() {
-    static const std::vector<method> all{{"traditional in both stages", with_tree(traditional, "canonical")},
-                                         {"improved global search", with_tree(improved, "canonical")},
-                                         {"improved local detection", with_tree(traditional, compressed)},
-                                         {"improved in both", with_tree(improved, compressed)}};
+    static const std::vector<method> all{{"traditional in both stages", traditional.with(kind::tree, "canonical")},
+                                         {"improved global search", improved.with(kind::tree, "canonical")},
+                                         {"improved local detection", traditional.with(kind::tree, compressed)},
+                                         {"improved in both", improved.with(kind::tree, compressed)}};
     return all;
 }
 
@@ -43,7 +40,7 @@ table half_steps(const std::vector<condition>& conditions) {
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{mesh_of(c), value_of(c.of(), "objects")});
         for (std::size_t i = 1; i < methods().size(); ++i) {
-            const candidate ratio = candidate_of(c, methods()[i].who, methods()[0].who, frame_ms());
+            const candidate ratio = candidate_of(c, methods()[i].who, methods()[0].who, measured("frame_ms"));
             cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
         }
         const auto share = c.spread(methods()[0].who, [](const row& r) -> std::optional<double> {
@@ -72,7 +69,7 @@ claim_result whole_algorithm(const measurements& m) {
     const std::vector<condition>& conditions = m.of("c11");
     std::vector<candidate> candidates;
     for (const condition& c : conditions) {
-        candidates.push_back(candidate_of(c, methods()[3].who, methods()[0].who, frame_ms()));
+        candidates.push_back(candidate_of(c, methods()[3].who, methods()[0].who, measured("frame_ms")));
         candidates.back().primary = is_primary_of_c11(c);
     }
     judge(claim, std::move(candidates));
@@ -89,7 +86,8 @@ claim_result whole_algorithm(const measurements& m) {
              {"time a frame (ms)", true, {}},
              {},
              {}};
-    for (const method& one : methods()) f.lines.push_back(series_of(one.label, sparse, "objects", one.who, frame_ms()));
+    for (const method& one : methods())
+        f.lines.push_back(series_of(one.label, sparse, "objects", one.who, measured("frame_ms")));
     claim.figures.push_back(f);
     return claim;
 }

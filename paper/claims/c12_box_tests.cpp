@@ -6,6 +6,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.statistics;
 
@@ -17,13 +19,13 @@ claim_result fewer_box_tests(const measurements& m) {
     claim.claim = "The axial cut avoids needless tests of boxes";
     claim.measured = "tests of two boxes in a frame, axial_cut over none, both with shell and one_axis";
     claim.experiments = {"figure1"};
-    const selection uncut{"shell", "none", "one_axis", "", ""};
+    const selection uncut{{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
     std::vector<candidate> candidates;
     std::vector<const condition*> drifting;
     for (const condition& c : m.of("figure1")) {
         const bool little = value_of(c.of(), "scene") == "brownian" && value_of(c.of(), "displacement") == "0.1";
         if (little) drifting.push_back(&c);
-        candidates.push_back(candidate_of(c, improved, uncut, count_of("box_tests")));
+        candidates.push_back(candidate_of(c, improved, uncut, measured("box_tests")));
         candidates.back().primary = little && value_of(c.of(), "objects") == "10000";
     }
     judge(claim, std::move(candidates));
@@ -33,8 +35,8 @@ claim_result fewer_box_tests(const measurements& m) {
              {"box tests a frame", true, {}},
              {},
              {}};
-    f.lines = {series_of("no cut", drifting, "objects", uncut, count_of("box_tests")),
-               series_of("axial cut", drifting, "objects", improved, count_of("box_tests"))};
+    f.lines = {series_of("no cut", drifting, "objects", uncut, measured("box_tests")),
+               series_of("axial cut", drifting, "objects", improved, measured("box_tests"))};
     claim.figures.push_back(f);
     return claim;
 }

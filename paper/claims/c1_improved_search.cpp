@@ -7,6 +7,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -20,11 +22,14 @@ struct method {
     selection who;
 };
 const std::vector<method>& methods() {
-    static const std::vector<method> all{{"insertion sort (traditional)", traditional},
-                                         {"insertion sort, axial cut", {"insertion", "axial_cut", "one_axis", "", ""}},
-                                         {"Shell sort", {"shell", "none", "one_axis", "", ""}},
-                                         {"Shell sort, axial cut (improved)", improved},
-                                         {"insertion sort, incremental", {"insertion", "none", "incremental", "", ""}}};
+    static const std::vector<method> all{
+        {"insertion sort (traditional)", traditional},
+        {"insertion sort, axial cut",
+         {{kind::sort, "insertion"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}}},
+        {"Shell sort", {{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}}},
+        {"Shell sort, axial cut (improved)", improved},
+        {"insertion sort, incremental",
+         {{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "incremental"}}}};
     return all;
 }
 
@@ -40,7 +45,7 @@ table half_steps(const std::vector<condition>& conditions) {
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         for (std::size_t i = 1; i < methods().size(); ++i) {
-            const candidate ratio = candidate_of(c, methods()[i].who, traditional, frame_ms());
+            const candidate ratio = candidate_of(c, methods()[i].who, traditional, measured("frame_ms"));
             cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
         }
     }
@@ -58,7 +63,7 @@ claim_result improved_search(const measurements& m) {
     const std::vector<condition>& conditions = m.of("figure1");
     std::vector<candidate> candidates;
     for (const condition& c : conditions) {
-        candidates.push_back(candidate_of(c, improved, traditional, frame_ms()));
+        candidates.push_back(candidate_of(c, improved, traditional, measured("frame_ms")));
         candidates.back().primary = drifts_little(c) && value_of(c.of(), "objects") == "10000";
     }
     judge(claim, std::move(candidates));
@@ -75,7 +80,7 @@ claim_result improved_search(const measurements& m) {
              {},
              {}};
     for (const method& one : methods())
-        f.lines.push_back(series_of(one.label, drifting, "objects", one.who, frame_ms()));
+        f.lines.push_back(series_of(one.label, drifting, "objects", one.who, measured("frame_ms")));
     claim.figures.push_back(f);
     return claim;
 }

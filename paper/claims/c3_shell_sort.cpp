@@ -11,6 +11,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -68,8 +70,8 @@ claim_result shell_sort(const measurements& m) {
     for (const std::string& gaps : gap_sequences()) {
         std::map<std::pair<std::string, double>, std::vector<compared>> along;
         for (const condition& c : conditions) {
-            candidate one = candidate_of(c, {"shell:gaps=" + gaps, "", "", "", ""}, {"insertion", "", "", "", ""},
-                                         update_ms(), {{"gaps", gaps}});
+            candidate one = candidate_of(c, {{kind::sort, "shell:gaps=" + gaps}}, {{kind::sort, "insertion"}},
+                                         measured("update_ms"), {{"gaps", gaps}});
             const double objects = number_of(c.of(), "objects");
             const double displacement = number_of(c.of(), "displacement");
             const std::string scene = value_of(c.of(), "scene");

@@ -9,6 +9,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -23,12 +25,14 @@ const std::vector<int>& segments_wanted() {
 }
 
 selection cut_into(int axes, const std::string& segments) {
-    return {"insertion", "axial_cut:axes=" + std::to_string(axes) + ",segments=" + segments, "one_axis", "", ""};
+    return {{kind::sort, "insertion"},
+            {kind::partition, "axial_cut:axes=" + std::to_string(axes) + ",segments=" + segments},
+            {kind::sweep, "one_axis"}};
 }
 
 /// Segments on each axis that was cut; empty where it was not measured.
 std::optional<double> segments_got(const condition& c, int axes, int wanted) {
-    const auto got = c.spread(cut_into(axes, std::to_string(wanted)), count_of("segments_got"));
+    const auto got = c.spread(cut_into(axes, std::to_string(wanted)), measured("segments_got"));
     return got ? std::optional(got->median / axes) : std::nullopt;
 }
 
@@ -51,13 +55,13 @@ figure figure_of(const std::string& name, const condition& c) {
     for (int axes = 1; axes <= 3; ++axes) {
         series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes"), series_style::line, {}};
         for (const int wanted : segments_wanted())
-            if (const auto point = c.point(wanted, cut_into(axes, std::to_string(wanted)), frame_ms()))
+            if (const auto point = c.point(wanted, cut_into(axes, std::to_string(wanted)), measured("frame_ms")))
                 s.points.push_back(*point);
         f.lines.push_back(s);
         if (const auto limit = segments_got(c, axes, segments_wanted().back()))
             f.marks.push_back({*limit, "limit, " + s.label});
     }
-    if (const auto uncut = c.point(segments_wanted().front(), traditional, frame_ms()))
+    if (const auto uncut = c.point(segments_wanted().front(), traditional, measured("frame_ms")))
         f.lines.push_back({"no cut", series_style::level, {*uncut}});
     return f;
 }
@@ -69,8 +73,9 @@ table automatic(const std::vector<condition>& conditions) {
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
-            const candidate ratio = candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms());
-            const auto chosen = c.spread(cut_into(axes, "auto"), count_of("segments_got"));
+            const candidate ratio =
+                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), measured("frame_ms"));
+            const auto chosen = c.spread(cut_into(axes, "auto"), measured("segments_got"));
             const auto limit = segments_got(c, axes, 256);
             if (!ratio.log_ratio.known() || !chosen || !limit) continue;
             std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
@@ -100,7 +105,7 @@ claim_result more_segments(const measurements& m) {
                 const int before = segments_wanted()[i - 1];
                 if (!is_finer(c, axes, wanted, before)) continue;
                 candidates.push_back(candidate_of(c, cut_into(axes, std::to_string(wanted)),
-                                                  cut_into(axes, std::to_string(before)), frame_ms(),
+                                                  cut_into(axes, std::to_string(before)), measured("frame_ms"),
                                                   {{"axes", std::to_string(axes)},
                                                    {"segments", std::to_string(wanted)},
                                                    {"over", std::to_string(before)}}));
@@ -110,7 +115,7 @@ claim_result more_segments(const measurements& m) {
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
             candidates.push_back(
-                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), frame_ms(),
+                candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), measured("frame_ms"),
                              {{"axes", std::to_string(axes)}, {"segments", "auto"}, {"over", "the limit"}}));
             candidates.back().expected = expectation::not_more;
         }

@@ -11,6 +11,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -19,10 +21,10 @@ namespace aabblab {
 
 namespace {
 
-const selection cut{"insertion", "axial_cut", "one_axis", "", ""};
+const selection cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}};
 
 selection grid(const std::string& cell) {
-    return {"insertion", "uniform_grid:cell_size=" + cell, "one_axis", "", ""};
+    return {{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=" + cell}, {kind::sweep, "one_axis"}};
 }
 
 /// Those of the config. Not what there are rows of: a size that was wrong everywhere would be forgotten.
@@ -31,7 +33,7 @@ const std::vector<std::string>& cell_sizes() {
     return all;
 }
 
-metric all_bytes() {
+row_value all_bytes() {
     return bytes_of({"projections", "partition", "sweep"});
 }
 
@@ -41,7 +43,8 @@ public:
     explicit scenes_and_cells(const std::vector<condition>& conditions) {
         for (const condition& c : conditions) {
             std::vector<cells>& ratios = over_cut_.emplace_back();
-            for (const std::string& size : cell_sizes()) ratios.push_back(c.log_ratios(grid(size), cut, frame_ms()));
+            for (const std::string& size : cell_sizes())
+                ratios.push_back(c.log_ratios(grid(size), cut, measured("frame_ms")));
         }
     }
 
@@ -93,12 +96,12 @@ table times(const std::vector<condition>& conditions) {
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         const auto add = [&](const selection& who) {
-            const auto time = c.spread(who, frame_ms());
+            const auto time = c.spread(who, measured("frame_ms"));
             cells.push_back(time ? digits_of(time->median) : "-");
         };
         add(cut);
         for (const std::string& size : cell_sizes()) add(grid(size));
-        add({"insertion", "uniform_grid:cell_size=auto", "one_axis", "", ""});
+        add({{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=auto"}, {kind::sweep, "one_axis"}});
     }
     return t;
 }
@@ -117,11 +120,12 @@ void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& ca
              false,
              expected});
     };
-    const metric bytes = all_bytes();
+    const row_value bytes = all_bytes();
     for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
         const selection who = grid(size);
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            small.log_ratios(who, cut, frame_ms()), large.log_ratios(who, cut, frame_ms()), expectation::less);
+            small.log_ratios(who, cut, measured("frame_ms")), large.log_ratios(who, cut, measured("frame_ms")),
+            expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", small.logs(who, bytes),
             large.logs(who, bytes), expectation::less);
     }
@@ -140,7 +144,7 @@ figure cell_figure(const std::vector<condition>& conditions) {
     for (const condition& c : conditions) {
         series s{value_of(c.of(), "scene"), series_style::line, {}};
         for (const std::string& size : cell_sizes()) {
-            const candidate ratio = candidate_of(c, grid(size), cut, frame_ms());
+            const candidate ratio = candidate_of(c, grid(size), cut, measured("frame_ms"));
             if (!ratio.log_ratio.known()) continue;
             s.points.push_back(point_of(std::stod(size), ratio));
         }
@@ -152,7 +156,7 @@ figure cell_figure(const std::vector<condition>& conditions) {
 
 /// How something grows with the world, of a grid and of the cut.
 figure world_figure(const std::string& name, const std::string& what, const std::string& axis,
-                    const std::vector<condition>& worlds, const metric& of) {
+                    const std::vector<condition>& worlds, const row_value& of) {
     figure f{name,
              what +
                  " of global search against the side of the world, for the same 2,000 cubes: a grid of one cell "
@@ -188,7 +192,8 @@ claim_result cut_against_grid(const measurements& m) {
     std::vector<candidate> candidates;
     if (!conditions.empty()) {
         const scenes_and_cells all(conditions);
-        const sample_size size = conditions.front().log_ratios(grid(cell_sizes().front()), cut, frame_ms()).size();
+        const sample_size size =
+            conditions.front().log_ratios(grid(cell_sizes().front()), cut, measured("frame_ms")).size();
         const auto add = [&](const std::string& comparison, auto log_ratio, bool primary, expectation expected) {
             candidates.push_back({{{"scene", "the worst of all"}, {"comparison", comparison}},
                                   bootstrap(size, log_ratio),
@@ -211,7 +216,7 @@ claim_result cut_against_grid(const measurements& m) {
     judge(claim, std::move(candidates));
     claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(conditions)});
     claim.figures = {cell_figure(conditions), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
-                     world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, frame_ms())};
+                     world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_ms"))};
     return claim;
 }
 

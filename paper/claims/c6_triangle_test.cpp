@@ -15,6 +15,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabb;
 import aabblab.figures;
 import aabblab.tables;
@@ -136,8 +138,8 @@ claim_result triangle_for_box(const measurements& m) {
                                       test == "triangle_box" && frame.empty()});
     for (const condition& c : m.of("figure2"))
         for (const char* test : {"triangle_box", "triangle_aabb", "none"}) {
-            candidate one = candidate_of(c, {"", "", "", "", std::string("leafless:leaf_test=") + test},
-                                         {"", "", "", "", "canonical"}, detect_ms());
+            candidate one = candidate_of(c, {{kind::tree, std::string("leafless:leaf_test=") + test}},
+                                         {{kind::tree, "canonical"}}, measured("detect_ms"));
             one.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
             candidates.push_back(std::move(one));
         }

@@ -8,6 +8,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.statistics;
 
@@ -25,14 +27,14 @@ constexpr layout layouts[] = {{"canonical", "canonical"},
                               {"compressed", "compressed:leaf_test=triangle_box"}};
 
 selection tree(const std::string& name) {
-    return {"", "", "", "", name};
+    return {{kind::tree, name}};
 }
 
 bool is_generated(const condition& c) {
     return mesh_of(c).starts_with("noise_sphere");
 }
 
-figure size_figure(const std::string& name, const std::string& caption, const std::string& y, const metric& of,
+figure size_figure(const std::string& name, const std::string& caption, const std::string& y, const row_value& of,
                    const std::vector<const condition*>& generated) {
     figure f{name, caption, {"triangles", true, {}}, {y, true, {}}, {}, {}};
     for (const layout& one : layouts)
@@ -59,24 +61,24 @@ claim_result compressed_tree(const measurements& m) {
     std::ranges::copy_if(all, std::back_inserter(generated), [](const condition* c) { return is_generated(*c); });
     std::vector<candidate> candidates;
     for (const condition* c : all) {
-        const auto add = [&](const char* what, const metric& of, const std::string& leaf_test) {
+        const auto add = [&](const char* what, const row_value& of, const std::string& leaf_test) {
             candidates.push_back(candidate_of(*c, tree("compressed:leaf_test=" + leaf_test), tree("canonical"), of,
                                               {{"quantity", what}, {"leaf_test", leaf_test}}));
         };
-        add("time", detect_ms(), "triangle_box");
+        add("time", measured("detect_ms"), "triangle_box");
         candidates.back().primary = is_primary_of_c7(*c);
-        add("time", detect_ms(), "triangle_aabb");
-        add("time", detect_ms(), "none");
-        add("bytes", tree_bytes(), "triangle_box");
+        add("time", measured("detect_ms"), "triangle_aabb");
+        add("time", measured("detect_ms"), "none");
+        add("bytes", measured("tree_bytes"), "triangle_box");
     }
     judge(claim, std::move(candidates));
     claim.figures = {
         size_figure("figure2",
                     "Time of local detection against the number of triangles: the canonical tree, the compressed one, "
                     "and the half-steps between. Two noise spheres; medians and quartiles.",
-                    "time a query (ms)", detect_ms(), generated),
+                    "time a query (ms)", measured("detect_ms"), generated),
         size_figure("figure2_bytes", "Bytes of the same trees for each triangle, as allocated.", "bytes a triangle",
-                    tree_bytes(), generated)};
+                    measured("tree_bytes"), generated)};
     claim.figures.back().y.logarithmic = false;
     return claim;
 }

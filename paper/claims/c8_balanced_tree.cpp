@@ -6,6 +6,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -15,7 +17,7 @@ namespace aabblab {
 namespace {
 
 selection canonical(const std::string& build) {
-    return {"", "", "", "", "canonical:build=" + build};
+    return {{kind::tree, "canonical"}, {kind::build, build}};
 }
 
 /// What each build costs and brings.
@@ -30,7 +32,8 @@ table builds(const std::vector<condition>& conditions) {
     for (const condition& c : conditions)
         for (const char* build : {"median", "mean", "sah"}) {
             std::vector<std::string> cells{mesh_of(c), build};
-            for (const metric& of : {build_ms(), detect_ms(), count_of("box_tests"), count_of("triangle_tests")}) {
+            for (const row_value& of :
+                 {measured("build_ms"), measured("detect_ms"), measured("box_tests"), measured("triangle_tests")}) {
                 const auto value = c.spread(canonical(build), of);
                 cells.push_back(value ? digits_of(value->median) : "-");
             }
@@ -52,7 +55,7 @@ claim_result balanced_tree(const measurements& m) {
     for (const char* build : {"mean", "sah"})
         for (const condition& c : conditions) {
             candidates.push_back(
-                candidate_of(c, canonical("median"), canonical(build), detect_ms(), {{"over", build}}));
+                candidate_of(c, canonical("median"), canonical(build), measured("detect_ms"), {{"over", build}}));
             candidates.back().primary = mesh_of(c).starts_with("noise_sphere") && std::string(build) == "mean";
         }
     judge(claim, std::move(candidates));
@@ -68,7 +71,8 @@ claim_result balanced_tree(const measurements& m) {
     for (const char* build : {"mean", "sah"}) {
         series s{std::string("over ") + build, series_style::points, {}};
         for (std::size_t i = 0; i < conditions.size(); ++i) {
-            const candidate ratio = candidate_of(conditions[i], canonical("median"), canonical(build), detect_ms());
+            const candidate ratio =
+                candidate_of(conditions[i], canonical("median"), canonical(build), measured("detect_ms"));
             if (!ratio.log_ratio.known()) continue;
             s.points.push_back(point_of(static_cast<double>(i), ratio));
         }

@@ -7,6 +7,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.statistics;
 
@@ -14,13 +16,15 @@ namespace aabblab {
 
 namespace {
 
+const selection whole{{kind::prepare, "none"}};
+
 selection splitting(const std::string& size) {
-    return {"", "", "", size, ""};
+    return {{kind::prepare, "split_large:size=" + size}};
 }
 
 /// No box may be as long as that.
 bool splits_something(const condition& c, const std::string& size) {
-    const auto pieces = c.spread(splitting(size), count_of("pieces"));
+    const auto pieces = c.spread(splitting(size), measured("pieces"));
     return pieces && pieces->median > 0;
 }
 
@@ -45,7 +49,7 @@ claim_result large_objects_split(const measurements& m) {
         for (const char* size : {"4", "8"}) {
             if (!splits_something(c, size)) continue;
             candidates.push_back(
-                candidate_of(c, splitting(size), splitting("off"), frame_ms(), {{"split_large", size}}));
+                candidate_of(c, splitting(size), whole, measured("frame_ms"), {{"split_large", size}}));
             candidate& one = candidates.back();
             const std::string span = value_of(c.of(), "span");
             one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && std::string(size) == "4";

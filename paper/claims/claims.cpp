@@ -13,6 +13,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -176,7 +178,7 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
          })});
 }
 
-candidate candidate_of(const condition& c, const selection& arm, const selection& base, const metric& of,
+candidate candidate_of(const condition& c, const selection& arm, const selection& base, const row_value& of,
                        factors more) {
     factors where = c.of();
     where.insert(where.end(), more.begin(), more.end());
@@ -186,7 +188,7 @@ candidate candidate_of(const condition& c, const selection& arm, const selection
 }
 
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
-                 const selection& who, const metric& of) {
+                 const selection& who, const row_value& of) {
     series s{label, series_style::line, {}};
     for (const condition* c : conditions) {
         const double place = x == "triangles" ? triangles_of(*c) : number_of(c->of(), x);

@@ -13,6 +13,8 @@ import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
 export import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 
 export namespace aabblab {
 
@@ -142,15 +144,15 @@ private:
 
 /// The ratio of two compositions in one condition.
 /// @param more factors beside the condition's own
-[[nodiscard]] candidate candidate_of(const condition& c, const selection& arm, const selection& base, const metric& of,
-                                     factors more = {});
+[[nodiscard]] candidate candidate_of(const condition& c, const selection& arm, const selection& base,
+                                     const row_value& of, factors more = {});
 
 /// A ratio with its 95 % interval as a point of a figure.
 [[nodiscard]] figure_point point_of(double x, const candidate& c);
 
 /// A series of medians over the conditions of an experiment, in the order of x.
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
-                               const std::string& x, const selection& who, const metric& of);
+                               const std::string& x, const selection& who, const row_value& of);
 
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);
@@ -161,8 +163,8 @@ private:
 [[nodiscard]] bool is_primary_of_c7(const condition& c);
 [[nodiscard]] bool is_primary_of_c11(const condition& c);
 
-inline const selection traditional{"insertion", "none", "one_axis", "", ""};
-inline const selection improved{"shell", "axial_cut", "one_axis", "", ""};
+inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
+inline const selection improved{{kind::sort, "shell"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}};
 
 [[nodiscard]] claim_result improved_search(const measurements& m);
 [[nodiscard]] claim_result linear_sort(const measurements& m);

@@ -16,39 +16,30 @@ module aabblab.claims;
 
 import :measurements;
 import aabb;
+import aabb.registry;
 import aabblab.figures;
+import aabblab.metrics;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {
 
 namespace {
 
-double frames_after_first(const row& r) {
-    return r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
-}
-
-/// "objects=100 displacement=0.1 seed=3" into names and values; the seed apart.
-std::pair<factors, std::string> parsed(const row& r) {
-    factors all{{"scene", r.scene}};
-    std::string seed;
-    const std::string& text = r.scene_parameters;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(' ', at), text.size());
-        const std::size_t equals = std::min(text.find('=', at), end);
-        const std::string name = text.substr(at, equals - at);
-        const std::string value = equals < end ? text.substr(equals + 1, end - equals - 1) : "";
-        if (name == "seed")
-            seed = value;
-        else if (name != "frames")
-            all.emplace_back(name, value);
-        at = end + 1;
-    }
-    return {all, seed};
+/// Everything that tells a scene from others, but its seed, and its frames, which times do not depend on.
+factors factors_of(const scene_choice& scene) {
+    factors all{{"scene", scene.kind}};
+    for (const aabb::setting& s : scene.settings)
+        if (s.name != "frames") all.emplace_back(s.name, s.value);
+    std::string meshes;
+    for (const std::string& mesh : scene.meshes) meshes += (meshes.empty() ? "" : "+") + mesh;
+    if (!meshes.empty()) all.emplace_back("meshes", meshes);
+    return all;
 }
 
 template <class Value>
-void add_values(cells& to, const std::vector<const row*>& rows, const metric& of, Value value) {
+void add_values(cells& to, const std::vector<const row*>& rows, const row_value& of, Value value) {
     for (const row* r : rows)
         if (const std::optional<double> measured = of(*r); measured.value_or(0) > 0) value(to, *r, *measured);
 }
@@ -67,75 +58,28 @@ double number_of(const factors& all, std::string_view name) {
     return std::from_chars(text.data(), end, value) == std::from_chars_result{end, std::errc{}} ? value : std::nan("");
 }
 
-metric frame_ms() {
-    return [](const row& r) -> std::optional<double> {
-        if (!r.update_ms) return std::nullopt;
-        if (r.frames == 1) return r.first_ms;
-        return (*r.update_ms + *r.search_ms + *r.detect_ms) / frames_after_first(r);
-    };
-}
-metric update_ms() {
-    return [](const row& r) -> std::optional<double> {
-        return r.update_ms ? std::optional(*r.update_ms / frames_after_first(r)) : std::nullopt;
-    };
-}
-metric detect_ms() {
-    return [](const row& r) -> std::optional<double> {
-        return r.detect_ms ? std::optional(*r.detect_ms / frames_after_first(r)) : std::nullopt;
-    };
-}
-metric whole_ms() {
-    return [](const row& r) -> std::optional<double> {
-        if (!r.update_ms) return std::nullopt;
-        return *r.build_ms + *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
-    };
-}
-metric build_ms() {
-    return [](const row& r) { return r.build_ms; };
-}
-metric count_of(std::string_view column) {
-    const auto place = static_cast<std::size_t>(std::ranges::find(aabb::work_names, column) - aabb::work_names.begin());
-    return [place](const row& r) -> std::optional<double> {
-        if (!r.counts.at(place)) return std::nullopt;
-        return static_cast<double>(*r.counts[place]) / frames_after_first(r);
-    };
-}
-metric bytes_of(std::vector<std::string> parts) {
-    return [parts = std::move(parts)](const row& r) -> std::optional<double> {
-        std::optional<double> sum;
-        for (std::size_t i = 0; i < byte_columns.size(); ++i)
-            if (r.bytes[i] && std::ranges::find(parts, byte_columns[i]) != parts.end())
-                sum = sum.value_or(0) + static_cast<double>(*r.bytes[i]);
-        return sum;
-    };
-}
-metric tree_bytes() {
-    return [trees = bytes_of({"nodes", "indices"})](const row& r) -> std::optional<double> {
-        const std::optional<double> bytes = trees(r);
-        if (!bytes || r.triangles.value_or(0) == 0) return std::nullopt;
-        return *bytes / static_cast<double>(*r.triangles);
-    };
+selection selection::with(aabb::strategy_kind kind, std::string choice) const {
+    selection changed = *this;
+    changed.wanted_[kind] = std::move(choice);
+    return changed;
 }
 
 bool selection::matches(const contender_name& name) const {
-    const auto fits = [](const std::string& wanted, const std::string& there) {
-        return wanted.empty() || wanted == there;
-    };
-    return name.engine.empty() && fits(sort, name.sort) && fits(partition, name.partition) && fits(sweep, name.sweep) &&
-           fits(split_large, name.split_large) && fits(tree, name.tree);
+    return name.engine.empty() && std::ranges::all_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
+               return wanted_[kind].empty() || wanted_[kind] == name[kind];
+           });
 }
 
 condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(of)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
-        const std::string seed = parsed(*r).second;
-        if (std::ranges::find(seeds_, seed) == seeds_.end()) seeds_.push_back(seed);
+        if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
         processes_ = std::max<std::size_t>(processes_, r->process + 1);
     }
     std::ranges::sort(seeds_);
 }
 
 std::size_t condition::seed_index(const row& r) const {
-    return static_cast<std::size_t>(std::ranges::find(seeds_, parsed(r).second) - seeds_.begin());
+    return static_cast<std::size_t>(std::ranges::find(seeds_, r.scene.seed) - seeds_.begin());
 }
 
 std::vector<const row*> condition::rows_of(const selection& who) const {
@@ -145,12 +89,12 @@ std::vector<const row*> condition::rows_of(const selection& who) const {
     return found;
 }
 
-cells condition::log_ratios(const selection& arm, const selection& base, const metric& of) const {
+cells condition::log_ratios(const selection& arm, const selection& base, const row_value& of) const {
     cells all(processes(), seeds());
     const std::vector<const row*> against = rows_of(base);
     add_values(all, rows_of(arm), of, [&](cells& to, const row& r, double value) {
         for (const row* b : against) {
-            if (b->repeat != r.repeat || b->scene_parameters != r.scene_parameters) continue;
+            if (b->repeat != r.repeat || b->scene != r.scene) continue;
             if (const std::optional<double> other = of(*b); other.value_or(0) > 0)
                 to.add(r.process, seed_index(r), std::log(value / *other));
         }
@@ -158,21 +102,21 @@ cells condition::log_ratios(const selection& arm, const selection& base, const m
     return all;
 }
 
-cells condition::logs(const selection& who, const metric& of) const {
+cells condition::logs(const selection& who, const row_value& of) const {
     cells all(processes(), seeds());
     add_values(all, rows_of(who), of,
                [&](cells& to, const row& r, double value) { to.add(r.process, seed_index(r), std::log(value)); });
     return all;
 }
 
-std::optional<quartiles> condition::spread(const selection& who, const metric& of) const {
+std::optional<quartiles> condition::spread(const selection& who, const row_value& of) const {
     std::vector<double> values;
     for (const row* r : rows_of(who))
         if (const std::optional<double> value = of(*r)) values.push_back(*value);
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values));
 }
 
-std::optional<figure_point> condition::point(double x, const selection& who, const metric& of) const {
+std::optional<figure_point> condition::point(double x, const selection& who, const row_value& of) const {
     const std::optional<quartiles> q = spread(who, of);
     if (!q) return std::nullopt;
     return figure_point{x, q->median, q->low, q->high};
@@ -187,7 +131,7 @@ const measurements::experiment_results& measurements::read(const std::string& ex
     results->rows = aabblab::read_rows(file);
     std::vector<std::pair<factors, std::vector<const row*>>> groups;
     for (const row& r : results->rows) {
-        const factors of = parsed(r).first;
+        const factors of = factors_of(r.scene);
         auto group = std::ranges::find(groups, of, &std::pair<factors, std::vector<const row*>>::first);
         if (group == groups.end()) group = groups.insert(group, {of, {}});
         group->second.push_back(&r);

@@ -2,7 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,8 +14,12 @@ module;
 /// What the experiments of the paper measured, read from their results folders.
 export module aabblab.claims:measurements;
 
+import aabb;
+import aabb.registry;
 import aabblab.figures;
+import aabblab.metrics;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 export namespace aabblab {
@@ -28,28 +32,24 @@ using factors = std::vector<std::pair<std::string, std::string>>;
 /// The same as a number; NaN where it is none.
 [[nodiscard]] double number_of(const factors& all, std::string_view name);
 
-/// One number of a row; empty where it has none.
-using metric = std::function<std::optional<double>(const row&)>;
+/// As claims write it.
+using kind = aabb::strategy_kind;
 
-/// Milliseconds a frame after frame 0: all of it, taking and sorting the boxes, testing triangles.
-[[nodiscard]] metric frame_ms();
-[[nodiscard]] metric update_ms();
-[[nodiscard]] metric detect_ms();
-/// Milliseconds of all frames, frame 0 and the making of stages and trees with them.
-[[nodiscard]] metric whole_ms();
-[[nodiscard]] metric build_ms();
-/// A count of work, a frame after frame 0, by its column.
-[[nodiscard]] metric count_of(std::string_view column);
-/// Bytes of these parts together.
-[[nodiscard]] metric bytes_of(std::vector<std::string> parts);
-/// Bytes of the trees for each triangle.
-[[nodiscard]] metric tree_bytes();
+/// Strategies that name a composition among others, by kind; a kind that is not named may be anything.
+class selection {
+public:
+    selection() = default;
+    selection(std::initializer_list<std::pair<aabb::strategy_kind, std::string>> wanted) {
+        for (const auto& [kind, choice] : wanted) wanted_[kind] = choice;
+    }
 
-/// Strategies that name a composition among others; what is empty may be anything.
-struct selection {
-    std::string sort, partition, sweep, split_large, tree;
-
+    [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return wanted_[kind]; }
+    /// The same, but for this kind.
+    [[nodiscard]] selection with(aabb::strategy_kind kind, std::string choice) const;
     [[nodiscard]] bool matches(const contender_name& name) const;
+
+private:
+    aabb::by_kind<std::string> wanted_;
 };
 
 /// A scene with all its seeds: a condition under which ratios are measured.
@@ -66,20 +66,20 @@ public:
     [[nodiscard]] std::vector<const row*> rows_of(const selection& who) const;
 
     /// Logarithms of the ratios of two compositions in the same repeat.
-    [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const metric& of) const;
+    [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& of) const;
     /// Logarithms of one composition's values: for counts and bytes, which no machine disturbs.
-    [[nodiscard]] cells logs(const selection& who, const metric& of) const;
+    [[nodiscard]] cells logs(const selection& who, const row_value& of) const;
     /// Median and quartiles over all repeats; empty where there are none.
-    [[nodiscard]] std::optional<quartiles> spread(const selection& who, const metric& of) const;
+    [[nodiscard]] std::optional<quartiles> spread(const selection& who, const row_value& of) const;
     /// The same as a point of a figure.
-    [[nodiscard]] std::optional<figure_point> point(double x, const selection& who, const metric& of) const;
+    [[nodiscard]] std::optional<figure_point> point(double x, const selection& who, const row_value& of) const;
 
 private:
     [[nodiscard]] std::size_t seed_index(const row& r) const;
 
     factors of_;
     std::vector<const row*> rows_;
-    std::vector<std::string> seeds_;
+    std::vector<std::uint64_t> seeds_;
     std::size_t processes_ = 1;
 };
 

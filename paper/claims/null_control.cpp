@@ -8,6 +8,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -21,8 +23,9 @@ struct twins {
     selection written_out;
 };
 const std::vector<twins>& compositions() {
-    static const std::vector<twins> all{{traditional, {"insertion", "none", "one_axis:axis=auto", "", ""}},
-                                        {improved, {"shell:gaps=ciura", "axial_cut", "one_axis", "", ""}}};
+    static const std::vector<twins> all{
+        {traditional, {{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis:axis=auto"}}},
+        {improved, {{kind::sort, "shell:gaps=ciura"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}}}};
     return all;
 }
 
@@ -32,8 +35,8 @@ named_table null_control(const measurements& m) {
     std::vector<endpoint> found;
     for (const condition& c : m.of("null_control"))
         for (const auto& [plain, written_out] : compositions()) {
-            const candidate ratio = candidate_of(c, written_out, plain, frame_ms(),
-                                                 {{"composition", plain.sort + " + " + plain.partition}});
+            const candidate ratio = candidate_of(c, written_out, plain, measured("frame_ms"),
+                                                 {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.log_ratio.known()) found.push_back(endpoint_of(ratio, expectation::less));
         }
     const auto is_difference = [](const endpoint& e) {

@@ -9,6 +9,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -40,13 +42,13 @@ measured_choices of_search(const measurements& m,
     for (const condition& c : m.of("choices")) {
         found.where = text_of(c.of()) + " (a run of its own)";
         for (const auto& [label, arms] : named)
-            add(found.all, label, candidate_of(c, arms.first, arms.second, frame_ms()));
+            add(found.all, label, candidate_of(c, arms.first, arms.second, measured("frame_ms")));
     }
     return found;
 }
 
 selection search(const std::string& sort, const std::string& partition, const std::string& sweep = "one_axis") {
-    return {sort, partition, sweep, "", ""};
+    return {{kind::sort, sort}, {kind::partition, partition}, {kind::sweep, sweep}};
 }
 
 bool is_drifting(const condition& c, const std::string& objects) {
@@ -57,7 +59,8 @@ measured_choices over_displacements(const measurements& m) {
     measured_choices found{"brownian, objects 10,000", {}, "0.1"};
     for (const condition& c : m.of("figure1"))
         if (is_drifting(c, "10000"))
-            add(found.all, value_of(c.of(), "displacement"), candidate_of(c, improved, traditional, frame_ms()));
+            add(found.all, value_of(c.of(), "displacement"),
+                candidate_of(c, improved, traditional, measured("frame_ms")));
     return found;
 }
 
@@ -85,7 +88,8 @@ measured_choices over_scenes(const measurements& m) {
         others.insert(others.begin(), drifting);
         found.ours = label_of(*drifting);
     }
-    for (const condition* c : others) add(found.all, label_of(*c), candidate_of(*c, improved, traditional, frame_ms()));
+    for (const condition* c : others)
+        add(found.all, label_of(*c), candidate_of(*c, improved, traditional, measured("frame_ms")));
     return found;
 }
 
@@ -96,37 +100,34 @@ measured_choices over_leaf_tests(const measurements& m) {
         found.where = text_of(c.of());
         for (const char* test : {"triangle_box", "triangle_aabb", "none"})
             add(found.all, test,
-                candidate_of(c, {"", "", "", "", std::string("compressed:leaf_test=") + test},
-                             {"", "", "", "", "canonical"}, detect_ms()));
+                candidate_of(c, {{kind::tree, std::string("compressed:leaf_test=") + test}},
+                             {{kind::tree, "canonical"}}, measured("detect_ms")));
     }
     return found;
 }
 
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
 measured_choices over_trees(const measurements& m,
-                            const std::vector<std::pair<std::string, std::pair<std::string, std::string>>>& named) {
+                            const std::vector<std::pair<std::string, std::pair<selection, selection>>>& named) {
     measured_choices found{"", {}, named.front().first};
     for (const condition& c : m.of("table1")) {
         if (!mesh_of(c).starts_with("noise_sphere")) continue;
         found.where = text_of(c.of());
         for (const auto& [label, trees] : named)
-            add(found.all, label,
-                candidate_of(c, {"", "", "", "", trees.first}, {"", "", "", "", trees.second}, detect_ms()));
+            add(found.all, label, candidate_of(c, trees.first, trees.second, measured("detect_ms")));
     }
     return found;
 }
 
 measured_choices over_models(const measurements& m) {
-    selection arm = improved;
-    arm.tree = "compressed:leaf_test=triangle_box";
-    selection base = traditional;
-    base.tree = "canonical";
+    const selection arm = improved.with(kind::tree, "compressed:leaf_test=triangle_box");
+    const selection base = traditional.with(kind::tree, "canonical");
     measured_choices found{"displacement 0.05", {}, ""};
     for (const condition& c : m.of("c11")) {
         const std::string label =
             value_of(c.of(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.of(), "density");
         if (is_primary_of_c11(c)) found.ours = label;
-        add(found.all, label, candidate_of(c, arm, base, frame_ms()));
+        add(found.all, label, candidate_of(c, arm, base, measured("frame_ms")));
     }
     return found;
 }
@@ -136,8 +137,8 @@ measured_choices with_first_frame(const measurements& m) {
     for (const condition& c : m.of("figure1"))
         if (is_drifting(c, "10000") && value_of(c.of(), "displacement") == "0.1") {
             found.where = text_of(c.of());
-            add(found.all, "without it", candidate_of(c, improved, traditional, frame_ms()));
-            add(found.all, "with it", candidate_of(c, improved, traditional, whole_ms()));
+            add(found.all, "without it", candidate_of(c, improved, traditional, measured("frame_ms")));
+            add(found.all, "with it", candidate_of(c, improved, traditional, measured("whole_ms")));
         }
     return found;
 }
@@ -166,9 +167,11 @@ std::vector<open_choice> open_choices(const measurements& m) {
     const selection shell_cut = search("shell:gaps=ciura", "axial_cut:axes=2");
     const selection plain = search("insertion", "none");
     const auto tree = [](const std::string& layout, const std::string& build) {
-        return layout + ":build=" + build + ",leaf_test=triangle_box";
+        return selection{{kind::tree, layout + ":leaf_test=triangle_box"}, {kind::build, build}};
     };
-    const auto canonical = [](const std::string& build) { return "canonical:build=" + build; };
+    const auto canonical = [](const std::string& build) {
+        return selection{{kind::tree, "canonical"}, {kind::build, build}};
+    };
     return {
         choice(
             "Which axes are sorted and swept?", "one_axis: the axis on which centres vary most, the other two tested",

@@ -9,6 +9,8 @@ module;
 module aabblab.claims;
 
 import :measurements;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.tables;
 import aabblab.results;
 import aabblab.statistics;
@@ -20,20 +22,21 @@ namespace {
 /// What nodes take on paper: n triangles have n - 1 internal nodes.
 struct layout {
     const char* name;
-    const char* options;  // beside the build
+    const char* tree;  // with its parameters
     const char* internal;
     const char* leaf;
     const char* bytes;  // for a triangle, of large trees
 };
 constexpr layout layouts[] = {
-    {"canonical", "", "box 24, children 8", "box 24, triangle 4", "60"},
-    {"leafless", ",leaf_test=triangle_box", "box 24, children 8", "none", "32"},
-    {"shared_planes", "", "box 12.5, children 8", "box 12.5, triangle 4", "37"},
-    {"compressed", ",leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none", "21"},
-    {"compressed_literal", ",leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none", "21"}};
+    {"canonical", "canonical", "box 24, children 8", "box 24, triangle 4", "60"},
+    {"leafless", "leafless:leaf_test=triangle_box", "box 24, children 8", "none", "32"},
+    {"shared_planes", "shared_planes", "box 12.5, children 8", "box 12.5, triangle 4", "37"},
+    {"compressed", "compressed:leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none", "21"},
+    {"compressed_literal", "compressed_literal:leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none",
+     "21"}};
 
 selection built(const layout& one, const std::string& build) {
-    return {"", "", "", "", std::string(one.name) + ":build=" + build + one.options};
+    return {{kind::tree, one.tree}, {kind::build, build}};
 }
 
 /// The last condition has the largest mesh.
@@ -54,7 +57,7 @@ table bytes_table(const condition& c) {
     for (const layout& one : layouts) {
         const std::vector<const row*> rows = c.rows_of(built(one, "median"));
         if (rows.empty()) continue;
-        const auto a_triangle = [&](const metric& of) {
+        const auto a_triangle = [&](const row_value& of) {
             const std::optional<double> bytes = of(*rows.front());
             return bytes ? fmt::format("{:.2f}", *bytes / static_cast<double>(rows.front()->triangles.value_or(1)))
                          : "-";
@@ -77,13 +80,13 @@ table cost_table(const condition& c) {
         for (const char* build : {"median", "mean", "sah"}) {
             const std::vector<const row*> rows = c.rows_of(built(one, build));
             if (rows.empty()) continue;
-            const auto ratio = [&](const metric& of) {
+            const auto ratio = [&](const row_value& of) {
                 const candidate found = candidate_of(c, built(one, build), built(layouts[0], "median"), of);
                 return !found.log_ratio.known() ? "-" : ratio_text(endpoint_of(found, expectation::less));
             };
-            t.rows.push_back({one.name, build, fmt::format("{:.2f}", tree_bytes()(*rows.front()).value_or(0)),
-                              digits_of(100 * rows.front()->box_inflation.value_or(0)), ratio(build_ms()),
-                              ratio(detect_ms())});
+            t.rows.push_back({one.name, build, fmt::format("{:.2f}", measured("tree_bytes")(*rows.front()).value_or(0)),
+                              digits_of(100 * rows.front()->box_inflation.value_or(0)), ratio(measured("build_ms")),
+                              ratio(measured("detect_ms"))});
         }
     return t;
 }

@@ -2,6 +2,7 @@ module;
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,6 +19,7 @@ import aabblab.figures;
 import aabblab.files;
 import aabblab.tables;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -102,12 +104,13 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
         for (const std::string& note : manifest.value("notes", std::vector<std::string>{}))
             if (std::ranges::find(made.notes, note) == made.notes.end()) made.notes.push_back(note);
         std::set<contender_name> names;
-        std::set<std::string> scenes, seeds;
+        std::set<scene_choice> scenes;
+        std::set<std::uint64_t> seeds;
         for (const row& r : read_rows(folder / experiment / "results.csv")) {
             ++made.rows;
             names.insert(r.name);
-            scenes.insert(r.scene + r.scene_parameters);
-            seeds.insert(r.scene_parameters.substr(r.scene_parameters.rfind('=') + 1));
+            scenes.insert(r.scene);
+            seeds.insert(r.scene.seed);
             made.processes = std::max<std::size_t>(made.processes, r.process + 1);
             made.repeats = std::max<std::size_t>(made.repeats, r.repeat + 1);
         }

@@ -1,7 +1,5 @@
 module;
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstddef>
 #include <memory>
 #include <set>
@@ -15,30 +13,111 @@ module aabb.registry;
 
 import aabb;
 import aabb.composed;
+import aabb.composed.global_search;
+import aabb.composed.local_detection;
 
 namespace aabb {
 
 // Defined in the generated catalog.cpp.
 namespace registry {
-std::vector<composed::global_row> all_global_rows();
-std::vector<composed::local_row> all_local_rows();
-std::vector<strategy_info> catalog(strategy_kind kind);
-void check_settings(strategy_kind kind, const strategy_choice& choice);
-bool is_exact(strategy_kind kind, const strategy_choice& choice);
+composed::global_search_rows all_global_rows();
+composed::local_detection_rows all_local_rows();
+std::vector<composed::entry> entries_of(strategy_kind kind);
+std::unique_ptr<global_stage> prepared(const strategy_choice& choice, std::unique_ptr<global_stage> search,
+                                       instrumentation counted);
+std::unique_ptr<tree_builder> builder_named(const strategy_choice& choice);
 std::unique_ptr<triangle_test> triangle_test_named(const strategy_choice& choice);
 }  // namespace registry
 
+namespace {
+
+const std::vector<composed::entry>& entries(strategy_kind kind) {
+    static const by_kind<std::vector<composed::entry>> all = [] {
+        by_kind<std::vector<composed::entry>> made;
+        for (const strategy_kind one : strategy_kinds) made[one] = registry::entries_of(one);
+        return made;
+    }();
+    return all[kind];
+}
+
+/// Of a choice that is known.
+const composed::entry& entry_of(strategy_kind kind, const strategy_choice& choice) {
+    return *std::ranges::find(entries(kind), choice.name, [](const composed::entry& e) { return e.info.name; });
+}
+
+const composed::global_search_rows& global_rows() {
+    static const composed::global_search_rows rows = registry::all_global_rows();
+    return rows;
+}
+const composed::local_detection_rows& local_rows() {
+    static const composed::local_detection_rows rows = registry::all_local_rows();
+    return rows;
+}
+
+/// The kinds of a stage that are compiled together, or that are not.
+std::vector<strategy_kind> kinds_of(stage of, bool apart) {
+    std::vector<strategy_kind> kinds;
+    for (const strategy_kind kind : strategy_kinds)
+        if (info_of(kind).stage == of && info_of(kind).apart == apart) kinds.push_back(kind);
+    return kinds;
+}
+
+void require_known(const composition& c, stage of) {
+    for (const strategy_kind kind : strategy_kinds)
+        if (info_of(kind).stage == of) require_known(kind, c[kind]);
+}
+
+/// Of the kinds that are compiled together, in their order.
+std::vector<strategy_choice> choices_of(const composition& c, stage of) {
+    std::vector<strategy_choice> choices;
+    for (const strategy_kind kind : kinds_of(of, false)) choices.push_back(c[kind]);
+    return choices;
+}
+
+template <class Rows>
+const auto& row_for(const Rows& rows, const composition& c, stage of) {
+    require_known(c, of);
+    const std::vector<strategy_choice> choices = choices_of(c, of);
+    return *std::ranges::find_if(
+        rows, [&](const auto& row) { return std::ranges::equal(row.names, choices, {}, {}, &strategy_choice::name); });
+}
+
+template <class Rows>
+const auto& accepted_row_for(const Rows& rows, const composition& c, stage of) {
+    const auto& row = row_for(rows, c, of);
+    if (!row.make) throw input_error(to_text(c, of) + ": " + std::string(row.refusal));
+    return row;
+}
+
+template <class Rows>
+std::vector<composition> every_composition(const Rows& rows, stage of) {
+    std::vector<composition> all;
+    const std::vector<strategy_kind> kinds = kinds_of(of, false);
+    for (const auto& row : rows) {
+        if (!row.make) continue;
+        composition& c = all.emplace_back();
+        for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
+    }
+    for (const strategy_kind kind : kinds_of(of, true))
+        for (const composed::entry& e : entries(kind))
+            if (e.info.name != info_of(kind).fallback) all.emplace_back()[kind] = {e.info.name, {}};
+    return all;
+}
+
+}  // namespace
+
 std::string_view name_of(strategy_kind kind) {
-    constexpr std::array<std::string_view, 5> names = {"sort", "partition", "sweep", "tree", "triangle"};
-    return names[static_cast<std::size_t>(kind)];
+    return info_of(kind).name;
 }
 
 std::span<const strategy_info> strategies(strategy_kind kind) {
-    static const std::array<std::vector<strategy_info>, 5> all = {
-        registry::catalog(strategy_kind::sort), registry::catalog(strategy_kind::partition),
-        registry::catalog(strategy_kind::sweep), registry::catalog(strategy_kind::tree),
-        registry::catalog(strategy_kind::triangle)};
-    return all[static_cast<std::size_t>(kind)];
+    static const by_kind<std::vector<strategy_info>> all = [] {
+        by_kind<std::vector<strategy_info>> made;
+        for (const strategy_kind one : strategy_kinds)
+            for (const composed::entry& e : entries(one)) made[one].push_back(e.info);
+        return made;
+    }();
+    return all[kind];
 }
 
 std::vector<std::string> strategy_names(strategy_kind kind) {
@@ -52,83 +131,60 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     if (std::ranges::find(names, choice.name) == names.end())
         throw input_error(unknown_name(name_of(kind), choice.name, names));
     std::set<std::string_view> seen;
-    for (const setting& s : choice.settings)
+    for (const setting& s : choice.settings) {
         if (!seen.insert(s.name).second) throw input_error(choice.name + ": " + s.name + " is given twice");
-    registry::check_settings(kind, choice);
+        // What was a parameter once may be a kind by now.
+        const auto same_name = std::ranges::find(strategy_kind_infos, s.name, &strategy_kind_info::name);
+        const auto own = std::ranges::find(entry_of(kind, choice).info.parameters, s.name, &parameter_info::name);
+        if (same_name != strategy_kind_infos.end() && own == entry_of(kind, choice).info.parameters.end())
+            throw input_error(choice.name + " has no parameter " + s.name + ", which is a kind of its own: " + s.name +
+                              " = \"" + s.value + "\" beside " + std::string(name_of(kind)));
+    }
+    entry_of(kind, choice).check(choice);
 }
 
-std::string split_large_text(const global_composition& c) {
-    if (!c.split_large) return "off";
-    std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), *c.split_large).ptr};
+composition::composition() {
+    for (const strategy_kind kind : strategy_kinds) choices_[kind].name = info_of(kind).fallback;
 }
 
-std::string to_text(const global_composition& c) {
-    const std::string split = c.split_large ? " + split_large=" + split_large_text(c) : "";
-    return to_text(c.sort) + " + " + to_text(c.partition) + " + " + to_text(c.sweep) + split;
+std::string text_in_line(strategy_kind kind, const std::string& choice) {
+    return info_of(kind).apart && choice == info_of(kind).fallback ? "" : choice;
 }
 
-std::string to_text(const local_composition& c) {
-    return to_text(c.tree) + " + " + to_text(c.triangle);
+std::string to_text(const composition& c, stage of) {
+    std::string text;
+    for (const strategy_kind kind : strategy_kinds) {
+        if (info_of(kind).stage != of) continue;
+        const std::string one = text_in_line(kind, to_text(c[kind]));
+        if (!one.empty()) text += (text.empty() ? "" : " + ") + one;
+    }
+    return text;
 }
 
-namespace {
+std::string_view refusal_of(const composition& c, stage of) {
+    return of == stage::global_search ? row_for(global_rows(), c, of).refusal : row_for(local_rows(), c, of).refusal;
+}
 
-const composed::global_row& row_for(const global_composition& c) {
-    require_known(strategy_kind::sort, c.sort);
-    require_known(strategy_kind::partition, c.partition);
-    require_known(strategy_kind::sweep, c.sweep);
-    static const std::vector<composed::global_row> rows = registry::all_global_rows();
-    return *std::ranges::find_if(rows, [&](const composed::global_row& row) {
-        return row.sort == c.sort.name && row.partition == c.partition.name && row.sweep == c.sweep.name;
+bool is_exact(const composition& c, stage of) {
+    require_known(c, of);
+    return std::ranges::all_of(strategy_kinds, [&](strategy_kind kind) {
+        return info_of(kind).stage != of || entry_of(kind, c[kind]).exact(c[kind]);
     });
 }
 
-const composed::local_row& row_for(const local_composition& c) {
-    require_known(strategy_kind::tree, c.tree);
-    require_known(strategy_kind::triangle, c.triangle);
-    static const std::vector<composed::local_row> rows = registry::all_local_rows();
-    return *std::ranges::find_if(rows, [&](const composed::local_row& row) {
-        return row.tree == c.tree.name && row.triangle == c.triangle.name;
-    });
+std::vector<composition> every_composition(stage of) {
+    return of == stage::global_search ? every_composition(global_rows(), of) : every_composition(local_rows(), of);
 }
 
-bool is_exact(strategy_kind kind, const strategy_choice& choice) {
-    require_known(kind, choice);
-    return registry::is_exact(kind, choice);
+std::unique_ptr<global_stage> compose_global_search(const composition& c, instrumentation counted) {
+    const auto& row = accepted_row_for(global_rows(), c, stage::global_search);
+    return registry::prepared(c[strategy_kind::prepare], row.make(choices_of(c, stage::global_search), counted),
+                              counted);
 }
 
-}  // namespace
-
-std::string_view refusal_of(const global_composition& c) {
-    return row_for(c).refusal;
-}
-
-std::string_view refusal_of(const local_composition& c) {
-    return row_for(c).refusal;
-}
-
-bool is_exact(const global_composition& c) {
-    return is_exact(strategy_kind::sort, c.sort) && is_exact(strategy_kind::partition, c.partition) &&
-           is_exact(strategy_kind::sweep, c.sweep);
-}
-
-bool is_exact(const local_composition& c) {
-    return is_exact(strategy_kind::tree, c.tree) && is_exact(strategy_kind::triangle, c.triangle);
-}
-
-std::unique_ptr<global_stage> compose(const global_composition& c, instrumentation counted) {
-    const composed::global_row& row = row_for(c);
-    if (!row.make) throw input_error(to_text(c) + ": " + std::string(row.refusal));
-    std::unique_ptr<global_stage> search = row.make(c.sort, c.partition, c.sweep, counted);
-    if (!c.split_large) return search;
-    return std::make_unique<split_large_stage>(std::move(search), *c.split_large, counted);
-}
-
-std::unique_ptr<local_stage> compose(const local_composition& c, instrumentation counted) {
-    const composed::local_row& row = row_for(c);
-    if (!row.make) throw input_error(to_text(c) + ": " + std::string(row.refusal));
-    return row.make(c.tree, c.triangle, counted);
+std::unique_ptr<local_stage> compose_local_detection(const composition& c, instrumentation counted) {
+    const auto& row = accepted_row_for(local_rows(), c, stage::local_detection);
+    return row.make(choices_of(c, stage::local_detection), registry::builder_named(c[strategy_kind::build]), counted);
 }
 
 std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice) {

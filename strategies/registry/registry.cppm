@@ -1,6 +1,5 @@
 module;
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,12 +10,9 @@ module;
 export module aabb.registry;
 
 import aabb;
+export import :kinds;
 
 export namespace aabb {
-
-enum class strategy_kind { sort, partition, sweep, tree, triangle };
-inline constexpr strategy_kind strategy_kinds[] = {strategy_kind::sort, strategy_kind::partition, strategy_kind::sweep,
-                                                   strategy_kind::tree, strategy_kind::triangle};
 
 /// "sort", "partition", … as in configs, options, CSV columns and folders.
 [[nodiscard]] std::string_view name_of(strategy_kind kind);
@@ -26,6 +22,7 @@ struct strategy_info {
     std::string summary;
     bool exact;  ///< false for one that approximates, whatever its parameters: its results are compared, not refused
     std::vector<parameter_info> parameters;
+    std::string leaves_out;  ///< what a stage with it does without, a sentence; empty where it does not say
 };
 
 /// The strategies of a kind, in the order of `strategies/CMakeLists.txt`.
@@ -38,43 +35,38 @@ struct strategy_info {
 /// @throws input_error with the nearest valid name.
 void require_known(strategy_kind kind, const strategy_choice& choice);
 
-/// What a global search is made of.
-struct global_composition {
-    strategy_choice sort{"std", {}};
-    strategy_choice partition{"none", {}};
-    strategy_choice sweep{"one_axis", {}};
-    std::optional<double> split_large = std::nullopt;  ///< see split_large_stage
+/// A strategy of each kind: what both stages are made of.
+class composition {
+public:
+    /// What a kind has where nothing is said.
+    composition();
 
-    friend bool operator==(const global_composition&, const global_composition&) = default;
+    [[nodiscard]] strategy_choice& operator[](strategy_kind kind) { return choices_[kind]; }
+    [[nodiscard]] const strategy_choice& operator[](strategy_kind kind) const { return choices_[kind]; }
+    friend bool operator==(const composition&, const composition&) = default;
+
+private:
+    by_kind<strategy_choice> choices_;
 };
 
-/// What a local detection is made of.
-struct local_composition {
-    strategy_choice tree{"canonical", {}};
-    strategy_choice triangle{"exact", {}};
+/// What is said of a strategy of this kind in one line: nothing of one that stands apart and is the usual one.
+[[nodiscard]] std::string text_in_line(strategy_kind kind, const std::string& choice);
 
-    friend bool operator==(const local_composition&, const local_composition&) = default;
-};
+/// "sort + partition + sweep", "tree + triangle", each as the command line takes it.
+[[nodiscard]] std::string to_text(const composition& c, stage of);
 
-/// "off", or the size as a setting takes it.
-[[nodiscard]] std::string split_large_text(const global_composition& composition);
+/// Why the stage makes no sense, in the words of the policy that refuses it; empty where it makes sense.
+[[nodiscard]] std::string_view refusal_of(const composition& c, stage of);
 
-/// "sort + partition + sweep" and "tree + triangle", each as the command line takes it; with "split_large=4" behind the
-/// sweep where there is that.
-[[nodiscard]] std::string to_text(const global_composition& composition);
-[[nodiscard]] std::string to_text(const local_composition& composition);
+/// Whether every strategy of the stage is exact with the parameters that it has there.
+[[nodiscard]] bool is_exact(const composition& c, stage of);
 
-/// Why the combination makes no sense, in the words of the policy that refuses it; empty where it makes sense.
-[[nodiscard]] std::string_view refusal_of(const global_composition& composition);
-[[nodiscard]] std::string_view refusal_of(const local_composition& composition);
-
-/// Whether every strategy in the composition is exact with the parameters that it has there.
-[[nodiscard]] bool is_exact(const global_composition& composition);
-[[nodiscard]] bool is_exact(const local_composition& composition);
+/// Every combination of a stage that makes sense, with default parameters; what stands apart in turn, the rest usual.
+[[nodiscard]] std::vector<composition> every_composition(stage of);
 
 /// @throws input_error on an unknown name or parameter, or a refused combination.
-[[nodiscard]] std::unique_ptr<global_stage> compose(const global_composition& composition, instrumentation counted);
-[[nodiscard]] std::unique_ptr<local_stage> compose(const local_composition& composition, instrumentation counted);
+[[nodiscard]] std::unique_ptr<global_stage> compose_global_search(const composition& c, instrumentation counted);
+[[nodiscard]] std::unique_ptr<local_stage> compose_local_detection(const composition& c, instrumentation counted);
 
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice);

@@ -2,8 +2,8 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 export module aabb.tree.canonical;
@@ -20,23 +20,14 @@ public:
     static constexpr std::string_view summary = "internal nodes of 32 bytes, leaves of 28: a box in every node";
     static constexpr bool has_leaf_boxes = true;
 
-    struct config {
-        build_method build = build_method::median;
-    };
-    static constexpr std::tuple parameters{build_parameter(&config::build)};
-
-    canonical_tree() = default;
-    explicit canonical_tree(const config& c) : config_(c) {}
-
     /// Index of an internal node, or of a leaf with the top bit set.
     using cursor = std::uint32_t;
 
-    void build(const mesh& m) {
+    void pack(std::span<const build_node> nodes) {
         internals_.clear();
         leaves_.clear();
-        internals_.reserve(m.triangles.size() - 1);
-        leaves_.reserve(m.triangles.size());
-        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
+        internals_.reserve(nodes.size() / 2);
+        leaves_.reserve(nodes.size() / 2 + 1);
         std::vector<cursor> packed(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const bool is_leaf = nodes[i].is_leaf();
@@ -88,7 +79,6 @@ private:
     };
     static_assert(sizeof(leaf) == 28);
 
-    config config_;
     std::vector<internal_node> internals_;  // depth first
     std::vector<leaf> leaves_;
 };

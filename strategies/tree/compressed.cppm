@@ -2,6 +2,7 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,7 @@ public:
         "the paper's compressed nodes without loss: no leaves, six planes and a symbol for two siblings";
     static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
     static constexpr bool has_leaf_boxes = false;
+    static constexpr leaf_pairing pairing = leaf_pairing::even;
 
     using config = leafless_config;
     static constexpr auto parameters = leafless_parameters;
@@ -32,8 +34,7 @@ public:
 
     using cursor = box_cursor;
 
-    void build(const mesh& m) {
-        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::even);
+    void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
         };
@@ -41,7 +42,7 @@ public:
         for (std::size_t i = 0; i < nodes.size(); ++i) with_planes += !nodes[i].is_leaf() && !holds_leaves_only(i);
         nodes_.assign(with_planes, {});
         symbols_.assign(with_planes, 0);
-        leaf_pairs_.assign(m.triangles.size() - 1 - with_planes, {});
+        leaf_pairs_.assign(nodes.size() / 2 - with_planes, {});
         std::vector<std::uint32_t> packed(nodes.size());
         for (std::size_t i = 0, next = 0, next_pair = with_planes; i < nodes.size(); ++i)
             packed[i] = nodes[i].is_leaf() ? nodes[i].triangle

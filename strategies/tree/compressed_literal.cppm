@@ -5,6 +5,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -34,10 +35,9 @@ public:
 
     using cursor = box_cursor;
 
-    void build(const mesh& m) {
-        nodes_.assign(m.triangles.size() - 1, {});
+    void pack(std::span<const build_node> nodes) {
+        nodes_.assign(nodes.size() / 2, {});
         symbols_.assign(nodes_.size(), 0);
-        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
         // The internal children of a node stand side by side, behind it.
         std::vector<std::uint32_t> packed(nodes.size());
         std::uint32_t next = 1;

@@ -2,6 +2,7 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -30,10 +31,9 @@ public:
 
     using cursor = box_cursor;
 
-    void build(const mesh& m) {
+    void pack(std::span<const build_node> nodes) {
         nodes_.clear();
-        nodes_.reserve(m.triangles.size() - 1);
-        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
+        nodes_.reserve(nodes.size() / 2);
         std::vector<std::uint32_t> packed(nodes.size());
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             packed[i] =

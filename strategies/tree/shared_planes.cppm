@@ -2,8 +2,8 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 export module aabb.tree.shared_planes;
@@ -22,23 +22,14 @@ public:
         "leaves kept, planes shared: six floats and six bits for the boxes of two siblings";
     static constexpr bool has_leaf_boxes = true;
 
-    struct config {
-        build_method build = build_method::median;
-    };
-    static constexpr std::tuple parameters{build_parameter(&config::build)};
-
-    shared_planes_tree() = default;
-    explicit shared_planes_tree(const config& c) : config_(c) {}
-
     using cursor = box_cursor;
 
-    void build(const mesh& m) {
-        const std::size_t internals = m.triangles.size() - 1;
+    void pack(std::span<const build_node> nodes) {
+        const std::size_t internals = nodes.size() / 2;
         nodes_.assign(internals, {});
         symbols_.assign(internals, 0);
         leaves_.clear();
-        leaves_.reserve(m.triangles.size());
-        const std::vector<build_node> nodes = build_tree(m, config_.build, leaf_pairing::any);
+        leaves_.reserve(internals + 1);
         std::vector<std::uint32_t> packed(nodes.size());
         std::uint32_t internal = 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -100,7 +91,6 @@ private:
     };
     static_assert(sizeof(node) == 32);
 
-    config config_;
     box root_{};
     std::vector<node> nodes_;  // depth first
     std::vector<std::uint8_t> symbols_;

@@ -47,9 +47,9 @@ mesh ripples(std::uint32_t n) {
 TEST_CASE("global search allocates nothing in steady state") {
     std::vector<std::vector<box>> frames;
     for (int frame = 0; frame < 9; ++frame) frames.push_back(orbiting(frame));
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::none);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        const auto stage = global_of(composition, instrumentation::none);
         for (std::uint32_t id = 0; id < frames[0].size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
         std::size_t before = 0;
@@ -72,9 +72,9 @@ TEST_CASE("global search allocates nothing in steady state") {
 
 TEST_CASE("local detection allocates nothing in steady state") {
     mesh m = ripples(20);
-    for (const local_composition& composition : all_local_compositions()) {
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::none);
+    for (const aabb::composition& composition : all_local_compositions()) {
+        INFO(text_of_local(composition));
+        const auto stage = local_of(composition, instrumentation::none);
         const auto model = stage->add_model(m);
         std::vector<index_pair> pairs;
         std::size_t before = 0;

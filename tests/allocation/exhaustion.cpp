@@ -158,9 +158,9 @@ void require_exact_or_refusing(const std::function<std::unique_ptr<global_stage>
 }  // namespace
 
 TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses") {
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        require_exact_or_refusing([&] { return compose(composition, instrumentation::counters); }, true);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        require_exact_or_refusing([&] { return global_of(composition, instrumentation::counters); }, true);
     }
 }
 
@@ -281,9 +281,9 @@ void require_exact_or_refusing(const std::function<std::unique_ptr<local_stage>(
 }  // namespace
 
 TEST_CASE("a composed local detection that runs out of memory is exact afterwards, or refuses") {
-    for (const local_composition& composition : all_local_compositions()) {
-        INFO(to_text(composition));
-        require_exact_or_refusing([&] { return compose(composition, instrumentation::none); }, true);
+    for (const aabb::composition& composition : all_local_compositions()) {
+        INFO(text_of_local(composition));
+        require_exact_or_refusing([&] { return local_of(composition, instrumentation::none); }, true);
     }
 }
 
@@ -306,7 +306,7 @@ TEST_CASE("a model is not asked before it fits its mesh again") {
         stage.refit(0);
         CHECK(ask(stage).any);
     };
-    for (const local_composition& composition : all_local_compositions())
-        refuses(*compose(composition, instrumentation::none));
+    for (const aabb::composition& composition : all_local_compositions())
+        refuses(*local_of(composition, instrumentation::none));
     for (const engine_info& engine : engines()) refuses(*make_mesh_engine(engine.name));
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 import aabb;
+import aabb.build.median;
 import aabb.tree.canonical;
 import aabb.tree.compressed;
 import aabb.tree.compressed_literal;
@@ -61,7 +62,7 @@ aabb::pose pose_that_cancels(unsigned& state, const aabb::vec3f& vertex) {
 /// Of all contacts of the mesh with itself at other poses.
 template <class Tree, class Triangle>
 void print_answer(const aabb::mesh& m) {
-    const aabb::model<Tree> model(m);
+    const aabb::model<Tree> model(m, aabb::median_build());
     aabb::local_detection<Tree, Triangle> detection;
     unsigned state = 2;
     unsigned long contacts = 0;

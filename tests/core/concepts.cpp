@@ -59,7 +59,7 @@ TEST_CASE("a local detection works with the least that a strategy can be") {
     const mesh steps{
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {4, 0, 0}, {5, 0, 0}, {4, 1, 0}, {8, 0, 0}, {9, 0, 0}, {8, 1, 0}},
         {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}};
-    const model<fake_tree> fixed(steps);
+    const model<fake_tree> fixed(steps, fake_build());
     local_detection<fake_tree, fake_triangle> detection;
     std::vector<index_pair> pairs;
     detection.all_pairs(fixed, {}, fixed, {}, pairs);

@@ -90,6 +90,15 @@ struct fake_sweep {
 };
 
 /// A tree of depth one: the root, and a leaf for each triangle, chained.
+struct fake_build {
+    static constexpr std::string_view name = "fake";
+    static constexpr std::string_view summary = "as many nodes as a tree has, and a box for the root";
+    [[nodiscard]] static std::vector<aabb::build_node> build(const aabb::mesh& m, aabb::leaf_pairing) {
+        return std::vector<aabb::build_node>(2 * m.triangles.size() - 1, {bounds_of(m), 0, 0});
+    }
+};
+static_assert(aabb::BuildPolicy<fake_build>);
+
 struct fake_tree {
     static constexpr std::string_view name = "fake";
     static constexpr std::string_view summary = "a list of triangles dressed as a tree";
@@ -98,11 +107,11 @@ struct fake_tree {
         bool leaf;
     };
     static constexpr bool has_leaf_boxes = false;
-    void build(const aabb::mesh& m) {
-        all = bounds_of(m);
-        triangles = m.triangle_count();
+    void pack(std::span<const aabb::build_node> nodes) {
+        all = nodes[0].bounds;
+        triangles = static_cast<std::uint32_t>(nodes.size() / 2 + 1);
     }
-    void refit(const aabb::mesh& m, std::vector<aabb::box>&) { build(m); }
+    void refit(const aabb::mesh& m, std::vector<aabb::box>&) { all = bounds_of(m); }
     [[nodiscard]] cursor root(const aabb::mesh&) const { return {0, triangles == 1}; }
     [[nodiscard]] static bool is_leaf(cursor at) { return at.leaf; }
     [[nodiscard]] std::array<cursor, 2> children(cursor at, const aabb::mesh&) const {

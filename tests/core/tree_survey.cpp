@@ -2,6 +2,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct told_tree {
     };
     std::vector<node> nodes;
 
-    void build(const mesh&) {}
+    void pack(std::span<const build_node>) {}
     void refit(const mesh&, std::vector<box>&) {}
     [[nodiscard]] static cursor root(const mesh&) { return 0; }
     [[nodiscard]] bool is_leaf(cursor at) const { return nodes[at].child[0] == 0 && nodes[at].child[1] == 0; }

@@ -44,12 +44,11 @@ std::vector<row> rows_of(const measured& m) {
             for (const auto& [sort, ms] : m.sorts) {
                 row& r = rows.emplace_back();
                 r.experiment = m.experiment;
-                r.scene = "brownian";
-                r.scene_parameters = "objects=10 frames=3 seed=" + std::to_string(seed);
+                r.scene = {"brownian", {{"objects", "10"}, {"frames", "3"}}, {}, seed};
                 r.objects = 10;
                 r.frames = 4;
-                r.name.sort = sort;
-                r.name.sweep = "one_axis";
+                r.name[aabb::strategy_kind::sort] = sort;
+                r.name[aabb::strategy_kind::sweep] = "one_axis";
                 r.repeat = repeat;
                 r.process = repeat % 3;
                 r.build_ms = 1;
@@ -82,7 +81,7 @@ std::string write_results(const std::filesystem::path& folder, const std::vector
     const aabblab::experiment e = aabblab::parse_experiment(
         "name = \"test\"\n[[scene]]\nkind = \"brownian\"\nobjects = 10\nframes = 3\n[compose]\nsort = \"std\"\n",
         "test.toml", aabblab::experiment_size::full);
-    aabblab::results_folder results(folder, e, aabblab::existing_results::refuse);
+    aabblab::results_folder results(folder, record_of(e), aabblab::existing_results::refuse);
     for (const row& r : rows) results.add(r);
     return folder.string();
 }
@@ -174,7 +173,7 @@ TEST_CASE("What is the same by its own interval is so among hundreds of lines, a
 TEST_CASE("The base is the first in A that both have, and what only one has is counted") {
     aabblab::run_results a = run_of({});
     for (row& r : a.rows)
-        if (r.name.sort == "insertion") r.name.sweep = "all_axes";
+        if (r.name[aabb::strategy_kind::sort] == "insertion") r.name[aabb::strategy_kind::sweep] = "all_axes";
     const measured b{.sorts = {{"shell", 0.5}, {"std", 2}, {"quick", 1}}, .seeds = 2, .hour = 2};
     const auto found = compare(a, run_of(b), aabblab::compared::ratios);
     REQUIRE(found.scenes.at(0).base == "std");
@@ -189,9 +188,9 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
     const aabblab::run_results a = run_of({});
     aabblab::run_results b = run_of({.hour = 2});
     for (row& r : b.rows)
-        if (r.name.sort == "std")
+        if (r.name[aabb::strategy_kind::sort] == "std")
             r.counts[0] = *r.counts[0] + 60;
-        else if (r.name.sort == "shell" && !r.scene_parameters.ends_with("seed=3"))
+        else if (r.name[aabb::strategy_kind::sort] == "shell" && r.scene.seed != 3)
             r.counts[0] = 3000 - *r.counts[0];
     const auto changed = compare(a, b, aabblab::compared::ratios);
     REQUIRE(changed.answers.empty());
@@ -207,7 +206,7 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
     REQUIRE(changed.numbers_compared == 3 * 3);  // with the pairs
 
     for (row& r : b.rows)
-        if (r.name.sort == "std" && r.scene_parameters.ends_with("seed=2")) {
+        if (r.name[aabb::strategy_kind::sort] == "std" && r.scene.seed == 2) {
             r.digest = "0123456789abcdef";
             r.status = "inexact";
         }
@@ -258,7 +257,7 @@ TEST_CASE("compare ends with status 1 where answers differ, which it says first"
     const std::string a = write_results(folder / "a", rows_of({}));
     std::vector<row> wrong = rows_of({.hour = 2});
     for (row& r : wrong)
-        if (r.scene_parameters.ends_with("seed=3")) r.digest = "0123456789abcdef";
+        if (r.scene.seed == 3) r.digest = "0123456789abcdef";
     const std::string b = write_results(folder / "b", wrong);
     const program_result result = run_program({"compare", a, b});
     INFO(result.out);

@@ -1,5 +1,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -7,7 +9,9 @@
 
 import aabb;
 import aabb.registry;
+import aabb.registry;
 import aabblab.configs;
+import aabblab.metrics;
 import aabblab.scenes;
 
 using aabblab::experiment;
@@ -37,11 +41,12 @@ TEST_CASE("A config that says little has the default composition, nine repeats a
     const experiment e = parsed(minimal);
     REQUIRE(e.name == "test");
     REQUIRE(e.repeats == 9);
-    REQUIRE(e.compositions == std::vector<aabblab::composition>(1));
+    REQUIRE(e.compositions == std::vector<aabb::composition>(1));
     REQUIRE(e.engines.empty());
     REQUIRE(e.scenes.size() == 1);
     REQUIRE(e.scenes[0].seed == 1);
-    REQUIRE((e.measured.time && e.measured.counts && e.measured.bytes && e.measured.error));
+    REQUIRE(e.recorded.size() == aabblab::metric_groups.size());
+    REQUIRE(e.shown.empty());
 }
 
 TEST_CASE("Every list multiplies") {
@@ -64,9 +69,10 @@ metrics = ["time", "bytes"]
     REQUIRE(aabblab::parameters_text(e.scenes[1]) == "objects=10 frames=3 seed=2");
     REQUIRE(aabblab::parameters_text(e.scenes[3]) == "objects=20 frames=3 seed=2");
     REQUIRE(e.compositions.size() == 2 * 3 * 2);
-    REQUIRE(to_text(e.compositions[5].global) == "insertion + uniform_grid:cell_size=2.5 + one_axis");
-    REQUIRE(to_text(e.compositions[5].local) == "leafless:leaf_test=triangle_aabb + exact");
-    REQUIRE((e.measured.time && !e.measured.counts && e.measured.bytes && !e.measured.error));
+    REQUIRE(to_text(e.compositions[5], aabb::stage::global_search) ==
+            "insertion + uniform_grid:cell_size=2.5 + one_axis");
+    REQUIRE(to_text(e.compositions[5], aabb::stage::local_detection) == "leafless:leaf_test=triangle_aabb + exact");
+    REQUIRE(e.recorded == std::set{aabblab::metric_group::time, aabblab::metric_group::bytes});
 }
 
 TEST_CASE("Several [[compose]] multiply each for itself, and large objects may be split") {
@@ -74,19 +80,39 @@ TEST_CASE("Several [[compose]] multiply each for itself, and large objects may b
 [[compose]]
 sort = ["insertion", "shell"]
 partition = "axial_cut"
-split_large = ["off", 4, 2.5]
+prepare = ["none", { name = "split_large", size = [4, 2.5] }]
 [[compose]]
 sort = "insertion"
 sweep = "incremental"
 )");
     REQUIRE(e.compositions.size() == 2 * 3 + 1);
-    REQUIRE(to_text(e.compositions[2].global) == "insertion + axial_cut + one_axis + split_large=2.5");
-    REQUIRE(to_text(e.compositions[6].global) == "insertion + none + incremental");
+    // The last kind varies fastest.
+    REQUIRE(to_text(e.compositions[4], aabb::stage::global_search) ==
+            "split_large:size=2.5 + insertion + axial_cut + one_axis");
+    REQUIRE(to_text(e.compositions[6], aabb::stage::global_search) == "insertion + none + incremental");
+}
+
+TEST_CASE("A metric that is named is recorded and shown; a group is recorded") {
+    const experiment e = parsed(minimal + "[measure]\nmetrics = [\"time\", \"box_tests\", \"tree_bytes\"]\n");
+    REQUIRE(e.recorded ==
+            std::set{aabblab::metric_group::time, aabblab::metric_group::counts, aabblab::metric_group::bytes});
+    REQUIRE(e.shown == std::vector<std::string>{"box_tests", "tree_bytes"});
+    REQUIRE(refusal_of(minimal + "[measure]\nmetrics = [\"box_test\"]\n")
+                .ends_with("unknown metric 'box_test'; did you mean 'box_tests'?"));
+}
+
+TEST_CASE("What was a key or a parameter once is refused with the new spelling") {
+    REQUIRE(
+        refusal_of(minimal + "[compose]\nsplit_large = 4\n")
+            .ends_with("'split_large' is a strategy, not a kind of them; write prepare = \"split_large\", or { name = "
+                       "\"split_large\", … } with its parameters"));
+    REQUIRE(refusal_of(minimal + "[compose]\ntree = { name = \"leafless\", build = \"sah\" }\n")
+                .ends_with("leafless has no parameter build, which is a kind of its own: build = \"sah\" beside tree"));
 }
 
 TEST_CASE("A strategy may be written as the command line takes it, and what stands under quick is checked at once") {
     const experiment e = parsed(minimal + "[compose]\npartition = \"axial_cut:axes=3\"\n");
-    REQUIRE(to_text(e.compositions[0].global) == "std + axial_cut:axes=3 + one_axis");
+    REQUIRE(to_text(e.compositions[0], aabb::stage::global_search) == "std + axial_cut:axes=3 + one_axis");
     REQUIRE_THROWS(parsed(minimal + "quick = { objects = -1 }\n"));
 }
 
@@ -201,12 +227,16 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
 TEST_CASE("A config that cannot be read is refused by name") {
     const temporary_folder folder;
     REQUIRE_THROWS_AS(aabblab::read_experiment(folder / "no.toml", experiment_size::full), aabb::input_error);
+    REQUIRE_THROWS_WITH(
+        aabblab::read_experiment(folder / "first.toml", experiment_size::full),
+        Catch::Matchers::EndsWith("first.toml is not there; did you mean " AABBLAB_CONFIGS "/first.toml?"));
     REQUIRE_THROWS_AS(aabblab::read_experiment(folder.path(), experiment_size::full), aabb::input_error);
     REQUIRE(aabblab::read_experiment(folder.write("yes.toml", minimal), experiment_size::full).text == minimal);
 }
 
 TEST_CASE("The configs of the repository are good, in both sizes") {
-    const std::string config = GENERATE("first.toml", "global_search.toml", "local_detection.toml");
+    const std::string config = GENERATE("first.toml", "global_search.toml", "local_detection.toml", "trees.toml",
+                                        "exactness.toml", "exactness_meshes.toml");
     for (const experiment_size size : {experiment_size::full, experiment_size::quick})
         REQUIRE_NOTHROW(aabblab::read_experiment(std::string(AABBLAB_CONFIGS) + "/" + config, size));
 }

@@ -40,6 +40,13 @@ std::string list_of(const std::string& key, std::size_t values) {
     return text + "]\n";
 }
 
+/// As many choices of a strategy as there are sizes, in a line.
+std::string prepares(std::size_t sizes) {
+    std::string list = list_of("size", sizes);
+    list.pop_back();
+    return "prepare = { name = \"split_large\", " + list + " }\n";
+}
+
 }  // namespace
 
 TEST_CASE("What the TOML library asserts is malformed TOML, with its line") {
@@ -107,7 +114,7 @@ TEST_CASE("Lists that multiply are counted before anything is made of them") {
     CHECK(refusal_of(head + scene + "[compose]\npartition = " + cuts(20'000) + "\n") ==
           "test.toml:6: " + most + "choices of partition, the most that a config may have");
     // Each list is short enough; together they are not.
-    const std::string splits = list_of("split_large", 100);
+    const std::string splits = prepares(100);
     CHECK(refusal_of(head + scene + "[compose]\npartition = " + cuts(200) + "\n" + splits) ==
           "test.toml:5: " + most + "compositions, the most that a config may have");
     // Nor are several tables.
@@ -119,7 +126,7 @@ TEST_CASE("Lists that multiply are counted before anything is made of them") {
 }
 
 TEST_CASE("Names are checked before lists are multiplied, and every scene's before the first is made") {
-    CHECK(refusal_of(head + scene + "[compose]\n" + list_of("split_large", 20'000) +
+    CHECK(refusal_of(head + scene + "[compose]\n" + prepares(20'000) +
                      "partition = \"none\"\ntree = [\"canonical\", \"leafles\"]\ntriangle = \"exact\"\n") ==
           "test.toml:8: unknown tree 'leafles'; did you mean 'leafless'?");
     CHECK(refusal_of(head + scene + "[compose]\nsort = { name = [\"std\", \"shel\"], a = [1, 2] }\n") ==

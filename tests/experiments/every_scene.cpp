@@ -14,8 +14,7 @@ import aabblab.scenes;
 
 TEST_CASE("every composition is exact on every scene of boxes") {
     std::vector<aabblab::contender> contenders;
-    for (const aabb::global_composition& c : all_global_compositions())
-        contenders.push_back(aabblab::contender_of(aabblab::composition{c, {}}, false));
+    for (const aabb::composition& c : all_global_compositions()) contenders.push_back(aabblab::contender_of(c, false));
     for (const aabb::engine_info& engine : aabb::engines())
         if (const auto contender = aabblab::contender_of(engine, false)) contenders.push_back(*contender);
     REQUIRE(contenders.size() > 500);
@@ -34,8 +33,7 @@ TEST_CASE("every composition is exact on every scene of boxes") {
 
 TEST_CASE("every exact local composition is exact on every scene of meshes, and others on none worse than they say") {
     std::vector<aabblab::contender> contenders;
-    for (const aabb::local_composition& c : all_local_compositions())
-        contenders.push_back(aabblab::contender_of(aabblab::composition{{}, c}, true));
+    for (const aabb::composition& c : all_local_compositions()) contenders.push_back(aabblab::contender_of(c, true));
     for (const aabb::engine_info& engine : aabb::engines())
         if (const auto contender = aabblab::contender_of(engine, true)) contenders.push_back(*contender);
     REQUIRE(contenders.size() > 100);
@@ -54,7 +52,7 @@ TEST_CASE("every exact local composition is exact on every scene of meshes, and 
             if (contenders[i].exact) REQUIRE(v.digest == all.digest);
             REQUIRE(v.triangles == 320 + 600);
             REQUIRE(v.box_inflation.has_value() == v.name.engine.empty());
-            if (v.name.tree.starts_with("compressed_literal")) REQUIRE(*v.box_inflation > 0);
+            if (v.name[aabb::strategy_kind::tree].starts_with("compressed_literal")) REQUIRE(*v.box_inflation > 0);
         }
     }
 }

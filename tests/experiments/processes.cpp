@@ -68,10 +68,10 @@ TEST_CASE("Fresh processes share the repeats, and one validates for all") {
     REQUIRE(rows.size() == 2 * 2 * 6);
     for (const row& r : rows) {
         CHECK(r.process == r.repeat / 2);
-        CHECK(r.digest == std::ranges::find(rows, r.scene_parameters, &row::scene_parameters)->digest);
+        CHECK(r.digest == std::ranges::find(rows, r.scene, &row::scene)->digest);
         CHECK(r.update_ms.has_value());
         CHECK(r.counts == std::ranges::find_if(rows, [&](const row& other) {
-                              return other.name == r.name && other.scene_parameters == r.scene_parameters;
+                              return other.name == r.name && other.scene == r.scene;
                           })->counts);
     }
     // In the order of the processes, so that their times lie apart.
@@ -153,7 +153,7 @@ TEST_CASE("A quick run takes the seeds of quick, and no more processes than repe
     const std::vector<row> rows = aabblab::read_rows(folder / "out/results.csv");
     REQUIRE(rows.size() == 2 * 2);
     for (const row& r : rows) {
-        CHECK(r.scene_parameters.ends_with("seed=3"));
+        CHECK(r.scene.seed == 3);
         CHECK(r.process == r.repeat);
     }
 }
@@ -161,7 +161,7 @@ TEST_CASE("A quick run takes the seeds of quick, and no more processes than repe
 TEST_CASE("What the first process found wrong is not timed by the others") {
     const temporary_folder folder;
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
-    results_folder results(folder / "r", e, existing_results::refuse);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
     std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], std::span(contenders).first(1), results, 0).empty());
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 1).empty());
@@ -172,7 +172,7 @@ TEST_CASE("What the first process found wrong is not timed by the others") {
 TEST_CASE("A repeat of a later process that finds other pairs is named, and its composition loses its rows") {
     const temporary_folder folder;
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
-    results_folder results(folder / "r", e, existing_results::refuse);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
     std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 0).empty());
     // The name of the first, and nothing of what it finds.

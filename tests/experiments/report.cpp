@@ -23,12 +23,11 @@ namespace {
 row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
     row r;
     r.experiment = "test";
-    r.scene = "brownian";
-    r.scene_parameters = "objects=10 seed=1";
+    r.scene = {"brownian", {{"objects", "10"}}, {}, 1};
     r.objects = 10;
     r.frames = 3;
-    r.name.sort = sort;
-    r.name.sweep = "one_axis";
+    r.name[aabb::strategy_kind::sort] = sort;
+    r.name[aabb::strategy_kind::sweep] = "one_axis";
     r.repeat = repeat;
     r.build_ms = 1;
     r.first_ms = 5;
@@ -41,8 +40,8 @@ row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
     return r;
 }
 
-row of_seed(row r, const std::string& seed) {
-    r.scene_parameters = "objects=10 seed=" + seed;
+row of_seed(row r, std::uint64_t seed) {
+    r.scene.seed = seed;
     return r;
 }
 
@@ -94,7 +93,7 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
     rows.back().invented = 0;
     const auto scenes = aabblab::summarise(rows);
     REQUIRE(scenes.size() == 1);
-    CHECK(scenes[0].parameters == "objects=10");
+    CHECK(settings_text(scenes[0].scene) == "objects=10");
     CHECK(scenes[0].seeds == texts{"1", "20"});
     CHECK(scenes[0].digest.empty());
     const aabblab::summary_line& line = scenes[0].lines[1];
@@ -109,8 +108,8 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
 }
 
 TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds miss and invent") {
-    row first = of_seed(repeat_of("std", 0, 1), "1");
-    row second = of_seed(repeat_of("std", 0, 1), "2");
+    row first = of_seed(repeat_of("std", 0, 1), 1);
+    row second = of_seed(repeat_of("std", 0, 1), 2);
     for (row* r : {&first, &second}) {
         r->status = "inexact";
         r->missing = 2;
@@ -130,7 +129,7 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     counted.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 300;
     counted.counts[static_cast<std::size_t>(aabb::work::subset_copies)] = 45;
     counted.bytes[0] = 2048;
-    row again = of_seed(counted, "2");
+    row again = of_seed(counted, 2);
     again.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 100;
     again.bytes[0] = 4096;
     row engine = repeat_of("", 0, 1);
@@ -168,12 +167,12 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
     for (const auto& [scene, ms] : {std::pair("a", 0.5), std::pair("b", 8.0)})
         for (const auto& [sort, time] : {std::pair("std", 1.0), std::pair("insertion", ms)}) {
             rows.push_back(repeat_of(sort, 0, time));
-            rows.back().scene = scene;
+            rows.back().scene.kind = scene;
         }
     row engine = repeat_of("", 0, 4);
     engine.name = {};
     engine.name.engine = "cgal";
-    engine.scene = "a";
+    engine.scene.kind = "a";
     rows.push_back(engine);
     const auto scenes = aabblab::summarise(rows);
     CHECK(aabblab::to_csv(aabblab::overall_table_of(scenes)) ==

@@ -70,12 +70,13 @@ public:
 private:
     fault what_;
     int frame_ = 0;
-    std::unique_ptr<aabb::global_stage> right_ = aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+    std::unique_ptr<aabb::global_stage> right_ =
+        aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
 };
 
 contender wrong_contender(wrong_search::fault what) {
     contender who;
-    who.name.sort = "wrong";
+    who.name[aabb::strategy_kind::sort] = "wrong";
     who.make_global = [what](aabb::instrumentation) { return std::make_unique<wrong_search>(what); };
     return who;
 }
@@ -92,7 +93,7 @@ std::set<std::string> answers(std::span<const row> rows) {
 TEST_CASE("A scene of boxes is played by every global search and every engine that searches boxes") {
     const temporary_folder folder;
     const experiment e = boxes();
-    results_folder results(folder / "r", e, existing_results::refuse);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
     const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
     REQUIRE(contenders.size() == 3);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
@@ -113,14 +114,14 @@ TEST_CASE("A scene of boxes is played by every global search and every engine th
 TEST_CASE("A scene of meshes is played by both stages together, engines included") {
     const temporary_folder folder;
     const experiment e = meshes();
-    results_folder results(folder / "r", e, existing_results::refuse);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
     REQUIRE(results.rows().size() == 4 + 3);
     for (const row& r : results.rows()) {
         INFO(r.key());
         REQUIRE(r.contacts.value_or(0) > 0);
-        if (r.name.triangle == "exact" || r.name.engine == "cgal") REQUIRE(r.status == "exact");
-        if (r.name.engine == "libccd") REQUIRE(r.name.sort == "std");
+        if (r.name[aabb::strategy_kind::triangle] == "exact" || r.name.engine == "cgal") REQUIRE(r.status == "exact");
+        if (r.name.engine == "libccd") REQUIRE(r.name[aabb::strategy_kind::sort] == "std");
     }
 }
 
@@ -128,7 +129,7 @@ TEST_CASE("A composition that loses a pair or reports one twice is named, and ge
     for (const auto fault : {wrong_search::fault::loses, wrong_search::fault::repeats}) {
         const temporary_folder folder;
         const experiment e = boxes();
-        results_folder results(folder / "r", e, existing_results::refuse);
+        results_folder results(folder / "r", record_of(e), existing_results::refuse);
         std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
         contenders.insert(contenders.begin() + 1, wrong_contender(fault));
         const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
@@ -137,7 +138,7 @@ TEST_CASE("A composition that loses a pair or reports one twice is named, and ge
         REQUIRE(
             failures[0].starts_with("wrong is wrong on brownian (objects=200 frames=3 seed=1), frame 2: the pair "));
         REQUIRE(results.rows().size() == 6);
-        for (const row& r : results.rows()) REQUIRE(r.name.sort != "wrong");
+        for (const row& r : results.rows()) REQUIRE(r.name[aabb::strategy_kind::sort] != "wrong");
         const auto differences = aabblab::read_differences(folder / "r/differences.csv");
         REQUIRE(differences.size() == 1);
         REQUIRE(differences[0].what == (fault == wrong_search::fault::loses ? "missing" : "invented"));
@@ -153,7 +154,8 @@ TEST_CASE("Differences of an inexact triangle test are counted by class and fail
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         const aabblab::verdict& v = result.verdicts[i];
         INFO(aabblab::text_of(v.name));
-        REQUIRE(contenders[i].exact == (v.name.triangle == "exact" ? v.name.engine.empty() : v.name.engine == "cgal"));
+        REQUIRE(contenders[i].exact ==
+                (v.name[aabb::strategy_kind::triangle] == "exact" ? v.name.engine.empty() : v.name.engine == "cgal"));
         REQUIRE(v.failure.empty());
         std::uint64_t by_class = 0;
         for (const aabblab::difference& d : v.differences) by_class += d.count;
@@ -168,7 +170,7 @@ TEST_CASE("An interrupted run that is resumed ends like one that was not") {
     const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
     std::set<std::string> uninterrupted;
     {
-        results_folder results(folder / "whole", e, existing_results::refuse);
+        results_folder results(folder / "whole", record_of(e), existing_results::refuse);
         REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
         uninterrupted = answers(results.rows());
     }
@@ -180,9 +182,9 @@ TEST_CASE("An interrupted run that is resumed ends like one that was not") {
     folder.write("cut/results.csv", text.substr(0, end + 40));
     std::filesystem::copy_file(folder / "whole/manifest.json", folder / "cut/manifest.json");
     REQUIRE(aabblab::read_rows(folder / "cut/results.csv").size() == 4);
-    REQUIRE_THROWS_AS(results_folder(folder / "cut", e, existing_results::refuse), aabb::input_error);
+    REQUIRE_THROWS_AS(results_folder(folder / "cut", record_of(e), existing_results::refuse), aabb::input_error);
     {
-        results_folder results(folder / "cut", e, existing_results::resume);
+        results_folder results(folder / "cut", record_of(e), existing_results::resume);
         REQUIRE(results.rows().size() == 4);
         REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
     }
@@ -199,20 +201,20 @@ TEST_CASE("Results of another config are not continued") {
     const temporary_folder folder;
     {
         const experiment e = boxes();
-        results_folder results(folder / "r", e, existing_results::refuse);
+        results_folder results(folder / "r", record_of(e), existing_results::refuse);
         REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
     }
     const experiment other = boxes(5);
-    REQUIRE_THROWS_AS(results_folder(folder / "r", other, existing_results::resume), aabb::input_error);
+    REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(other), existing_results::resume), aabb::input_error);
     std::filesystem::remove(folder / "r/manifest.json");
-    REQUIRE_THROWS_AS(results_folder(folder / "r", boxes(), existing_results::resume), aabb::input_error);
+    REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(boxes()), existing_results::resume), aabb::input_error);
 }
 
 TEST_CASE("What was not to be measured is not measured") {
     experiment e = boxes(5);
     e.measured = {false, false, false, false};
     const temporary_folder folder;
-    results_folder results(folder / "r", e, existing_results::refuse);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
     REQUIRE(results.rows().size() == 3);
     for (const row& r : results.rows()) {
@@ -259,24 +261,24 @@ TEST_CASE("A contender that goes wrong when it is timed keeps no row of its earl
     contender late = wrong_contender(wrong_search::fault::loses);
     // Right when validated and in its first repeat.
     late.make_global = [made = 0](aabb::instrumentation) mutable -> std::unique_ptr<aabb::global_stage> {
-        if (made++ < 2) return aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+        if (made++ < 2) return aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
         return std::make_unique<wrong_search>(wrong_search::fault::loses);
     };
     contenders.push_back(late);
-    results_folder results(folder / "r", e, existing_results::refuse);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
     const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
     REQUIRE(failures.size() == 1);
     REQUIRE(failures[0].find("timed, its digest is") != std::string::npos);
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
     REQUIRE(rows.size() == 9);
     REQUIRE(answers(rows) == answers(results.rows()));
-    for (const row& r : rows) REQUIRE(r.name.sort != "wrong");
+    for (const row& r : rows) REQUIRE(r.name[aabb::strategy_kind::sort] != "wrong");
 }
 
 TEST_CASE("Results of another config or build are set aside where that is asked for, others continued") {
     const temporary_folder folder;
     const auto play = [&](const experiment& e) {
-        results_folder results(folder / "r", e, existing_results::replace);
+        results_folder results(folder / "r", record_of(e), existing_results::replace);
         const std::size_t before = results.rows().size();
         REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
         return std::pair{before, results.replaced()};

@@ -208,9 +208,10 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick)) {
         if (e.name != "c4" && e.name != "c5") continue;
         for (const aabblab::contender& who : aabblab::contenders_for(e, e.scenes.front())) {
-            const std::string number = who.name.partition.substr(who.name.partition.rfind('=') + 1);
+            const std::string number = who.name[aabb::strategy_kind::partition].substr(
+                who.name[aabb::strategy_kind::partition].rfind('=') + 1);
             if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-            CAPTURE(who.name.partition);
+            CAPTURE(who.name[aabb::strategy_kind::partition]);
             const claim_result& claim = all.claims[e.name == "c4" ? 3 : 4];
             CHECK(std::ranges::any_of(claim.figures.front().lines.front().points,
                                       [&](const aabblab::figure_point& p) { return p.x == std::stod(number); }));

@@ -15,7 +15,9 @@
 #include <vector>
 
 import aabb;
+import aabb.registry;
 import aabblab.configs;
+import aabblab.metrics;
 import aabblab.results;
 import aabblab.play;
 import aabblab.scenes;
@@ -37,9 +39,8 @@ struct played {
         return "";
     }
     [[nodiscard]] bool has(const std::string& part) const {
-        for (const std::string* text : {&who.sort, &who.partition, &who.sweep, &who.split_large, &who.tree})
-            if (text->find(part) != std::string::npos) return true;
-        return false;
+        return std::ranges::any_of(who.choices.all,
+                                   [&](const std::string& text) { return text.find(part) != std::string::npos; });
     }
 };
 
@@ -47,15 +48,14 @@ struct played {
 /// @param tell sets times, counts and bytes
 inline void write_experiment(const std::filesystem::path& folder, const aabblab::experiment& e,
                              const std::function<void(const played&, aabblab::row&)>& tell) {
-    aabblab::results_folder results(folder / e.name, e, aabblab::existing_results::refuse);
-    const std::size_t repeats = e.measured.time ? e.repeats : 1;
+    aabblab::results_folder results(folder / e.name, record_of(e), aabblab::existing_results::refuse);
+    const std::size_t repeats = e.records(aabblab::metric_group::time) ? e.repeats : 1;
     for (const aabblab::scene_choice& scene : e.scenes)
         for (const aabblab::contender& who : aabblab::contenders_for(e, scene))
             for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
                 aabblab::row r;
                 r.experiment = e.name;
-                r.scene = scene.kind;
-                r.scene_parameters = parameters_text(scene);
+                r.scene = scene;
                 r.frames = 2;
                 r.name = who.name;
                 r.repeat = repeat;
@@ -111,14 +111,14 @@ inline double partition_time(const played& p, double ratio) {
     if (p.experiment.name == "c5_world") return p.value_of("density") == "0.1" ? 1 : cut ? ratio : 1 / ratio;
     if (cut) return std::max(1.0, ratio);
     const std::string best = p.scene.kind == "brownian" ? "cell_size=2" : "cell_size=64";
-    return ratio >= 1 || p.who.partition.ends_with(best) ? 1 : 1 / ratio / ratio;
+    return ratio >= 1 || p.who[aabb::strategy_kind::partition].ends_with(best) ? 1 : 1 / ratio / ratio;
 }
 
 /// With each doubling of the segments, and once more with those that are chosen automatically.
 inline double segments_time(const played& p, double ratio) {
-    const std::size_t at = p.who.partition.rfind('=');
+    const std::size_t at = p.who[aabb::strategy_kind::partition].rfind('=');
     if (at == std::string::npos) return 1;
-    const std::string wanted = p.who.partition.substr(at + 1);
+    const std::string wanted = p.who[aabb::strategy_kind::partition].substr(at + 1);
     double time = wanted == "auto" ? ratio : 1;
     for (const int segments : {4, 8, 16, 32, 64, 256})
         if (wanted == "auto" || std::stoi(wanted) >= segments) time *= ratio;
@@ -133,9 +133,9 @@ inline double time_of(const played& p, double ratio) {
     if (name == "c3") return p.has("shell") ? ratio : 1;
     if (name == "c4") return segments_time(p, ratio);
     if (name == "c5" || name == "c5_world") return partition_time(p, ratio);
-    if (name == "c9") return p.who.split_large == "off" ? 1 : ratio;
+    if (name == "c9") return p.who[aabb::strategy_kind::prepare] == "none" ? 1 : ratio;
     if (name == "c10") return p.has("limit=on") ? ratio : 1;
-    if (name == "table1") return p.has("build=median") ? ratio : 1;
+    if (name == "table1") return p.who[aabb::strategy_kind::build] == "median" ? ratio : 1;
     return p.has("compressed") || p.has("leafless") ? ratio : 1;
 }
 
@@ -164,9 +164,11 @@ inline void write_world(const std::filesystem::path& folder, double ratio, doubl
                 for (const char* part : {"projections", "partition", "sweep"})
                     scaled(bytes_in(r, part), p.has("axial_cut") ? ratio : 1 / ratio);
             // As many segments as were wanted: the limit is far.
-            if (const std::size_t at = p.who.partition.rfind('='); e.name == "c4" && at != std::string::npos)
-                count_in(r, "segments_got") =
-                    p.who.partition.ends_with("auto") ? 8 : std::stoul(p.who.partition.substr(at + 1));
+            if (const std::size_t at = p.who[aabb::strategy_kind::partition].rfind('=');
+                e.name == "c4" && at != std::string::npos)
+                count_in(r, "segments_got") = p.who[aabb::strategy_kind::partition].ends_with("auto")
+                                                  ? 8
+                                                  : std::stoul(p.who[aabb::strategy_kind::partition].substr(at + 1));
             // The limit acts.
             if (e.name == "c10" && p.has("limit=on")) scaled(count_in(r, "segments_got"), 0.5);
             // The work of an element grows with N where the claim is wrong.

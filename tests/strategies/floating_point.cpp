@@ -69,20 +69,20 @@ struct entry {
 TEST_CASE("every query refuses arithmetic in which answers cannot be exact") {
     const aabb::mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
     const std::vector<aabb::box> boxes{{{0, 0, 0}, {1, 1, 1}}};
-    const auto listed = aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
-    aabb::global_composition coherent;
-    coherent.sort = {"insertion", {}};
-    coherent.sweep = {"incremental", {}};
-    const auto kept = aabb::compose(coherent, aabb::instrumentation::none);
+    const auto listed = aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
+    aabb::composition coherent;
+    coherent[aabb::strategy_kind::sort] = {"insertion", {}};
+    coherent[aabb::strategy_kind::sweep] = {"incremental", {}};
+    const auto kept = aabb::compose_global_search(coherent, aabb::instrumentation::none);
     for (const auto& search : {listed.get(), kept.get()}) {
         search->insert(0);
         search->update(boxes);
     }
-    const auto local = aabb::compose(aabb::local_composition{}, aabb::instrumentation::none);
+    const auto local = aabb::compose_local_detection(aabb::composition{}, aabb::instrumentation::none);
     REQUIRE(local->add_model(mesh) == 0);
     const auto triangles = aabb::make_triangle_test({"exact", {}});
-    const auto in_pipeline = aabb::compose(aabb::local_composition{}, aabb::instrumentation::none);
-    const auto pieces = aabb::compose(aabb::global_composition{}, aabb::instrumentation::none);
+    const auto in_pipeline = aabb::compose_local_detection(aabb::composition{}, aabb::instrumentation::none);
+    const auto pieces = aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
     const one_mesh scene(mesh);
     aabb::pipeline both(scene, *pieces, *in_pipeline);
     const std::vector<aabb::pose> poses(1);

@@ -44,19 +44,26 @@ std::vector<index_pair> overlapping(const std::vector<box>& boxes, const std::ve
 // RC_PARAMS=max_success=14000 in the environment these are more than a million cases.
 TEST_CASE("every composition finds exactly the overlapping pairs while objects come, move and go") {
     const std::vector<strategy_choice> sorts = all_choices(strategy_kind::sort);
+    std::vector<strategy_choice> prepares = all_choices(strategy_kind::prepare);
+    prepares.push_back({"split_large", {{"size", "0.5"}}});
     for (const strategy_choice& partition : all_choices(strategy_kind::partition))
         for (const strategy_choice& sweep : all_choices(strategy_kind::sweep)) {
-            std::vector<global_composition> compositions;
+            std::vector<aabb::composition> compositions;
             for (const strategy_choice& sort : sorts)
-                for (const auto split_large : {std::optional<double>(), std::optional(0.5), std::optional(1.5)})
-                    if (const global_composition c{sort, partition, sweep, split_large}; refusal_of(c).empty())
-                        compositions.push_back(c);
+                for (const strategy_choice& prepare : prepares) {
+                    aabb::composition c;
+                    c[strategy_kind::prepare] = prepare;
+                    c[strategy_kind::sort] = sort;
+                    c[strategy_kind::partition] = partition;
+                    c[strategy_kind::sweep] = sweep;
+                    if (refusal_of(c, stage::global_search).empty()) compositions.push_back(c);
+                }
             if (compositions.empty()) continue;
             INFO(to_text(partition) << " + " << to_text(sweep));
             REQUIRE(rc::check([&] {
-                const global_composition composition = *rc::gen::elementOf(compositions);
-                RC_LOG(to_text(composition));
-                const auto stage = compose(composition, instrumentation::none);
+                const aabb::composition composition = *rc::gen::elementOf(compositions);
+                RC_LOG(text_of_global(composition));
+                const auto stage = global_of(composition, instrumentation::none);
                 const int world = *rc::gen::element(1, 6, 40);
                 const bool flat = *rc::gen::arbitrary<bool>();
                 const auto n = *rc::gen::inRange<std::size_t>(0, 60);
@@ -88,9 +95,9 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
 }
 
 TEST_CASE("a composition refuses boxes and ids that make no sense, and can go on") {
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::none);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        const auto stage = global_of(composition, instrumentation::none);
         std::vector<box> boxes(3, box{{0, 0, 0}, {1, 1, 1}});
         for (std::uint32_t id = 0; id < 3; ++id) stage->insert(id);
         CHECK_THROWS_MATCHES(stage->insert(1), input_error, Message("object 1 is inserted twice"));
@@ -110,9 +117,9 @@ TEST_CASE("a composition refuses boxes and ids that make no sense, and can go on
 
 TEST_CASE("boxes of which no object was inserted are refused, and no boxes or objects that have left are not") {
     const std::vector<box> boxes(2, box{{0, 0, 0}, {1, 1, 1}});
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::none);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        const auto stage = global_of(composition, instrumentation::none);
         std::vector<index_pair> found;
         stage->update({});
         stage->search(found);
@@ -131,9 +138,9 @@ TEST_CASE("boxes of which no object was inserted are refused, and no boxes or ob
 
 TEST_CASE("a frame that was not taken is not searched") {
     std::vector<box> boxes(2, box{{0, 0, 0}, {1, 1, 1}});
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::none);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        const auto stage = global_of(composition, instrumentation::none);
         stage->insert(0);
         stage->insert(1);
         std::vector<index_pair> found;
@@ -157,10 +164,10 @@ TEST_CASE("counted compositions do the same and say what they did") {
         const auto y = static_cast<float>(i * 61 % 90);
         boxes.push_back({{x, y, 0}, {x + 5, y + 5, 5}});
     }
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        const auto plain = compose(composition, instrumentation::none);
-        const auto counted = compose(composition, instrumentation::counters);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        const auto plain = global_of(composition, instrumentation::none);
+        const auto counted = global_of(composition, instrumentation::counters);
         std::vector<index_pair> pairs;
         std::vector<index_pair> counted_pairs;
         for (const auto& [stage, out] : {std::pair{plain.get(), &pairs}, std::pair{counted.get(), &counted_pairs}})
@@ -192,14 +199,14 @@ TEST_CASE("without a partition there are no cells and no copies") {
         const vec3f at{static_cast<float>(i), static_cast<float>(i * 7 % 50), static_cast<float>(i * 11 % 50)};
         boxes.push_back({at, at + vec3f{1, 1, 1}});
     }
-    for (const global_composition& composition : all_global_compositions()) {
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::counters);
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        const auto stage = global_of(composition, instrumentation::counters);
         for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
         stage->update(boxes);
         stage->search(pairs);
-        const bool whole = composition.partition.name == "none";
+        const bool whole = composition[strategy_kind::partition].name == "none";
         const auto parts = stage->bytes();
         CHECK(std::ranges::none_of(parts, [](const part_bytes& p) { return p.part == "partition"; }) == whole);
         CHECK((stage->counters()[work::subsets] == 0) == whole);
@@ -214,7 +221,8 @@ TEST_CASE("a list of an axis that is not needed takes no memory") {
     std::vector<box> boxes;
     for (int i = 0; i < 500; ++i) boxes.push_back({{1, static_cast<float>(i), 1}, {2, static_cast<float>(i + 1), 2}});
     const auto projections = [&](const char* axis) {
-        const auto stage = compose({{"std", {}}, {"none", {}}, {"one_axis", {{"axis", axis}}}}, instrumentation::none);
+        const auto stage =
+            global_of(composed({{strategy_kind::sweep, (std::string("one_axis:axis=") + axis).c_str()}}));
         for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
         stage->update(boxes);
         return stage->bytes()[0].bytes;
@@ -224,7 +232,7 @@ TEST_CASE("a list of an axis that is not needed takes no memory") {
 }
 
 TEST_CASE("a flat scene drops its flat axis") {
-    const auto stage = compose({{"std", {}}, {"none", {}}, {"all_axes", {}}}, instrumentation::none);
+    const auto stage = global_of(composed({{strategy_kind::sweep, "all_axes"}}));
     std::vector<box> boxes;
     for (std::uint32_t id = 0; id < 40; ++id) {
         stage->insert(id);
@@ -242,8 +250,8 @@ TEST_CASE("a flat scene drops its flat axis") {
 
 TEST_CASE("a grid that no machine can hold is refused") {
     const auto search = [](const char* cell_size, const std::vector<box>& boxes) {
-        const auto stage = compose({{"std", {}}, {"uniform_grid", {{"cell_size", cell_size}}}, {"one_axis", {}}},
-                                   instrumentation::none);
+        const auto stage = global_of(
+            composed({{strategy_kind::partition, (std::string("uniform_grid:cell_size=") + cell_size).c_str()}}));
         for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
         stage->update(boxes);
@@ -276,7 +284,7 @@ TEST_CASE("copies that no machine can hold are counted and refused") {
           std::tuple{"uniform_grid:cell_size=1", std::vector(200, box{{0, 0, 0}, {60, 60, 60}}),
                      "uniform_grid makes 45396200 copies of 200 objects, but at most 16790016 (2^24 + 64 an "
                      "object) are allowed; fewer cuts make fewer"}}) {
-        const auto stage = compose({{"std", {}}, parse_strategy(partition), {"one_axis", {}}}, instrumentation::none);
+        const auto stage = global_of(composed({{strategy_kind::partition, partition}}));
         for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
         CHECK_THROWS_MATCHES(stage->update(boxes), input_error, Message(sentence));
         // Nothing of that size was made.
@@ -286,10 +294,10 @@ TEST_CASE("copies that no machine can hold are counted and refused") {
 
 TEST_CASE("a search goes on after its partition refused a frame") {
     for (const auto& [partition, refused] :
-         {std::pair<strategy_choice, float>{{"uniform_grid", {{"cell_size", "0.1"}}}, 1e6F},
-          {{"axial_cut", {{"axes", "3"}, {"segments", "65535"}}}, 0.0F}}) {
-        INFO(to_text(partition));
-        const auto stage = compose({{"insertion", {}}, partition, {"one_axis", {}}}, instrumentation::none);
+         {std::pair{"uniform_grid:cell_size=0.1", 1e6F}, {"axial_cut:axes=3,segments=65535", 0.0F}}) {
+        INFO(partition);
+        const auto stage =
+            global_of(composed({{strategy_kind::sort, "insertion"}, {strategy_kind::partition, partition}}));
         std::vector<box> points;
         for (std::uint32_t id = 0; id < 1000; ++id) {
             stage->insert(id);
@@ -307,7 +315,7 @@ TEST_CASE("a search goes on after its partition refused a frame") {
 }
 
 TEST_CASE("far from the origin the axis to sort along is still the one on which objects vary") {
-    const auto stage = compose({{"std", {}}, {"none", {}}, {"one_axis", {}}}, instrumentation::none);
+    const auto stage = global_of(composition());
     std::vector<box> boxes;
     for (std::uint32_t id = 0; id < 100; ++id) {
         stage->insert(id);

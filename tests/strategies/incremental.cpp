@@ -19,8 +19,8 @@ struct work_of_frame {
 /// A counted search that says what a frame took.
 class counted_search {
 public:
-    explicit counted_search(const global_composition& c, std::uint32_t objects)
-        : stage_(compose(c, instrumentation::counters)) {
+    explicit counted_search(const aabb::composition& c, std::uint32_t objects)
+        : stage_(compose_global_search(c, instrumentation::counters)) {
         for (std::uint32_t id = 0; id < objects; ++id) stage_->insert(id);
     }
 
@@ -41,7 +41,14 @@ private:
     std::vector<index_pair> pairs_;
 };
 
-const global_composition incremental{{"insertion", {}}, {"none", {}}, {"incremental", {}}};
+composition with_incremental(const char* sort, const char* partition) {
+    composition c;
+    c[strategy_kind::sort].name = sort;
+    c[strategy_kind::partition].name = partition;
+    c[strategy_kind::sweep].name = "incremental";
+    return c;
+}
+const composition incremental = with_incremental("insertion", "none");
 
 std::vector<box> scattered(std::uint32_t n) {
     std::vector<box> boxes;
@@ -87,7 +94,10 @@ TEST_CASE("what stands still is never sorted again") {
     for (const char* sort : {"insertion", "shell", "std"}) {
         CAPTURE(sort);
         std::vector<box> boxes = scattered(1000);
-        counted_search search({{sort, {}}, {"none", {}}, {"all_axes", {}}}, 1000);
+        composition all_axes;
+        all_axes[strategy_kind::sort].name = sort;
+        all_axes[strategy_kind::sweep].name = "all_axes";
+        counted_search search(all_axes, 1000);
         search.play(boxes);
         CHECK(search.play(boxes).comparisons == 0);
         boxes[17].min[0] += 1;
@@ -116,10 +126,10 @@ TEST_CASE("incremental holds no list of an axis on which all boxes overlap, unti
 
 TEST_CASE("incremental is refused with what it cannot follow, and says why") {
     for (const char* sort : {"shell", "std"})
-        CHECK(std::string(refusal_of(global_composition{{sort, {}}, {"none", {}}, {"incremental", {}}}))
+        CHECK(std::string(refusal_of(with_incremental(sort, "none"), stage::global_search))
                   .ends_with("it goes with insertion only"));
     for (const char* partition : {"axial_cut", "uniform_grid"})
-        CHECK(std::string(refusal_of(global_composition{{"insertion", {}}, {partition, {}}, {"incremental", {}}}))
+        CHECK(std::string(refusal_of(with_incremental("insertion", partition), stage::global_search))
                   .ends_with("it goes with none only"));
-    CHECK(refusal_of(incremental).empty());
+    CHECK(refusal_of(incremental, stage::global_search).empty());
 }

@@ -71,10 +71,10 @@ std::vector<index_pair> sorted(std::vector<index_pair> pairs) {
     return pairs;
 }
 
-std::vector<local_composition> exact_compositions() {
-    std::vector<local_composition> all;
-    for (const local_composition& c : all_local_compositions())
-        if (is_exact(c)) all.push_back(c);
+std::vector<aabb::composition> exact_compositions() {
+    std::vector<aabb::composition> all;
+    for (const aabb::composition& c : all_local_compositions())
+        if (is_exact_locally(c)) all.push_back(c);
     return all;
 }
 
@@ -82,14 +82,14 @@ std::vector<local_composition> exact_compositions() {
 
 TEST_CASE(
     "every exact composition finds exactly the intersecting triangles of two meshes, however they are asked for") {
-    const std::vector<local_composition> compositions = exact_compositions();
+    const std::vector<aabb::composition> compositions = exact_compositions();
     REQUIRE(compositions.size() >= 33);
     REQUIRE(rc::check([&] {
         mesh a = any_mesh();
         const mesh b = any_mesh();
         std::vector<std::unique_ptr<local_stage>> stages;
-        for (const local_composition& c : compositions) {
-            stages.push_back(compose(c, instrumentation::none));
+        for (const aabb::composition& c : compositions) {
+            stages.push_back(local_of(c, instrumentation::none));
             stages.back()->add_model(a);
             stages.back()->add_model(b);
         }
@@ -102,7 +102,7 @@ TEST_CASE(
                 if (std::abs(pose_a.translation[k]) > 100) pose_b.translation[k] = pose_a.translation[k];
             const std::vector<index_pair> truth = expected(a, pose_a, b, pose_b);
             for (std::size_t i = 0; i < stages.size(); ++i) {
-                RC_LOG(to_text(compositions[i]));
+                RC_LOG(text_of_local(compositions[i]));
                 if (query == 2) stages[i]->refit(0);
                 std::vector<index_pair> found;
                 stages[i]->all_pairs(0, pose_a, 1, pose_b, found);
@@ -117,15 +117,15 @@ TEST_CASE(
 }
 
 TEST_CASE("every exact composition finds exactly the intersecting triangles of a mesh with itself") {
-    const std::vector<local_composition> compositions = exact_compositions();
+    const std::vector<aabb::composition> compositions = exact_compositions();
     REQUIRE(rc::check([&] {
         const mesh m = any_mesh();
         std::vector<index_pair> truth;
         for (const index_pair p : expected(m, {}, m, {}))
             if (p.a < p.b) truth.push_back(p);
-        for (const local_composition& c : compositions) {
-            RC_LOG(to_text(c));
-            const auto stage = compose(c, instrumentation::none);
+        for (const aabb::composition& c : compositions) {
+            RC_LOG(text_of_local(c));
+            const auto stage = local_of(c, instrumentation::none);
             stage->add_model(m);
             // A query that stops half-way leaves nothing behind.
             (void)stage->first_pair(0, {}, 0, {});
@@ -139,7 +139,7 @@ TEST_CASE("every exact composition finds exactly the intersecting triangles of a
 // Whatever rounding does to the two points it does alike; boxes that are carried from frame to frame must make up for
 // it by growing (relative_pose). Without that most of these pairs are lost.
 TEST_CASE("a point on a point is found from any pose, far from the origin too") {
-    const std::vector<local_composition> compositions = exact_compositions();
+    const std::vector<aabb::composition> compositions = exact_compositions();
     REQUIRE(rc::check([&] {
         const pose pose_a = any_pose();
         pose pose_b = any_pose();
@@ -152,9 +152,9 @@ TEST_CASE("a point on a point is found from any pose, far from the origin too") 
         }
         const mesh b{{x}, {{0, 0, 0}}};
         const mesh a{{relative_pose(pose_a, pose_b, bounds_of(x))(x)}, {{0, 0, 0}}};
-        for (const local_composition& c : compositions) {
-            RC_LOG(to_text(c));
-            const auto stage = compose(c, instrumentation::none);
+        for (const aabb::composition& c : compositions) {
+            RC_LOG(text_of_local(c));
+            const auto stage = local_of(c, instrumentation::none);
             stage->add_model(a);
             stage->add_model(b);
             RC_ASSERT(stage->count_pairs(0, pose_a, 1, pose_b) == 1U);
@@ -177,7 +177,9 @@ TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
     pose moved;
     moved.translation = {0.3, 0.2, 0.4};
     const auto work_of = [&](const strategy_choice& tree) {
-        const auto stage = compose(local_composition{tree, {"exact", {}}}, instrumentation::counters);
+        composition c;
+        c[strategy_kind::tree] = tree;
+        const auto stage = local_of(c, instrumentation::counters);
         const auto model = stage->add_model(m);
         CHECK(stage->count_pairs(model, {}, model, moved) > 100);
         return stage->counters();
@@ -199,7 +201,7 @@ TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
 }
 
 TEST_CASE("Möller's original triangle-box test loses pairs that touch, and invents none") {
-    const local_composition original{{"leafless", {{"leaf_test", "moller_triangle_box"}}}, {"exact", {}}};
+    const composition original = composed({{strategy_kind::tree, "leafless:leaf_test=moller_triangle_box"}});
     std::size_t lost = 0;
     REQUIRE(rc::check([&] {
         for (int i = 0; i < 10; ++i) {
@@ -209,7 +211,7 @@ TEST_CASE("Möller's original triangle-box test loses pairs that touch, and inve
             pose pose_b = any_pose();
             pose_b.translation = pose_a.translation;
             const std::vector<index_pair> truth = expected(a, pose_a, b, pose_b);
-            const auto stage = compose(original, instrumentation::none);
+            const auto stage = local_of(original);
             stage->add_model(a);
             stage->add_model(b);
             std::vector<index_pair> found;
@@ -225,6 +227,8 @@ TEST_CASE("only Möller's original makes a leafless tree inexact") {
     for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
         const bool original =
             std::ranges::find(tree.settings, "moller_triangle_box", &setting::value) != tree.settings.end();
-        CHECK(is_exact(local_composition{tree, {"exact", {}}}) == !original);
+        composition c;
+        c[strategy_kind::tree] = tree;
+        CHECK(is_exact_locally(c) == !original);
     }
 }

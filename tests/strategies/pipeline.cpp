@@ -26,8 +26,8 @@ public:
 
 TEST_CASE("a frame that a pipeline refused is not searched, and the next one is") {
     const two_objects scene;
-    const auto global = compose(global_composition{}, instrumentation::none);
-    const auto local = compose(local_composition{}, instrumentation::none);
+    const auto global = compose_global_search(composition{}, instrumentation::none);
+    const auto local = compose_local_detection(composition{}, instrumentation::none);
     pipeline both(scene, *global, *local);
     std::vector<pose> poses(2);
     both.update(poses);

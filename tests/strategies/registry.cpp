@@ -26,17 +26,38 @@ TEST_CASE("every strategy of every kind says what it is and has sound defaults")
 TEST_CASE("an unknown strategy is refused with the nearest name") {
     CHECK_THROWS_MATCHES(require_known(strategy_kind::sort, {"insrtion", {}}), input_error,
                          Message("unknown sort 'insrtion'; did you mean 'insertion'?"));
-    CHECK_THROWS_MATCHES(
-        compose(global_composition{{"std", {}}, {"grid", {}}, {"one_axis", {}}}, instrumentation::none), input_error,
-        Message("unknown partition 'grid'; did you mean 'uniform_grid'?"));
-    CHECK_THROWS_MATCHES(compose(local_composition{{"leaf_less", {}}, {"moller", {}}}, instrumentation::none),
-                         input_error, Message("unknown tree 'leaf_less'; did you mean 'leafless'?"));
+    CHECK_THROWS_MATCHES(global_of(composed({{strategy_kind::partition, "grid"}})), input_error,
+                         Message("unknown partition 'grid'; did you mean 'uniform_grid'?"));
+    CHECK_THROWS_MATCHES(local_of(composed({{strategy_kind::tree, "leaf_less"}})), input_error,
+                         Message("unknown tree 'leaf_less'; did you mean 'leafless'?"));
     CHECK_THROWS_MATCHES(
         require_known(strategy_kind::partition, parse_strategy("uniform_grid:cell_size=1,cell_size=2")), input_error,
         Message("uniform_grid: cell_size is given twice"));
     CHECK_THROWS_MATCHES(make_triangle_test({"muller", {}}), input_error,
                          Message("unknown triangle 'muller'; did you mean 'moller'?"));
-    CHECK_THROWS_MATCHES(
-        compose(local_composition{{"leafless", {{"leaftest", "none"}}}, {"moller", {}}}, instrumentation::none),
-        input_error, Message("unknown parameter of leafless 'leaftest'; did you mean 'leaf_test'?"));
+    CHECK_THROWS_MATCHES(local_of(composed({{strategy_kind::tree, "leafless:leaftest=none"}})), input_error,
+                         Message("unknown parameter of leafless 'leaftest'; did you mean 'leaf_test'?"));
+}
+
+TEST_CASE("a parameter that is a kind of its own is refused with the new spelling") {
+    CHECK_THROWS_MATCHES(require_known(strategy_kind::tree, parse_strategy("canonical:build=sah")), input_error,
+                         Message("canonical has no parameter build, which is a kind of its own: build = \"sah\" beside "
+                                 "tree"));
+}
+
+TEST_CASE("every kind has a stage, and a usual strategy that exists and makes sense") {
+    for (const strategy_kind kind : strategy_kinds)
+        CHECK_NOTHROW(require_known(kind, {std::string(info_of(kind).fallback), {}}));
+    for (const stage of : {stage::global_search, stage::local_detection}) {
+        CHECK(refusal_of(composition{}, of).empty());
+        // What stands apart is told where it is not the usual one.
+        CHECK(to_text(composed({{strategy_kind::prepare, "split_large"}, {strategy_kind::build, "sah"}}), of) ==
+              (of == stage::global_search ? "split_large + std + none + one_axis" : "sah + canonical + exact"));
+        CHECK(to_text(composition{}, of) ==
+              (of == stage::global_search ? "std + none + one_axis" : "canonical + exact"));
+        for (const composition& c : every_composition(of)) CHECK(refusal_of(c, of).empty());
+    }
+    CHECK(every_composition(stage::local_detection).size() ==
+          strategies(strategy_kind::tree).size() * strategies(strategy_kind::triangle).size() +
+              strategies(strategy_kind::build).size() - 1);
 }

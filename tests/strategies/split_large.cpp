@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,9 @@ using Catch::Matchers::Message;
 namespace {
 
 std::unique_ptr<global_stage> splitting(double size, std::uint32_t objects) {
-    auto stage =
-        compose(global_composition{{"std", {}}, {"none", {}}, {"one_axis", {}}, size}, instrumentation::counters);
+    aabb::composition c;
+    c[strategy_kind::prepare] = {"split_large", {{"size", std::to_string(size)}}};
+    auto stage = compose_global_search(c, instrumentation::counters);
     for (std::uint32_t id = 0; id < objects; ++id) stage->insert(id);
     return stage;
 }
@@ -80,8 +80,10 @@ TEST_CASE("pieces follow objects that grow, shrink, come and go, and frames of o
 }
 
 TEST_CASE("pieces keep their places in sorted lists when other objects come and go") {
-    auto stage =
-        compose(global_composition{{"insertion", {}}, {"none", {}}, {"one_axis", {}}, 0.9}, instrumentation::counters);
+    aabb::composition c;
+    c[strategy_kind::prepare] = {"split_large", {{"size", "0.9"}}};
+    c[strategy_kind::sort] = {"insertion", {}};
+    auto stage = compose_global_search(c, instrumentation::counters);
     std::vector<box> boxes;
     for (std::uint32_t id = 0; id < 400; ++id) {
         const float edge = 1 + static_cast<float>(id * 7 % 4);
@@ -121,11 +123,8 @@ TEST_CASE("a box without room for pieces between its floats stays whole") {
     CHECK(stage->counters()[work::pieces] == 0);
 }
 
-TEST_CASE("split_large is off or a number above 0") {
-    CHECK_FALSE(parse_split_large("off").has_value());
-    CHECK(parse_split_large("2.5") == std::optional(2.5));
+TEST_CASE("the size is a number above 0") {
     for (const std::string text : {"", "on", "0", "-1", "nan", "inf", "2x"})
-        CHECK_THROWS_MATCHES(
-            parse_split_large(text), input_error,
-            Message("split_large must be off or a number above 0, in mean extents, not '" + text + "'"));
+        CHECK_THROWS_MATCHES(require_known(strategy_kind::prepare, {"split_large", {{"size", text}}}), input_error,
+                             Message("split_large: size must be a number above 0, not '" + text + "'"));
 }

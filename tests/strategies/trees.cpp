@@ -66,8 +66,16 @@ std::vector<mesh> meshes() {
     return all;
 }
 
-std::unique_ptr<local_stage> stage_of(const strategy_choice& tree) {
-    return compose(local_composition{tree, {"exact", {}}}, instrumentation::none);
+/// Every build of every layout, with the exact triangle test.
+std::vector<composition> all_trees() {
+    std::vector<composition> all;
+    for (const strategy_choice& build : all_choices(strategy_kind::build))
+        for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
+            composition& c = all.emplace_back();
+            c[strategy_kind::build] = build;
+            c[strategy_kind::tree] = tree;
+        }
+    return all;
 }
 
 std::size_t tree_bytes_of(const local_stage& stage) {
@@ -77,8 +85,8 @@ std::size_t tree_bytes_of(const local_stage& stage) {
     return all;
 }
 
-std::size_t bytes_of_tree(const strategy_choice& tree, const mesh& m) {
-    const auto stage = stage_of(tree);
+std::size_t bytes_of_tree(const char* tree, const mesh& m, const char* build = "median") {
+    const auto stage = local_of(composed({{strategy_kind::build, build}, {strategy_kind::tree, tree}}));
     stage->add_model(m);
     return tree_bytes_of(*stage);
 }
@@ -91,38 +99,34 @@ void deform(mesh& m) {
     }
 }
 
-bool is_balanced(const strategy_choice& tree) {
-    return std::ranges::find(tree.settings, "build", &setting::name) == tree.settings.end();
-}
-
-void check(const local_stage& stage, const strategy_choice& tree, const mesh& m) {
-    INFO(to_text(tree) << ", " << m.triangle_count() << " triangles");
+void check(const local_stage& stage, const composition& c, const mesh& m) {
+    INFO(text_of_local(c) << ", " << m.triangle_count() << " triangles");
     const std::optional<tree_survey> found = stage.survey(0);
     REQUIRE(found.has_value());
     CHECK(found->fault.empty());
-    const bool lossless = tree.name != "compressed_literal";
+    const bool lossless = c[strategy_kind::tree].name != "compressed_literal";
     if (lossless) CHECK(found->tight);
     CHECK(found->area_inflation >= 0);
     const auto least = static_cast<std::size_t>(std::bit_width(m.triangle_count() - 1U));
     CHECK(found->depth >= least);
-    if (is_balanced(tree)) CHECK(found->depth == least);
+    if (c[strategy_kind::build].name == "median") CHECK(found->depth == least);
 }
 
 }  // namespace
 
 TEST_CASE("a tree holds every triangle once, in boxes that hold it, at the least depth when balanced") {
-    for (const strategy_choice& tree : all_choices(strategy_kind::tree))
+    for (const composition& tree : all_trees())
         for (const mesh& m : meshes()) {
-            const auto stage = stage_of(tree);
+            const auto stage = local_of(tree);
             stage->add_model(m);
             check(*stage, tree, m);
         }
 }
 
 TEST_CASE("a refitted tree is one of the deformed mesh, in the same memory") {
-    for (const strategy_choice& tree : all_choices(strategy_kind::tree))
+    for (const composition& tree : all_trees())
         for (mesh m : meshes()) {
-            const auto stage = stage_of(tree);
+            const auto stage = local_of(tree);
             stage->add_model(m);
             const std::size_t bytes = tree_bytes_of(*stage);
             deform(m);
@@ -133,9 +137,9 @@ TEST_CASE("a refitted tree is one of the deformed mesh, in the same memory") {
 }
 
 TEST_CASE("a mesh that has lost triangles or turned bad is not refitted") {
-    for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
+    for (const composition& tree : all_trees()) {
         mesh m = strip(7);
-        const auto stage = stage_of(tree);
+        const auto stage = local_of(tree);
         stage->add_model(m);
         m.vertices[0][1] = NAN;
         CHECK_THROWS_MATCHES(stage->refit(0), input_error, Message("vertex 0 has a coordinate that is not finite"));
@@ -147,12 +151,12 @@ TEST_CASE("a mesh that has lost triangles or turned bad is not refitted") {
 }
 
 TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles") {
-    for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
-        if (!is_exact(local_composition{tree, {"exact", {}}})) continue;
-        INFO(to_text(tree));
+    for (const composition& tree : all_trees()) {
+        if (!is_exact_locally(tree)) continue;
+        INFO(text_of_local(tree));
         const mesh points = receding(300);
         const mesh equal = many_equal(60);
-        const auto stage = stage_of(tree);
+        const auto stage = local_of(tree);
         stage->add_model(points);
         stage->add_model(equal);
         std::vector<index_pair> pairs;
@@ -168,19 +172,18 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
 }
 
 TEST_CASE("the half-steps hold the canonical tree, box by box") {
-    for (const char* build : {"median", "mean", "sah"})
+    const auto every_build = [&]<class... Builds>(type_list<Builds...>, auto check) { (check(Builds{}), ...); };
+    every_build(builds{}, [&](const auto& build) {
         for (const mesh& m : meshes()) {
-            const auto method = build == std::string("median") ? build_method::median
-                                : build == std::string("mean") ? build_method::mean
-                                                               : build_method::sah;
-            canonical_tree canonical(canonical_tree::config{method});
-            shared_planes_tree shared(shared_planes_tree::config{method});
-            leafless_tree leafless(leafless_config{method, leaf_test_choice::none});
-            compressed_literal_tree literal(leafless_config{method, leaf_test_choice::none});
-            canonical.build(m);
-            shared.build(m);
-            leafless.build(m);
-            literal.build(m);
+            canonical_tree canonical;
+            shared_planes_tree shared;
+            leafless_tree leafless;
+            compressed_literal_tree literal;
+            const std::vector<build_node> nodes = build.build(m, leaf_pairing::any);
+            canonical.pack(nodes);
+            shared.pack(nodes);
+            leafless.pack(nodes);
+            literal.pack(nodes);
             const auto same = [&](auto self, const auto& other, auto at, auto there, bool lossless) -> void {
                 REQUIRE(canonical.is_leaf(at) == other.is_leaf(there));
                 if (canonical.is_leaf(at)) {
@@ -198,28 +201,29 @@ TEST_CASE("the half-steps hold the canonical tree, box by box") {
             same(same, leafless, canonical.root(m), leafless.root(m), true);
             same(same, literal, canonical.root(m), literal.root(m), false);
         }
+    });
 }
 
 TEST_CASE("layouts take the bytes that the paper says, or less") {
     for (std::uint32_t n = 2; n <= 60; ++n) {
         const mesh m = strip(n);
         INFO(n << " triangles");
-        CHECK(bytes_of_tree({"canonical", {}}, m) == 32 * (n - 1) + 28 * n);
-        CHECK(bytes_of_tree({"leafless", {}}, m) == 32 * (n - 1));
-        CHECK(bytes_of_tree({"shared_planes", {}}, m) == 37 * n - 33 + 24);
-        CHECK(bytes_of_tree({"compressed_literal", {}}, m) == 21 * (n - 1) + 24);
+        CHECK(bytes_of_tree("canonical", m) == 32 * (n - 1) + 28 * n);
+        CHECK(bytes_of_tree("leafless", m) == 32 * (n - 1));
+        CHECK(bytes_of_tree("shared_planes", m) == 37 * n - 33 + 24);
+        CHECK(bytes_of_tree("compressed_literal", m) == 21 * (n - 1) + 24);
         for (const char* build : {"median", "mean", "sah"}) {
             // Even: half as many nodes hold two leaves, 8 bytes; the others 33. Odd: one leaf stands beside a node.
             const std::size_t pairs = n / 2;
-            CHECK(bytes_of_tree({"compressed", {{"build", build}}}, m) == 8 * pairs + 33 * (n - 1 - pairs) + 24);
-            CHECK(bytes_of_tree({"compressed", {{"build", build}}}, m) <= 21 * n + 64);
+            CHECK(bytes_of_tree("compressed", m, build) == 8 * pairs + 33 * (n - 1 - pairs) + 24);
+            CHECK(bytes_of_tree("compressed", m, build) <= 21 * n + 64);
         }
     }
 }
 
 TEST_CASE("builds split where they say") {
     const auto survey = [](const char* build, const mesh& m) {
-        const auto stage = stage_of({"canonical", {{"build", build}}});
+        const auto stage = local_of(composed({{strategy_kind::build, build}}));
         stage->add_model(m);
         return *stage->survey(0);
     };
@@ -233,8 +237,7 @@ TEST_CASE("builds split where they say") {
         clusters.triangles.push_back({2 * i, 2 * i, 2 * i + 1});
     }
     const auto tests = [&](const char* build) {
-        const auto stage =
-            compose(local_composition{{"canonical", {{"build", build}}}, {"exact", {}}}, instrumentation::counters);
+        const auto stage = local_of(composed({{strategy_kind::build, build}}), instrumentation::counters);
         const auto model = stage->add_model(clusters);
         pose aside;
         aside.translation = {50, 0, 0};
@@ -249,12 +252,12 @@ TEST_CASE("compressed_literal inflates boxes a little, and only it does") {
     for (std::size_t v = 0; v < m.vertices.size(); ++v)
         for (int k = 0; k < 3; ++k)
             m.vertices[v][k] += std::sin(static_cast<float>(v * 3 + static_cast<std::size_t>(k)));
-    for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
-        INFO(to_text(tree));
-        const auto stage = stage_of(tree);
+    for (const composition& tree : all_trees()) {
+        INFO(text_of_local(tree));
+        const auto stage = local_of(tree);
         stage->add_model(m);
         const double inflation = stage->survey(0)->area_inflation;
-        if (tree.name == "compressed_literal") {
+        if (tree[strategy_kind::tree].name == "compressed_literal") {
             CHECK(inflation > 0);
             CHECK(inflation < 0.05);
         } else {

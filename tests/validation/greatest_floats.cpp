@@ -75,16 +75,18 @@ TEST_CASE("engines find every pair of boxes that reach to the greatest floats") 
 
 TEST_CASE("compositions find every pair of boxes that reach to the greatest floats") {
     const std::vector<frame> frames = frames_of(300, 1);
-    for (global_composition composition : all_global_compositions()) {
+    for (aabb::composition composition : all_global_compositions()) {
         // Cells of 3 in this world no machine can hold.
-        if (composition.partition == strategy_choice{"uniform_grid", {{"cell_size", "3"}}})
-            composition.partition.settings[0].value = "1e38";
-        INFO(to_text(composition));
-        require_all_found(*compose(composition, instrumentation::none), frames);
-        if (!composition.split_large || composition.sort.name != "insertion") continue;
-        composition.split_large = 0.5;
+        if (strategy_choice& partition = composition[strategy_kind::partition];
+            partition == strategy_choice{"uniform_grid", {{"cell_size", "3"}}})
+            partition.settings[0].value = "1e38";
+        INFO(text_of_global(composition));
+        require_all_found(*global_of(composition, instrumentation::none), frames);
+        if (composition[strategy_kind::prepare].name == "none" || composition[strategy_kind::sort].name != "insertion")
+            continue;
+        composition[strategy_kind::prepare].settings = {{"size", "0.5"}};
         INFO("into more pieces");
-        require_all_found(*compose(composition, instrumentation::none), frames);
+        require_all_found(*global_of(composition, instrumentation::none), frames);
     }
 }
 

@@ -51,8 +51,8 @@ std::vector<recording> recordings() {
 TEST_CASE("every composed global search equals brute force, frame by frame") {
     REQUIRE(!all_global_compositions().empty());
     for (const recording& r : recordings())
-        for (const global_composition& composition : all_global_compositions()) {
-            const auto stage = compose(composition, instrumentation::none);
+        for (const aabb::composition& composition : all_global_compositions()) {
+            const auto stage = global_of(composition, instrumentation::none);
             const auto truth = make_box_engine("brute_force");
             const auto size = static_cast<std::uint32_t>(r.frames[0].size());
             for (std::uint32_t id = 0; id < size; ++id) {
@@ -60,7 +60,7 @@ TEST_CASE("every composed global search equals brute force, frame by frame") {
                 truth->insert(id);
             }
             for (std::size_t frame = 0; frame < r.frames.size(); ++frame) {
-                INFO(to_text(composition) << ", " << r.name << ", frame " << frame);
+                INFO(text_of_global(composition) << ", " << r.name << ", frame " << frame);
                 // Some leave and come back, others stay away.
                 for (std::uint32_t id = 0; id < size; id += 3)
                     if (frame % 2 == 1) {
@@ -78,11 +78,11 @@ TEST_CASE("every composed global search equals brute force, frame by frame") {
 }
 
 TEST_CASE("every composed local detection with an exact triangle test equals CGAL") {
-    for (const local_composition& composition : all_local_compositions()) {
-        if (!is_exact(composition)) continue;
+    for (const aabb::composition& composition : all_local_compositions()) {
+        if (!is_exact_locally(composition)) continue;
         for (const mesh_case& c : mesh_cases()) {
-            INFO(to_text(composition) << ", " << c.name);
-            const auto stage = compose(composition, instrumentation::none);
+            INFO(text_of_local(composition) << ", " << c.name);
+            const auto stage = local_of(composition, instrumentation::none);
             REQUIRE(pairs_of(*stage, c.a, c.pose_a, c.b, c.pose_b) ==
                     pairs_of(*make_mesh_engine("cgal"), c.a, c.pose_a, c.b, c.pose_b));
         }
@@ -93,10 +93,10 @@ TEST_CASE("two meshes moved together keep their pairs, up to 10^7 times their si
     const mesh ball = sphere(12);
     const pose still = turned({1, 2, 3}, 0.4, {0, 0, 0});
     const pose near = turned({3, -1, 1}, 1.3, {0.6, 0.3, -0.2});
-    for (const local_composition& composition : all_local_compositions()) {
-        if (!is_exact(composition)) continue;
-        INFO(to_text(composition));
-        const auto stage = compose(composition, instrumentation::none);
+    for (const aabb::composition& composition : all_local_compositions()) {
+        if (!is_exact_locally(composition)) continue;
+        INFO(text_of_local(composition));
+        const auto stage = local_of(composition, instrumentation::none);
         const std::vector<index_pair> pairs = pairs_of(*stage, ball, still, ball, near);
         const std::vector<index_pair> touching = pairs_of(*stage, ball, still, ball, still);
         REQUIRE(pairs.size() > 50);
@@ -122,9 +122,9 @@ TEST_CASE("every composition and engine holds a mesh against itself alike, and a
     std::vector<std::pair<std::string, std::unique_ptr<local_stage>>> stages;
     for (const engine_info& engine : engines())
         if (engine.exact) stages.emplace_back(engine.name, make_mesh_engine(engine.name));
-    for (const local_composition& composition : all_local_compositions())
-        if (is_exact(composition))
-            stages.emplace_back(to_text(composition), compose(composition, instrumentation::none));
+    for (const aabb::composition& composition : all_local_compositions())
+        if (is_exact_locally(composition))
+            stages.emplace_back(text_of_local(composition), local_of(composition, instrumentation::none));
     for (auto& [name, stage] : stages) stage->add_model(ball);
     for (const bool deformed : {false, true}) {
         if (deformed)

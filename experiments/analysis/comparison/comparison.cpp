@@ -10,6 +10,7 @@ module aabblab.comparison;
 
 import aabb;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -67,8 +68,7 @@ comparison compare(const run_results& a, const run_results& b, compared what) {
         const std::vector<std::string> labels = labels_of(shared.names);
         compared_scene& scene = found.scenes.emplace_back();
         scene.experiment = shared.any->experiment;
-        scene.scene = shared.any->scene;
-        scene.parameters = shared.parameters;
+        scene.scene = whatever_seed(shared.any->scene);
         found.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
         const std::optional<contender_name> base = base_of(shared, of_a, of_b);
         if (!base) continue;

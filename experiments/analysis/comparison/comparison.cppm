@@ -6,6 +6,7 @@ module;
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// What changed between the results of two runs, A and B: two commits, or two machines. Times are compared as ratios to
@@ -13,6 +14,7 @@ module;
 export module aabblab.comparison;
 
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 export namespace aabblab {
@@ -57,9 +59,8 @@ struct changed_number {
 /// A scene with all the seeds that A and B have both.
 struct compared_scene {
     std::string experiment;
-    std::string scene;
-    std::string parameters;  ///< without the seed
-    std::string base;  ///< what `ratios` are to: the first in A that both have times of; empty where there is none
+    scene_choice scene;  ///< `whatever_seed`
+    std::string base;    ///< what `ratios` are to: the first in A that both have times of; empty where there is none
     std::vector<compared_time> ratios;
     std::vector<compared_time> times;
     std::vector<changed_number> changed;
@@ -68,9 +69,8 @@ struct compared_scene {
 /// A scene whose exact answer is not the same in A and B, which it must be.
 struct different_answer {
     std::string experiment;
-    std::string scene;
-    std::string parameters;  ///< with the seed
-    std::string in_a;        ///< digests
+    scene_choice scene;
+    std::string in_a;  ///< digests
     std::string in_b;
 };
 
@@ -94,6 +94,9 @@ enum class compared { ratios, ratios_and_times };
 // What the parts of the module share.
 namespace aabblab {
 
+/// By its experiment.
+using played_scene = std::pair<std::string, scene_choice>;
+
 /// The rows of a run, by scene and by what played it.
 class played_scenes {
 public:
@@ -101,23 +104,18 @@ public:
 
     using repeats = std::vector<const row*>;
     using players = std::map<contender_name, repeats>;
-    /// By `scene_of`.
-    [[nodiscard]] const std::map<std::string, players>& scenes() const { return scenes_; }
+    [[nodiscard]] const std::map<played_scene, players>& scenes() const { return scenes_; }
     /// No rows where there are none.
-    [[nodiscard]] const repeats& of(const std::string& scene, const contender_name& name) const;
+    [[nodiscard]] const repeats& of(const played_scene& scene, const contender_name& name) const;
 
 private:
-    std::map<std::string, players> scenes_;
+    std::map<played_scene, players> scenes_;
 };
-
-/// Experiment, kind, parameters and seed.
-[[nodiscard]] std::string scene_of(const row& r);
 
 /// A scene with the seeds and the players that both runs have, not every one of them with every other.
 struct shared_scene {
     const row* any;                     ///< of A
-    std::string parameters;             ///< without the seed
-    std::vector<std::string> seeds;     ///< each as `scene_of`
+    std::vector<played_scene> seeds;    ///< which differ in their seed only
     std::vector<contender_name> names;  ///< in the order of A
 };
 [[nodiscard]] std::vector<shared_scene> scenes_shared(std::span<const row> a, const played_scenes& b);

@@ -58,7 +58,7 @@ void compare_answers(const played_scenes& a, const played_scenes& b, comparison&
         both.insert(of_b.begin(), of_b.end());
         if (both.size() < 2) continue;
         const row& any = *in_a.begin()->second.front();
-        found.answers.push_back({any.experiment, any.scene, any.scene_parameters, joined(of_a), joined(of_b)});
+        found.answers.push_back({any.experiment, any.scene, joined(of_a), joined(of_b)});
     }
 }
 
@@ -72,7 +72,7 @@ std::size_t compare_numbers(const shared_scene& in, const played_scenes& a, cons
             bool differs = false;
         };
         std::vector<sums> columns;
-        for (const std::string& seed : in.seeds) {
+        for (const played_scene& seed : in.seeds) {
             const played_scenes::repeats& of_a = a.of(seed, in.names[i]);
             const played_scenes::repeats& of_b = b.of(seed, in.names[i]);
             if (of_a.empty() || of_b.empty()) continue;

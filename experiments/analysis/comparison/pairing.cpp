@@ -8,6 +8,7 @@ module;
 
 module aabblab.comparison;
 
+import aabblab.scenes;
 import aabblab.tables;
 import aabblab.results;
 
@@ -22,15 +23,11 @@ void add_once(std::vector<T>& to, const T& value) {
 
 }  // namespace
 
-std::string scene_of(const row& r) {
-    return r.experiment + "\n" + r.scene + "\n" + r.scene_parameters;
-}
-
 played_scenes::played_scenes(std::span<const row> rows) {
-    for (const row& r : rows) scenes_[scene_of(r)][r.name].push_back(&r);
+    for (const row& r : rows) scenes_[{r.experiment, r.scene}][r.name].push_back(&r);
 }
 
-const played_scenes::repeats& played_scenes::of(const std::string& scene, const contender_name& name) const {
+const played_scenes::repeats& played_scenes::of(const played_scene& scene, const contender_name& name) const {
     static const repeats none;
     const auto players = scenes_.find(scene);
     if (players == scenes_.end()) return none;
@@ -40,13 +37,12 @@ const played_scenes::repeats& played_scenes::of(const std::string& scene, const 
 
 std::vector<shared_scene> scenes_shared(std::span<const row> a, const played_scenes& b) {
     std::vector<shared_scene> scenes;
-    std::map<std::string, std::size_t> places;
+    std::map<played_scene, std::size_t> places;  // whatever the seed
     for (const row& r : a) {
-        const std::string seed = scene_of(r);
+        const played_scene seed{r.experiment, r.scene};
         if (b.of(seed, r.name).empty()) continue;
-        std::string parameters = without_seed(r.scene_parameters);
-        const auto [place, is_new] = places.emplace(r.experiment + "\n" + r.scene + "\n" + parameters, scenes.size());
-        if (is_new) scenes.push_back({&r, std::move(parameters), {}, {}});
+        const auto [place, is_new] = places.emplace(played_scene{r.experiment, whatever_seed(r.scene)}, scenes.size());
+        if (is_new) scenes.push_back({&r, {}, {}});
         add_once(scenes[place->second].seeds, seed);
         add_once(scenes[place->second].names, r.name);
     }

@@ -10,7 +10,7 @@ module;
 
 module aabblab.comparison;
 
-import aabblab.claims;
+import aabblab.metrics;
 import aabblab.results;
 import aabblab.statistics;
 
@@ -19,7 +19,7 @@ namespace aabblab {
 namespace {
 
 std::optional<double> log_ms(const row& r) {
-    static const metric frame = frame_ms();
+    static const row_value& frame = measured("frame_ms");
     if (!r.first_ms || !r.search_ms || !r.detect_ms) return std::nullopt;
     const double ms = frame(r).value_or(0);
     return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
@@ -52,7 +52,7 @@ double least_chance(std::size_t n, std::size_t m) {
 cells log_times(const played_scenes& run, const shared_scene& in, const contender_name& who,
                 const contender_name* base) {
     std::vector<std::uint64_t> processes;
-    for (const std::string& seed : in.seeds)
+    for (const played_scene& seed : in.seeds)
         for (const row* r : run.of(seed, who)) processes.push_back(r->process);
     std::ranges::sort(processes);
     const auto twice = std::ranges::unique(processes);

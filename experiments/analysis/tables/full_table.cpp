@@ -1,15 +1,22 @@
 module;
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 module aabblab.tables;
 
+import aabb;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.results;
+import aabblab.scenes;
 
 namespace aabblab {
 
@@ -20,14 +27,20 @@ std::string text_of(const std::optional<Number>& value) {
     return value ? fmt::format("{}", *value) : "";
 }
 
+/// Those that are more than a median of rows.
+bool has_own_column(const metric& m) {
+    constexpr std::array<std::string_view, 5> own{"frame_ms", "build_ms", "bytes", "missing", "invented"};
+    return std::ranges::find(own, m.name) != own.end();
+}
+
 std::vector<std::string> cells_of(const scene_summary& scene, const summary_line& line, std::size_t rank) {
     std::vector<std::string> cells{scene.experiment,
-                                   scene.scene,
-                                   scene.parameters,
+                                   scene.scene.kind,
+                                   parameters_json(scene.scene),
                                    fmt::format("{}", fmt::join(scene.seeds, " ")),
                                    fmt::format("{}", scene.objects),
                                    fmt::format("{}", scene.frames)};
-    for (const name_part& part : composition_parts) cells.push_back(line.name.*part.field);
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) cells.push_back(line.name[kind]);
     cells.insert(cells.end(),
                  {line.name.engine, fmt::format("{}", rank), line.status, text_of(line.missing), text_of(line.invented),
                   fmt::format("{}", line.pairs), text_of(line.contacts), fmt::format("{}", line.repeats)});
@@ -39,6 +52,8 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
           around ? std::optional(around->high) : std::nullopt, line.build_ms})
         cells.push_back(value ? fmt::format("{:.6f}", *value) : "");
     cells.push_back(text_of(line.bytes));
+    for (std::size_t i = 0; i < metrics().size(); ++i)
+        if (!has_own_column(metrics()[i])) cells.push_back(text_of(line.metrics[i]));
     return cells;
 }
 
@@ -48,11 +63,13 @@ table full_table_of(std::span<const scene_summary> scenes) {
     table t;
     for (const char* name : {"experiment", "scene", "scene_parameters", "seeds", "objects", "frames"})
         t.columns.push_back({name});
-    for (const name_part& part : composition_parts) t.columns.push_back({std::string(part.kind)});
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) t.columns.push_back({std::string(name_of(kind))});
     for (const char* name :
          {"engine", "rank", "status", "missing", "invented", "candidates", "contacts", "repeats", "frame_ms",
           "frame_ms_low", "frame_ms_high", "ratio", "ratio_low", "ratio_high", "build_ms", "bytes"})
         t.columns.push_back({name});
+    for (const metric& m : metrics())
+        if (!has_own_column(m)) t.columns.push_back({m.name});
     for (const scene_summary& scene : scenes) {
         std::size_t rank = 0;
         for (const summary_line* line : ranking_of(scene)) t.rows.push_back(cells_of(scene, *line, ++rank));

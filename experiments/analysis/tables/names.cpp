@@ -8,33 +8,35 @@ module;
 
 module aabblab.tables;
 
+import aabb;
+import aabb.registry;
 import aabblab.results;
 
 namespace aabblab {
 
-std::vector<name_part> differing_parts(std::span<const contender_name> names) {
-    std::vector<name_part> parts;
-    for (const name_part& part : composition_parts) {
+std::vector<aabb::strategy_kind> differing_kinds(std::span<const contender_name> names) {
+    std::vector<aabb::strategy_kind> kinds;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         std::set<std::string> values;
         for (const contender_name& name : names)
-            if (name.engine.empty()) values.insert(name.*part.field);
-        if (values.size() > 1) parts.push_back(part);
+            if (name.engine.empty()) values.insert(name[kind]);
+        if (values.size() > 1) kinds.push_back(kind);
     }
-    return parts;
+    return kinds;
 }
 
-std::vector<column> name_columns_of(std::span<const name_part> differing) {
+std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing) {
     std::vector<column> columns{{row_number}};
-    for (const name_part& part : differing) columns.push_back({std::string(part.kind), false});
+    for (const aabb::strategy_kind kind : differing) columns.push_back({std::string(name_of(kind)), false});
     if (differing.empty()) columns.push_back({"composition", false});
     return columns;
 }
 
-std::vector<std::string> name_cells_of(std::span<const name_part> differing, const contender_name& name,
+std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const contender_name& name,
                                        std::size_t rank) {
     std::vector<std::string> cells{std::to_string(rank)};
     if (name.engine.empty())
-        for (const name_part& part : differing) cells.push_back(name.*part.field);
+        for (const aabb::strategy_kind kind : differing) cells.push_back(name[kind]);
     else
         cells.push_back(name.engine);
     if (cells.size() == 1) cells.emplace_back("this composition");

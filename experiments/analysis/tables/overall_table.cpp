@@ -14,6 +14,7 @@ module;
 
 module aabblab.tables;
 
+import aabb.registry;
 import aabblab.results;
 
 namespace aabblab {
@@ -57,7 +58,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     }
     std::vector<contender_name> names;
     for (const standing& one : all) names.push_back(one.name);
-    const std::vector<name_part> differing = differing_parts(names);
+    const std::vector<aabb::strategy_kind> differing = differing_kinds(names);
     std::ranges::sort(all, {}, [](const standing& one) { return std::tuple(!one.exact, one.ratio(), one.name); });
     const bool inexact = std::ranges::any_of(all, [](const standing& one) { return !one.exact; });
     table t{name_columns_of(differing), {}};

@@ -13,7 +13,9 @@ module;
 
 module aabblab.tables;
 
+import aabblab.metrics;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -100,7 +102,7 @@ std::string interval_text(const std::optional<interval>& around) {
     return around ? fmt::format("{:.2f}-{:.2f}", around->low, around->high) : "-";
 }
 
-table table_of(const scene_summary& scene) {
+table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     const bool meshes = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.contacts.has_value(); });
     const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_a_frame.has_value(); });
     const int decimals = decimals_of(scene);
@@ -110,7 +112,7 @@ table table_of(const scene_summary& scene) {
         t.rows.push_back(name_cells_of(scene.differing, line->name, t.rows.size() + 1));
     if (timed) {
         t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles", true, 4}, {"ratio"}, {"95 %"}});
-        if (meshes) t.columns.push_back({"build", true, 3});
+        if (meshes) t.columns.push_back({"build ms", true, 3});
         std::size_t i = 0;
         for (const summary_line* line : ranking) {
             std::vector<std::string>& cells = t.rows[i++];
@@ -123,15 +125,23 @@ table table_of(const scene_summary& scene) {
         t.columns.push_back(one.shown);
         for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(one.cells[i]);
     }
+    for (const std::string& name : shown) {
+        const metric& m = metric_named(name);
+        const auto place = static_cast<std::size_t>(&m - metrics().data());
+        t.columns.push_back({m.unit.empty() ? name : name + " (" + m.unit + ")"});
+        for (std::size_t i = 0; i < t.rows.size(); ++i) {
+            const std::optional<double>& value = ranking[i]->metrics[place];
+            t.rows[i].push_back(value ? fmt::format("{:.6g}", *value) : "-");
+        }
+    }
     return t;
 }
 
 std::string heading_of(const scene_summary& scene) {
     std::string text =
-        fmt::format("{}: {} objects, {} frames\n", scene.scene, number_text(scene.objects), scene.frames);
-    std::string parameters = scene.parameters;
-    if (scene.seeds.size() == 1 && !scene.seeds[0].empty())
-        parameters += (parameters.empty() ? "seed=" : " seed=") + scene.seeds[0];
+        fmt::format("{}: {} objects, {} frames\n", scene.scene.kind, number_text(scene.objects), scene.frames);
+    std::string parameters = settings_text(scene.scene);
+    if (scene.seeds.size() == 1) parameters += fmt::format("{}seed={}", parameters.empty() ? "" : " ", scene.seeds[0]);
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());

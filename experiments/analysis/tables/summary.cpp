@@ -16,7 +16,10 @@ module;
 module aabblab.tables;
 
 import aabb;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -26,23 +29,8 @@ namespace {
 using repeats_of_line = std::vector<const row*>;
 
 std::optional<double> ms_a_frame(const row& r) {
-    if (!r.first_ms || r.frames == 1) return r.first_ms;
-    return (*r.update_ms + *r.search_ms + *r.detect_ms) / static_cast<double>(r.frames - 1);
-}
-
-/// Of the parts whose columns are to be counted.
-template <class Counted>
-std::optional<std::uint64_t> bytes_of(const row& r, Counted counted) {
-    std::uint64_t all = 0;
-    for (std::size_t i = 0; i < byte_columns.size(); ++i)
-        if (counted(byte_columns[i])) all += r.bytes[i].value_or(0);
-    return all > 0 ? std::optional(all) : std::nullopt;
-}
-
-std::optional<double> bytes_a_triangle(const row& r) {
-    const auto trees = bytes_of(r, [](std::string_view part) { return part == "nodes" || part == "indices"; });
-    if (!trees || r.triangles.value_or(0) == 0) return std::nullopt;
-    return static_cast<double>(*trees) / static_cast<double>(*r.triangles);
+    static const row_value& frame = measured("frame_ms");
+    return frame(r);
 }
 
 void add(std::optional<std::uint64_t>& sum, const std::optional<std::uint64_t>& more) {
@@ -59,9 +47,10 @@ void add_seed(const row& r, double share, summary_line& line) {
     add(line.missing, r.missing);
     add(line.invented, r.invented);
     if (line.status != "inexact") line.status = r.status;
-    line.bytes = std::max(line.bytes,
-                          bytes_of(r, [](std::string_view part) { return part != "triangles" && part != "vertices"; }));
-    line.bytes_a_triangle = std::max(line.bytes_a_triangle, bytes_a_triangle(r));
+    const auto all_bytes = measured("bytes")(r);
+    line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
+    const auto of_trees = measured("tree_bytes")(r);
+    if (of_trees.value_or(0) > 0) line.bytes_a_triangle = std::max(line.bytes_a_triangle, of_trees);
     if (r.box_inflation) add(line.box_inflation, *r.box_inflation * share);
     const double frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
@@ -74,8 +63,8 @@ summary_line line_of(std::span<const row* const> repeats) {
     summary_line line;
     line.name = repeats[0]->name;
     line.repeats = repeats.size();
-    std::map<std::string_view, const row*> seeds;
-    for (const row* r : repeats) seeds.emplace(r->scene_parameters, r);
+    std::map<std::uint64_t, const row*> seeds;
+    for (const row* r : repeats) seeds.emplace(r->scene.seed, r);
     for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), line);
     std::vector<double> times, builds;
     for (const row* r : repeats)
@@ -83,6 +72,12 @@ summary_line line_of(std::span<const row* const> repeats) {
             times.push_back(*ms);
             builds.push_back(*r->build_ms);
         }
+    for (const metric& m : metrics()) {
+        std::vector<double> values;
+        for (const row* r : repeats)
+            if (const std::optional<double> value = m.of(*r)) values.push_back(*value);
+        line.metrics.push_back(values.empty() ? std::nullopt : std::optional(quartiles_of(values).median));
+    }
     if (times.empty()) return line;
     line.ms_a_frame = quartiles_of(times);
     line.build_ms = quartiles_of(builds).median;
@@ -91,22 +86,21 @@ summary_line line_of(std::span<const row* const> repeats) {
 
 /// The line's times over those of another in the same repeats of the same seeds.
 void set_ratio(summary_line& line, std::span<const row* const> repeats, std::span<const row* const> base) {
-    std::map<std::pair<std::string_view, std::uint64_t>, double> base_ms;
+    std::map<std::pair<std::uint64_t, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : base)
-        if (ms_a_frame(*b).value_or(0) > 0)
-            base_ms.emplace(std::pair(std::string_view(b->scene_parameters), b->repeat), *ms_a_frame(*b));
-    std::map<std::string_view, std::size_t> seeds;
+        if (ms_a_frame(*b).value_or(0) > 0) base_ms.emplace(std::pair(b->scene.seed, b->repeat), *ms_a_frame(*b));
+    std::map<std::uint64_t, std::size_t> seeds;
     std::map<std::uint64_t, std::size_t> processes;
     for (const row* r : repeats) {
-        seeds.emplace(r->scene_parameters, seeds.size());
+        seeds.emplace(r->scene.seed, seeds.size());
         processes.emplace(r->process, processes.size());
     }
     cells ratios(processes.size(), seeds.size());
     std::size_t count = 0;
     for (const row* r : repeats) {
-        const auto under = base_ms.find({r->scene_parameters, r->repeat});
+        const auto under = base_ms.find({r->scene.seed, r->repeat});
         if (under == base_ms.end() || ms_a_frame(*r).value_or(0) <= 0) continue;
-        ratios.add(processes.at(r->process), seeds.at(r->scene_parameters), std::log(*ms_a_frame(*r) / under->second));
+        ratios.add(processes.at(r->process), seeds.at(r->scene.seed), std::log(*ms_a_frame(*r) / under->second));
         ++count;
     }
     if (count == 0) return;
@@ -121,25 +115,19 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
 void set_labels(scene_summary& scene) {
     std::vector<contender_name> names;
     for (const summary_line& line : scene.lines) names.push_back(line.name);
-    scene.differing = differing_parts(names);
+    scene.differing = differing_kinds(names);
     const auto composition = std::ranges::find(names, "", &contender_name::engine);
-    for (const name_part& part : composition_parts) {
-        const auto is_part = [&](const name_part& other) { return other.kind == part.kind; };
-        if (composition == names.end() || std::ranges::any_of(scene.differing, is_part)) continue;
-        const std::string& value = (*composition).*part.field;
-        if (!value.empty() && value != "off")
-            scene.common += (scene.common.empty() ? "" : ", ") + std::string(part.kind) + " " + value;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        if (composition == names.end() || std::ranges::find(scene.differing, kind) != scene.differing.end()) continue;
+        if (const std::string value = text_in_line(kind, (*composition)[kind]); !value.empty())
+            scene.common += (scene.common.empty() ? "" : ", ") + std::string(name_of(kind)) + " " + value;
     }
     for (summary_line& line : scene.lines) {
         line.label = line.name.engine;
         if (!line.label.empty()) continue;
-        for (const name_part& part : scene.differing) {
-            const std::string& value = line.name.*part.field;
-            // A size does not speak for itself, as the name of a strategy does.
-            const bool is_size = part.field == &contender_name::split_large;
-            if (is_size && value == "off") continue;
-            line.label += (line.label.empty() ? "" : " + ") + (is_size ? "split_large=" + value : value);
-        }
+        for (const aabb::strategy_kind kind : scene.differing)
+            if (const std::string value = text_in_line(kind, line.name[kind]); !value.empty())
+                line.label += (line.label.empty() ? "" : " + ") + value;
         if (line.label.empty()) line.label = "this composition";
     }
 }
@@ -154,8 +142,7 @@ struct rows_of_scene {
         const auto [place, is_new] = places.emplace(r.name, lines.size());
         if (is_new) lines.emplace_back();
         lines[place->second].push_back(&r);
-        if (std::ranges::find(scene.seeds, seed_of(r.scene_parameters)) == scene.seeds.end())
-            scene.seeds.push_back(seed_of(r.scene_parameters));
+        if (std::ranges::find(scene.seeds, r.scene.seed) == scene.seeds.end()) scene.seeds.push_back(r.scene.seed);
         if (r.status == "exact") scene.digest = r.digest;
     }
 };
@@ -164,15 +151,13 @@ struct rows_of_scene {
 
 std::vector<scene_summary> summarise(std::span<const row> rows) {
     std::vector<rows_of_scene> all;
-    std::map<std::tuple<std::string, std::string, std::string>, std::size_t> places;
+    std::map<std::pair<std::string, scene_choice>, std::size_t> places;
     for (const row& r : rows) {
-        const std::string parameters = without_seed(r.scene_parameters);
-        const auto [place, is_new] = places.emplace(std::tuple(r.experiment, r.scene, parameters), all.size());
+        const auto [place, is_new] = places.emplace(std::pair(r.experiment, whatever_seed(r.scene)), all.size());
         if (is_new) {
             scene_summary& scene = all.emplace_back().scene;
             scene.experiment = r.experiment;
-            scene.scene = r.scene;
-            scene.parameters = parameters;
+            scene.scene = whatever_seed(r.scene);
             scene.objects = r.objects;
             scene.frames = r.frames;
         }

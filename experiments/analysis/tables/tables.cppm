@@ -12,7 +12,10 @@ module;
 export module aabblab.tables;
 
 import aabb;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 export namespace aabblab {
@@ -68,26 +71,20 @@ struct summary_line {
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes_by_part;  ///< the most of any seed
     std::optional<double> bytes_a_triangle;  ///< of the trees; empty where there are none to be seen
     std::optional<double> box_inflation;
-};
-
-/// One of the kinds of strategy, and where it stands in a name.
-struct name_part {
-    std::string_view kind;
-    std::string contender_name::* field;
+    std::vector<std::optional<double>> metrics;  ///< the median of each, over seeds and repeats
 };
 
 /// A scene, whatever its seeds.
 struct scene_summary {
     std::string experiment;
-    std::string scene;
-    std::string parameters;          ///< without the seed
-    std::vector<std::string> seeds;  ///< in the order of the rows
+    scene_choice scene;                ///< `whatever_seed`
+    std::vector<std::uint64_t> seeds;  ///< in the order of the rows
     std::uint64_t objects = 0;
     std::uint64_t frames = 0;
-    std::string digest;                ///< of the exact answer, where there is one seed and a line that has it
-    std::vector<name_part> differing;  ///< parts in which the compositions differ
-    std::string common;                ///< what all compositions share, "sweep one_axis, triangle exact"
-    std::vector<summary_line> lines;   ///< in the order of the rows; ratios are to the first
+    std::string digest;  ///< of the exact answer, where there is one seed and a line that has it
+    std::vector<aabb::strategy_kind> differing;  ///< kinds in which the compositions differ
+    std::string common;                          ///< what all compositions share, "sweep one_axis, triangle exact"
+    std::vector<summary_line> lines;             ///< in the order of the rows; ratios are to the first
 };
 
 /// Scene by scene, in the order of the rows.
@@ -97,7 +94,8 @@ struct scene_summary {
 [[nodiscard]] std::vector<const summary_line*> ranking_of(const scene_summary& scene);
 
 /// The lines of a scene by rank. What is the same in all of them stands in the heading in its place.
-[[nodiscard]] table table_of(const scene_summary& scene);
+/// @param shown names of metrics that have columns beside the usual ones
+[[nodiscard]] table table_of(const scene_summary& scene, std::span<const std::string> shown = {});
 /// What stands above the table, some lines.
 [[nodiscard]] std::string heading_of(const scene_summary& scene);
 
@@ -127,18 +125,11 @@ namespace aabblab {
 [[nodiscard]] std::string interval_text(const std::optional<interval>& around);
 [[nodiscard]] std::string text_or_dash(const std::optional<double>& value, int decimals);
 
-/// The parts of a name, in the order in which tables have them.
-inline constexpr std::array<name_part, 6> composition_parts{{{"sort", &contender_name::sort},
-                                                             {"partition", &contender_name::partition},
-                                                             {"sweep", &contender_name::sweep},
-                                                             {"split_large", &contender_name::split_large},
-                                                             {"tree", &contender_name::tree},
-                                                             {"triangle", &contender_name::triangle}}};
 /// Those in which some of these names of compositions differ.
-[[nodiscard]] std::vector<name_part> differing_parts(std::span<const contender_name> names);
+[[nodiscard]] std::vector<aabb::strategy_kind> differing_kinds(std::span<const contender_name> names);
 /// The columns that name the rows of a table, with the rank, and a row's cells in them. An engine stands in the first.
-[[nodiscard]] std::vector<column> name_columns_of(std::span<const name_part> differing);
-[[nodiscard]] std::vector<std::string> name_cells_of(std::span<const name_part> differing, const contender_name& name,
-                                                     std::size_t rank);
+[[nodiscard]] std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing);
+[[nodiscard]] std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing,
+                                                     const contender_name& name, std::size_t rank);
 
 }  // namespace aabblab

@@ -2,23 +2,24 @@ module;
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
-export module aabb:sah_split;
+module aabb.build.sah;
 
-import :build_node;
-import :geometry;
-import :median_split;
+import aabb;
+import aabb.build.top_down;
 
 // Sums and products as they are written: see :floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
-export namespace aabb {
+namespace aabb {
 
-namespace detail {
+namespace {
 
-inline constexpr std::size_t sah_bins = 16;
+constexpr std::size_t sah_bins = 16;
 
 /// Triangles whose centroids lie in one slice of the node.
 struct sah_bin {
@@ -41,8 +42,8 @@ private:
 };
 
 /// Takes the best split along the axis if it is better than the best so far.
-inline void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least,
-                         split_choice& best) noexcept {
+void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least,
+                  split_choice& best) noexcept {
     const sah_binning bin_of(centroids.min[axis], centroids.max[axis]);
     std::array<sah_bin, sah_bins> bins{};
     for (const build_element& e : range) {
@@ -71,19 +72,20 @@ inline void try_sah_axis(std::span<const build_element> range, int axis, const b
     }
 }
 
-}  // namespace detail
-
-/// The surface-area heuristic in bins (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): of
-/// 15 planes on each axis the one with the least sum of area times triangles on both sides; at the median where all
-/// centroids are equal.
-[[nodiscard]] inline split_choice sah_split(std::span<const build_element> range, const box& bounds) noexcept {
+split_choice sah_split(std::span<const build_element> range, const box& bounds) noexcept {
     box centroids = empty_box();
     for (const build_element& e : range) centroids = merged(centroids, bounds_of(e.centroid));
     split_choice best = median_split(range, bounds);
     double least = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
-        if (centroids.min[axis] < centroids.max[axis]) detail::try_sah_axis(range, axis, centroids, least, best);
+        if (centroids.min[axis] < centroids.max[axis]) try_sah_axis(range, axis, centroids, least, best);
     return best;
+}
+
+}  // namespace
+
+std::vector<build_node> sah_build::build(const mesh& m, leaf_pairing pairing) {
+    return build_top_down(m, pairing, sah_split);
 }
 
 }  // namespace aabb

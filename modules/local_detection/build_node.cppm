@@ -25,6 +25,10 @@ struct build_element {
     std::uint32_t triangle;
 };
 
+/// Whether a node of an even number of triangles has two children of even numbers, so that leaves come in pairs: the
+/// split moves by one triangle where it must. For layouts in which a leaf beside an internal node wastes memory.
+enum class leaf_pairing : std::uint8_t { any, even };
+
 /// How a node's triangles are split: in the order of their centroids along an axis (and of their indices where those
 /// are equal), the first `left` go to the left.
 struct split_choice {

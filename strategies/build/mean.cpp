@@ -1,22 +1,23 @@
 module;
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
-export module aabb:mean_split;
+module aabb.build.mean;
 
-import :build_node;
-import :geometry;
-import :median_split;
+import aabb;
+import aabb.build.top_down;
 
 // Sums and products as they are written: see :floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
-export namespace aabb {
+namespace aabb {
 
-/// The unbalanced split that the balanced one is held against: at the mean of the centroids along the longest axis of
-/// the box; at the median where none or all lie below the mean as rounded (equal ones).
-[[nodiscard]] inline split_choice mean_split(std::span<const build_element> range, const box& bounds) noexcept {
+namespace {
+
+split_choice mean_split(std::span<const build_element> range, const box& bounds) noexcept {
     const int axis = longest_axis(bounds);
     double sum = 0;
     for (const build_element& e : range) sum += e.centroid[axis];
@@ -24,6 +25,12 @@ export namespace aabb {
     const auto below = std::ranges::count_if(range, [&](const build_element& e) { return e.centroid[axis] < mean; });
     const auto left = static_cast<std::size_t>(below);
     return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
+}
+
+}  // namespace
+
+std::vector<build_node> mean_build::build(const mesh& m, leaf_pairing pairing) {
+    return build_top_down(m, pairing, mean_split);
 }
 
 }  // namespace aabb

@@ -1,45 +1,23 @@
 module;
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-module aabb;
+module aabb.prepare.split_large;
 
-import :append_whole;
-import :counters;
-import :error;
-import :frame_state;
-import :geometry;
-import :membership;
-import :policy;
-import :split_large;
-import :stage;
+import aabb;
 
 // Sums and products as they are written: see :floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
-
-std::optional<double> parse_split_large(std::string_view text) {
-    if (text == "off") return std::nullopt;
-    double size = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
-    if (error != std::errc{} || end != text.data() + text.size() || !(size > 0) || !std::isfinite(size))
-        throw input_error("split_large must be off or a number above 0, in mean extents, not '" + std::string(text) +
-                          "'");
-    return size;
-}
 
 namespace {
 
@@ -50,7 +28,64 @@ bool is_longer(const box& b, double longest) {
     return false;
 }
 
-}  // namespace
+class split_large_stage final : public global_stage {
+public:
+    split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted);
+
+    void insert(std::uint32_t id) override;
+    void remove(std::uint32_t id) override;
+    void update(std::span<const box> boxes) override;
+    void search(std::vector<index_pair>& pairs) override;
+    [[nodiscard]] work_counters counters() const override;
+    [[nodiscard]] std::vector<part_bytes> bytes() const override;
+    [[nodiscard]] std::vector<std::string> left_out() const override;
+
+private:
+    static constexpr std::size_t most_pieces = 16;  // on an axis
+    /// Where the pieces of an interval begin, and the last one's end.
+    struct cut_interval {
+        std::size_t pieces;
+        std::array<float, most_pieces + 1> at;
+    };
+    /// An object that is split, and into how many pieces on each axis.
+    struct split {
+        std::uint32_t object;
+        std::array<std::uint8_t, 3> pieces;
+
+        /// Beside the first, which has the object's own id.
+        [[nodiscard]] std::size_t further_pieces() const { return std::size_t{pieces[0]} * pieces[1] * pieces[2] - 1; }
+        friend bool operator==(const split&, const split&) = default;
+    };
+
+    [[nodiscard]] double longest_whole(std::span<const box> boxes) const;
+    [[nodiscard]] static cut_interval cut(float lower, float upper, double longest);
+    void find_splits(std::span<const box> boxes, double longest);
+    void assign_slots();
+    [[nodiscard]] std::uint32_t take_slot();
+    void drop_pieces();
+    void make_pieces(std::span<const box> boxes, double longest);
+    /// Of two boxes of the search.
+    [[nodiscard]] bool counts(std::uint32_t piece_a, std::uint32_t piece_b) const;
+    [[nodiscard]] std::uint32_t object_of(std::uint32_t piece) const;
+
+    std::unique_ptr<global_stage> search_;
+    double size_;
+    instrumentation counted_;
+    std::uint64_t pieces_counted_ = 0;
+    membership objects_;
+    frame_state frame_;
+    std::span<const box> boxes_;
+    std::uint32_t first_slot_ = 0;      // ids below are objects, or the first pieces of objects; the others are slots
+    std::vector<split> splits_;         // by object
+    std::vector<std::uint32_t> slots_;  // of the further pieces, split after split
+    std::vector<split> splits_now_;     // both, while they are found
+    std::vector<std::uint32_t> slots_now_;
+    std::vector<std::uint32_t> object_of_slot_;
+    std::vector<std::uint32_t> free_slots_;
+    std::vector<std::uint32_t> left_slots_;  // in this frame: the search must see them gone before others take them
+    std::vector<box> pieces_;                // what the search sees
+    std::vector<index_pair> found_;
+};
 
 split_large_stage::split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
     : search_(std::move(search)), size_(size), counted_(counted) {}
@@ -106,9 +141,9 @@ work_counters split_large_stage::counters() const {
 
 std::vector<part_bytes> split_large_stage::bytes() const {
     std::vector<part_bytes> parts = search_->bytes();
-    parts.push_back({"split_large", bytes_of(objects_) + bytes_of(splits_) + bytes_of(slots_) + bytes_of(splits_now_) +
-                                        bytes_of(slots_now_) + bytes_of(object_of_slot_) + bytes_of(free_slots_) +
-                                        bytes_of(left_slots_) + bytes_of(pieces_) + bytes_of(found_)});
+    parts.push_back({"prepare", bytes_of(objects_) + bytes_of(splits_) + bytes_of(slots_) + bytes_of(splits_now_) +
+                                    bytes_of(slots_now_) + bytes_of(object_of_slot_) + bytes_of(free_slots_) +
+                                    bytes_of(left_slots_) + bytes_of(pieces_) + bytes_of(found_)});
     return parts;
 }
 
@@ -244,6 +279,13 @@ bool split_large_stage::counts(std::uint32_t piece_a, std::uint32_t piece_b) con
 
 std::uint32_t split_large_stage::object_of(std::uint32_t piece) const {
     return piece < first_slot_ ? piece : object_of_slot_[piece - first_slot_];
+}
+
+}  // namespace
+
+std::unique_ptr<global_stage> split_large_prepare::before(std::unique_ptr<global_stage> search,
+                                                          instrumentation counted) const {
+    return std::make_unique<split_large_stage>(std::move(search), config_.size, counted);
 }
 
 }  // namespace aabb

@@ -5,24 +5,17 @@ module;
 #include <span>
 #include <vector>
 
-module aabb;
+/// Builds from the root down, node by node, whatever says where a node is split.
+export module aabb.build.top_down;
 
-import :build_node;
-import :geometry;
-import :mean_split;
-import :median_split;
-import :mesh;
-import :sah_split;
-import :tree_build;
+import aabb;
 
 // Sums and products as they are written: see :floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
-namespace aabb {
+namespace aabb::detail {
 
-namespace {
-
-build_element element_of(const mesh& m, std::uint32_t triangle) {
+[[nodiscard]] inline build_element element_of(const mesh& m, std::uint32_t triangle) {
     const triangle3f t = m.triangle(triangle);
     build_element e{bounds_of(t), {}, triangle};
     // In double, so that the sum cannot overflow.
@@ -31,66 +24,69 @@ build_element element_of(const mesh& m, std::uint32_t triangle) {
     return e;
 }
 
-box bounds_of(std::span<const build_element> range) {
+[[nodiscard]] inline box bounds_of(std::span<const build_element> range) {
     box all = range[0].bounds;
     for (const build_element& e : range.subspan(1)) all = merged(all, e.bounds);
     return all;
 }
 
-split_choice split(std::span<const build_element> range, const box& bounds, build_method method) {
-    switch (method) {
-        case build_method::mean: return mean_split(range, bounds);
-        case build_method::sah: return sah_split(range, bounds);
-        case build_method::median: break;
-    }
-    return median_split(range, bounds);
-}
-
 /// The number of triangles nearest to `left` that leaves pairs on both sides. A balanced tree grows no deeper by it: of
 /// 2m triangles, m odd, above 1 and so below some power of two, m + 1 still fit under that power.
-std::size_t paired(std::size_t left, std::size_t all) {
+[[nodiscard]] inline std::size_t paired(std::size_t left, std::size_t all) {
     if (all % 2 != 0 || left % 2 == 0 || all == 2) return left;
     return left + 1 < all ? left + 1 : left - 1;
 }
 
 /// A range of elements to become a node.
-struct task {
+struct build_task {
     std::size_t begin;
     std::size_t end;
-    std::uint32_t parent;  ///< where this is the right child; else `none`
+    std::uint32_t parent;  ///< where this is the right child; else `no_parent`
 };
-constexpr std::uint32_t none = 0xffffffff;
+inline constexpr std::uint32_t no_parent = 0xffffffff;
 
-}  // namespace
+}  // namespace aabb::detail
 
-std::vector<build_node> build_tree(const mesh& m, build_method method, leaf_pairing pairing) {
+export namespace aabb {
+
+/// @param split takes the elements of a node and their box, and returns a `split_choice`
+template <class Split>
+[[nodiscard]] std::vector<build_node> build_top_down(const mesh& m, leaf_pairing pairing, Split split) {
     std::vector<build_element> elements;
     elements.reserve(m.triangles.size());
-    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) elements.push_back(element_of(m, t));
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) elements.push_back(detail::element_of(m, t));
     std::vector<build_node> nodes;
     nodes.reserve(2 * elements.size() - 1);
-    std::vector<task> tasks{{0, elements.size(), none}};
+    // Deep trees must not cost stack.
+    std::vector<detail::build_task> tasks{{0, elements.size(), detail::no_parent}};
     while (!tasks.empty()) {
-        const task now = tasks.back();
+        const detail::build_task now = tasks.back();
         tasks.pop_back();
         const auto here = static_cast<std::uint32_t>(nodes.size());
         const std::span range = std::span(elements).subspan(now.begin, now.end - now.begin);
-        const box bounds = bounds_of(range);
-        if (now.parent != none) nodes[now.parent].right = here;
+        const box bounds = detail::bounds_of(range);
+        if (now.parent != detail::no_parent) nodes[now.parent].right = here;
         nodes.push_back({bounds, 0, range[0].triangle});
         if (range.size() == 1) continue;
-        const auto [axis, wanted] = split(range, bounds, method);
-        const std::size_t left = pairing == leaf_pairing::even ? paired(wanted, range.size()) : wanted;
+        const split_choice chosen = split(std::span<const build_element>(range), bounds);
+        const std::size_t left =
+            pairing == leaf_pairing::even ? detail::paired(chosen.left, range.size()) : chosen.left;
         std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
-                                 [axis](const build_element& p, const build_element& q) {
+                                 [axis = chosen.axis](const build_element& p, const build_element& q) {
                                      // Ties go by index, so that the tree does not depend on the library.
                                      return p.centroid[axis] != q.centroid[axis] ? p.centroid[axis] < q.centroid[axis]
                                                                                  : p.triangle < q.triangle;
                                  });
         tasks.push_back({now.begin + left, now.end, here});
-        tasks.push_back({now.begin, now.begin + left, none});
+        tasks.push_back({now.begin, now.begin + left, detail::no_parent});
     }
     return nodes;
+}
+
+/// In the middle of the centroids along the longest axis of the box: what every split falls back to where its own rule
+/// leaves a side empty.
+[[nodiscard]] inline split_choice median_split(std::span<const build_element> range, const box& bounds) noexcept {
+    return {longest_axis(bounds), range.size() / 2};
 }
 
 }  // namespace aabb

@@ -1,0 +1,71 @@
+module;
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Metrics: numbers computed from the rows of results, after the run that wrote them. One file each, listed in
+/// CMakeLists.txt.
+export module aabblab.metrics;
+
+import aabblab.results;
+
+export namespace aabblab {
+
+/// What a run must have recorded for a metric: a config asks for it by these names.
+enum class metric_group : std::uint8_t { time, counts, bytes, error };
+
+struct metric_group_info {
+    std::string_view name;
+    std::string_view summary;
+};
+inline constexpr std::array<metric_group_info, 4> metric_groups = {{
+    {"time", "wall time of build, update, search and triangle tests, apart"},
+    {"counts", "work done, counted in a pass of its own"},
+    {"bytes", "memory allocated, by part"},
+    {"error", "pairs missed and invented against the exact answer"},
+}};
+
+enum class better : std::uint8_t { less, more };
+
+/// One number of a row; empty where it has none.
+using row_value = std::function<std::optional<double>(const row&)>;
+
+struct metric {
+    std::string name;  ///< as configs and columns have it
+    std::string unit;  ///< "ms", "bytes"; empty for plain numbers
+    std::string summary;
+    metric_group group;
+    better direction;
+    row_value of;
+};
+
+/// All of them, work counters too, in the order of CMakeLists.txt.
+[[nodiscard]] std::span<const metric> metrics();
+[[nodiscard]] std::vector<std::string> metric_names();
+
+/// @throws aabb::input_error on an unknown name, with the nearest one.
+[[nodiscard]] const metric& metric_named(std::string_view name);
+
+/// Its function.
+[[nodiscard]] const row_value& measured(std::string_view name);
+
+/// Bytes of these parts together; for what no metric has.
+[[nodiscard]] row_value bytes_of(std::vector<std::string> parts);
+
+}  // namespace aabblab
+
+// What the metrics share.
+namespace aabblab {
+
+/// Frames after the first one; 1 where there is no other.
+[[nodiscard]] double frames_after_first(const row& r);
+
+/// The work of a frame, of every kind that is counted.
+[[nodiscard]] std::vector<metric> work_metrics();
+
+}  // namespace aabblab

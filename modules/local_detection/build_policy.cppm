@@ -1,0 +1,48 @@
+module;
+#include <concepts>
+#include <utility>
+#include <vector>
+
+export module aabb:build_policy;
+
+import :build_node;
+import :mesh;
+import :policy;
+
+export namespace aabb {
+
+/// Makes the binary tree that a layout packs: n triangles give n - 1 internal nodes, one triangle a leaf, in the order
+/// that `build_node` says. Boxes are the smallest ones. The same tree for the same mesh on every machine; it ends on
+/// any mesh that `require_valid` accepts, however many centroids are equal.
+template <class B>
+concept TreeBuilder = requires(const B builder, const mesh& m, leaf_pairing pairing) {
+    { builder.build(m, pairing) } -> std::same_as<std::vector<build_node>>;
+};
+
+template <class B>
+concept BuildPolicy = Strategy<B> && TreeBuilder<B>;
+
+/// A build whose type is not known where it is used: layouts are compiled apart from builds.
+class tree_builder {
+public:
+    tree_builder() = default;
+    tree_builder(const tree_builder&) = delete;
+    tree_builder& operator=(const tree_builder&) = delete;
+    virtual ~tree_builder() = default;
+
+    [[nodiscard]] virtual std::vector<build_node> build(const mesh& m, leaf_pairing pairing) const = 0;
+};
+
+template <BuildPolicy Build>
+class built_by final : public tree_builder {
+public:
+    explicit built_by(Build build = {}) : build_(std::move(build)) {}
+    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_pairing pairing) const override {
+        return build_.build(m, pairing);
+    }
+
+private:
+    [[no_unique_address]] Build build_;
+};
+
+}  // namespace aabb

@@ -1,0 +1,19 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+module aabb.build.median;
+
+import aabb;
+import aabb.build.top_down;
+
+namespace aabb {
+
+std::vector<build_node> median_build::build(const mesh& m, leaf_pairing pairing) {
+    return build_top_down(m, pairing, median_split);
+}
+
+}  // namespace aabb

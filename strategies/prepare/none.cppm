@@ -1,0 +1,25 @@
+module;
+#include <memory>
+#include <string_view>
+#include <utility>
+
+export module aabb.prepare.none;
+
+import aabb;
+
+export namespace aabb {
+
+/// Boxes are searched as they are. When to use: unless a few objects are very large.
+struct none_prepare {
+    static constexpr std::string_view name = "none";
+    static constexpr std::string_view summary = "boxes are searched as they are";
+    static constexpr std::string_view leaves_out = "no preparation: large objects are searched whole";
+
+    [[nodiscard]] static std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search, instrumentation) {
+        return search;
+    }
+};
+
+static_assert(PreparePolicy<none_prepare>);
+
+}  // namespace aabb

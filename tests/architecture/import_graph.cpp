@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../experiments/temporary_folder.hpp"
+
+namespace {
+
+/// The rooms from the ground up: each may import those above it in this list, and itself.
+const std::vector<std::string> rooms = {
+    "modules",
+    "strategies/prepare",
+    "strategies/sort",
+    "strategies/partition",
+    "strategies/sweep",
+    "strategies/build",
+    "strategies/tree",
+    "strategies/triangle",
+    "strategies/registry",
+    "validation/engines",
+    "validation/truth",
+    "validation",
+    "experiments/support",
+    "experiments/files",
+    "experiments/scenes",
+    "experiments/results",
+    "experiments/analysis/statistics",
+    "experiments/analysis/metrics",
+    "experiments/analysis/figures",
+    "experiments/analysis/tables",
+    "experiments/analysis/comparison",
+    "experiments/configs",
+    "experiments/play",
+    "experiments/benchmarks",
+    "paper/claims",
+    "paper/reproduce",
+    "experiments/commands",
+    "experiments",
+};
+
+/// Who may not import whom, though it stands above.
+bool is_forbidden(const std::string& from, const std::string& to) {
+    const auto is_kind = [](const std::string& room) {
+        return room.starts_with("strategies/") && room != "strategies/registry";
+    };
+    // Strategies of different kinds know nothing of each other; only the commands know the paper, which reads results
+    // through their analysis.
+    return (is_kind(from) && is_kind(to)) || (from == "experiments" && to.starts_with("paper")) ||
+           (from.starts_with("paper") && (to == "experiments/play" || to == "experiments/configs"));
+}
+
+/// The room that a file stands in: the longest name that its path begins with.
+std::string room_of(const std::string& file) {
+    std::string best;
+    for (const std::string& room : rooms)
+        if (file.starts_with(room + "/") && room.size() > best.size()) best = room;
+    return best;
+}
+
+struct arrow {
+    std::string from, to;  ///< rooms
+    std::string file, module;
+};
+
+struct imports {
+    std::string file;
+    std::vector<std::string> modules;
+};
+
+/// What stands in a source before any code: the module it declares, and those it imports.
+imports imports_of(const std::filesystem::path& path, const std::string& file,
+                   std::map<std::string, std::string>& home) {
+    static const std::regex declaration(R"(^(export )?module ([a-z_.0-9]+)(:[a-z_0-9]+)?;)");
+    static const std::regex import_line(R"(^(export )?import ([a-z_.0-9]+);)");
+    imports all{file, {}};
+    std::ifstream in(path);
+    for (std::string line; std::getline(in, line);) {
+        std::smatch found;
+        if (std::regex_search(line, found, declaration) && found[1].matched && !found[3].matched) home[found[2]] = file;
+        if (std::regex_search(line, found, import_line)) all.modules.push_back(found[2]);
+    }
+    return all;
+}
+
+/// The arrows between rooms, each once, with a file that makes it.
+std::vector<arrow> arrows_in(const std::filesystem::path& root) {
+    std::map<std::string, std::string> home{{"aabb.strategies", "strategies/registry/strategies.cppm.in"}};
+    std::vector<imports> sources;
+    for (const char* folder : {"modules", "strategies", "validation", "experiments", "paper"}) {
+        if (!std::filesystem::exists(root / folder)) continue;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+            const std::string ending = entry.path().extension().string();
+            if (ending == ".cpp" || ending == ".cppm" || ending == ".hpp")
+                sources.push_back(
+                    imports_of(entry.path(), std::filesystem::relative(entry.path(), root).generic_string(), home));
+        }
+    }
+    std::ranges::sort(sources, {}, &imports::file);
+    std::vector<arrow> arrows;
+    std::set<std::pair<std::string, std::string>> known;
+    for (const auto& [file, modules] : sources)
+        for (const std::string& module : modules) {
+            INFO(file << " imports " << module);
+            REQUIRE(home.contains(module));
+            const arrow one{room_of(file), room_of(home.at(module)), file, module};
+            REQUIRE(!one.from.empty());
+            if (one.from != one.to && known.emplace(one.from, one.to).second) arrows.push_back(one);
+        }
+    return arrows;
+}
+
+/// "experiments/play <- paper/claims: FILE imports MODULE", a line each.
+std::string arrows_back(const std::vector<arrow>& arrows) {
+    std::string text;
+    for (const arrow& one : arrows)
+        if (std::ranges::find(rooms, one.from) < std::ranges::find(rooms, one.to) || is_forbidden(one.from, one.to))
+            text += one.from + " -> " + one.to + ": " + one.file + " imports " + one.module + "\n";
+    return text;
+}
+
+/// Each room with what it imports, from the ground up.
+std::string drawing_of(const std::vector<arrow>& arrows) {
+    std::string text;
+    for (const std::string& room : rooms) {
+        std::set<std::string> below;
+        for (const arrow& one : arrows)
+            if (one.from == room) below.insert(one.to);
+        text += room + (below.empty() ? "" : " <-");
+        for (const std::string& other : below) text += " " + other;
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("No import runs back from a room to one that stands on it") {
+    const std::vector<arrow> arrows = arrows_in(AABBLAB_SOURCE);
+    std::ofstream(AABBLAB_DRAWING) << drawing_of(arrows);
+    REQUIRE(arrows.size() > 40);
+    CHECK(arrows_back(arrows) == "");
+}
+
+TEST_CASE("An import that runs back is found") {
+    const temporary_folder folder;
+    const auto write = [&](const std::string& file, const std::string& text) {
+        const std::filesystem::path path = folder.path() / file;
+        std::filesystem::create_directories(path.parent_path());
+        std::ofstream(path) << text;
+    };
+    write("modules/geometry.cppm", "export module aabb.geometry;\n");
+    write("strategies/sort/a.cppm", "export module aabb.sort.a;\nimport aabb.geometry;\n");
+    write("strategies/tree/b.cppm", "export module aabb.tree.b;\nimport aabb.geometry;\n");
+    write("paper/claims/claims.cppm", "export module aabblab.claims;\nimport aabb.geometry;\n");
+    CHECK(arrows_back(arrows_in(folder.path())).empty());
+    CHECK(drawing_of(arrows_in(folder.path())).find("strategies/sort <- modules\n") != std::string::npos);
+    write("modules/mesh.cpp", "module aabb.geometry;\nimport aabb.sort.a;\n");
+    CHECK(arrows_back(arrows_in(folder.path())) ==
+          "modules -> strategies/sort: modules/mesh.cpp imports aabb.sort.a\n");
+    write("modules/mesh.cpp", "module aabb.geometry;\n");
+    write("strategies/tree/b.cppm", "export module aabb.tree.b;\nimport aabb.sort.a;\n");
+    CHECK(arrows_back(arrows_in(folder.path())).starts_with("strategies/tree -> strategies/sort: "));
+    write("strategies/tree/b.cppm", "export module aabb.tree.b;\n");
+    write("experiments/analysis/tables/t.cpp", "import aabblab.claims;\n");
+    CHECK(arrows_back(arrows_in(folder.path())).starts_with("experiments/analysis/tables -> paper/claims: "));
+}
