@@ -1,5 +1,5 @@
-# aabblab_strategy(KIND NAME): declares a strategy.
-function(aabblab_strategy kind name)
+# aabblab_family(KIND NAME): declares what strategies of a kind share: a module like theirs that no name chooses.
+function(aabblab_family kind name)
     if(NOT TARGET aabblab_strategies)
         add_library(aabblab_strategies STATIC)
         add_library(aabblab::strategies ALIAS aabblab_strategies)
@@ -11,6 +11,11 @@ function(aabblab_strategy kind name)
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${kind}/${name}.cpp)
         target_sources(aabblab_strategies PRIVATE ${kind}/${name}.cpp)
     endif()
+endfunction()
+
+# aabblab_strategy(KIND NAME): declares a strategy, which is built as a family is and chosen by its name.
+function(aabblab_strategy kind name)
+    aabblab_family(${kind} ${name})
     set_property(GLOBAL APPEND PROPERTY aabblab_${kind}_names ${name})
 endfunction()
 

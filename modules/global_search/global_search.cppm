@@ -7,20 +7,23 @@ module;
 #include <utility>
 #include <vector>
 
-export module aabb:global_search;
+export module aabb.global_search;
 
-import :append_whole;
-import :counters;
-import :floating_point;
-import :frame_state;
-import :geometry;
-import :membership;
-import :policy;
-import :projection;
-import :projection_lists;
-import :sort_policy;
-import :subset_lists;
-import :sweep_policy;
+export import :inversions;
+export import :membership;
+export import :pair_set;
+export import :partition_policy;
+export import :projection;
+export import :projection_lists;
+export import :sort_policy;
+export import :spread;
+export import :subset_lists;
+export import :sweep_policy;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.policy;
 
 export namespace aabb {
 
@@ -32,7 +35,7 @@ export namespace aabb {
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters = no_counters>
 class global_search {
     static constexpr bool cuts = CuttingPartition<Partition>;
-    static_assert(detail::is_accepted<detail::sentence_of<Sort, Partition, Sweep>()>);
+    static_assert(is_accepted<sentence_of<Sort, Partition, Sweep>()>);
 
 public:
     global_search()
@@ -127,7 +130,7 @@ private:
 /// own, and needs of the sort only that it tells of its swaps.
 template <SortPolicy Sort, PartitionPolicy Partition, CoherentSweep Sweep, CounterPolicy Counters>
 class global_search<Sort, Partition, Sweep, Counters> {
-    static_assert(detail::is_accepted<detail::sentence_of<Sort, Partition, Sweep>()>);
+    static_assert(is_accepted<sentence_of<Sort, Partition, Sweep>()>);
 
 public:
     global_search() = default;

@@ -5,9 +5,9 @@ module;
 #include <span>
 #include <vector>
 
-export module aabb:inversions;
+export module aabb.global_search:inversions;
 
-import :policy;
+import aabb.base;
 import :projection;
 
 export namespace aabb {

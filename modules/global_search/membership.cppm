@@ -6,10 +6,9 @@ module;
 #include <string>
 #include <vector>
 
-export module aabb:membership;
+export module aabb.global_search:membership;
 
-import :error;
-import :policy;
+import aabb.base;
 
 export namespace aabb {
 

@@ -6,11 +6,10 @@ module;
 #include <span>
 #include <vector>
 
-export module aabb:pair_set;
+export module aabb.global_search:pair_set;
 
-import :error;
-import :geometry;
-import :policy;
+import aabb.base;
+import aabb.geometry;
 
 export namespace aabb {
 

@@ -8,13 +8,13 @@ module;
 #include <type_traits>
 #include <vector>
 
-export module aabb:projection_lists;
+export module aabb.global_search:projection_lists;
 
-import :counters;
-import :geometry;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
 import :inversions;
 import :membership;
-import :policy;
 import :projection;
 import :sort_policy;
 

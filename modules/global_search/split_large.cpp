@@ -14,19 +14,15 @@ module;
 #include <utility>
 #include <vector>
 
-module aabb;
+module aabb.prepare.split_large;
 
-import :append_whole;
-import :counters;
-import :error;
-import :frame_state;
-import :geometry;
-import :membership;
-import :policy;
-import :split_large;
-import :stage;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

@@ -9,13 +9,13 @@ module;
 #include <string_view>
 #include <vector>
 
-export module aabb:split_large;
+export module aabb.prepare.split_large;
 
-import :counters;
-import :frame_state;
-import :geometry;
-import :membership;
-import :stage;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
 
 export namespace aabb {
 

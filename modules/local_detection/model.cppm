@@ -4,12 +4,10 @@ module;
 #include <utility>
 #include <vector>
 
-export module aabb:model;
+export module aabb.local_detection:model;
 
-import :error;
-import :floating_point;
-import :geometry;
-import :mesh;
+import aabb.base;
+import aabb.geometry;
 import :mesh_fit;
 import :tree_policy;
 

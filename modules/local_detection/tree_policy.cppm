@@ -5,12 +5,11 @@ module;
 #include <cstdint>
 #include <vector>
 
-export module aabb:tree_policy;
+export module aabb.local_detection:tree_policy;
 
-import :geometry;
+import aabb.geometry;
+import aabb.policy;
 import :leaf_test;
-import :mesh;
-import :policy;
 
 export namespace aabb {
 

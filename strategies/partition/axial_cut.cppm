@@ -14,9 +14,12 @@ module;
 
 export module aabb.partition.axial_cut;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -9,7 +9,9 @@ module;
 
 export module aabb.sort.shell;
 
-import aabb;
+import aabb.counters;
+import aabb.global_search;
+import aabb.policy;
 
 export namespace aabb {
 

@@ -10,7 +10,10 @@ module;
 
 export module aabb.sweep.all_axes;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
 
 export namespace aabb {
 

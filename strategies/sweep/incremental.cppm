@@ -12,7 +12,10 @@ module;
 
 export module aabb.sweep.incremental;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
 
 export namespace aabb {
 

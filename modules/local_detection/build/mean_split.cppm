@@ -3,13 +3,13 @@ module;
 #include <cstddef>
 #include <span>
 
-export module aabb:mean_split;
+export module aabb.local_detection:mean_split;
 
+import aabb.geometry;
 import :build_node;
-import :geometry;
 import :median_split;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -1,10 +1,10 @@
 module;
 #include <span>
 
-export module aabb:median_split;
+export module aabb.local_detection:median_split;
 
+import aabb.geometry;
 import :build_node;
-import :geometry;
 
 export namespace aabb {
 

@@ -5,13 +5,13 @@ module;
 #include <limits>
 #include <span>
 
-export module aabb:sah_split;
+export module aabb.local_detection:sah_split;
 
+import aabb.geometry;
 import :build_node;
-import :geometry;
 import :median_split;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

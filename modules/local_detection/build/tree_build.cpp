@@ -5,17 +5,11 @@ module;
 #include <span>
 #include <vector>
 
-module aabb;
+module aabb.local_detection;
 
-import :build_node;
-import :geometry;
-import :mean_split;
-import :median_split;
-import :mesh;
-import :sah_split;
-import :tree_build;
+import aabb.geometry;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

@@ -4,11 +4,11 @@ module;
 #include <string_view>
 #include <vector>
 
-export module aabb:tree_build;
+export module aabb.local_detection:tree_build;
 
+import aabb.geometry;
+import aabb.policy;
 import :build_node;
-import :mesh;
-import :policy;
 
 export namespace aabb {
 
