@@ -1,4 +1,5 @@
 module;
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -16,6 +17,7 @@ void append_whole(std::vector<T>& list, Append append) {
         list.resize(before);
         throw;
     }
+    assert(list.size() >= before);
 }
 
 }  // namespace aabb

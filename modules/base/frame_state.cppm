@@ -1,4 +1,5 @@
 module;
+#include <cassert>
 #include <cstdint>
 #include <utility>
 
@@ -29,7 +30,10 @@ public:
     }
 
     /// At the end of an update.
-    void taken() noexcept { state_ = state::taken; }
+    void taken() noexcept {
+        assert(state_ == state::none);
+        state_ = state::taken;
+    }
 
     /// Before a search.
     /// @throws input_error when no update, or not the last one, came to its end.

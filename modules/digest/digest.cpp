@@ -2,8 +2,10 @@ module;
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -30,6 +32,7 @@ digest::digest(digest&&) noexcept = default;
 digest& digest::operator=(digest&&) noexcept = default;
 
 void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
+    assert(std::ranges::is_sorted(sorted));
     for (const auto [a, b] : sorted) add(std::array{frame, a, b});
 }
 

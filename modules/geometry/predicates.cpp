@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,7 @@ struct parts {
 };
 
 parts parts_of(double x) noexcept {
+    assert(std::isfinite(x));
     const auto bits = std::bit_cast<std::uint64_t>(x);
     const int exponent = static_cast<int>(bits >> 52 & 0x7ff);
     const std::uint64_t fraction = bits & 0xf'ffff'ffff'ffff;

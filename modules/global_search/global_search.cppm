@@ -1,4 +1,5 @@
 module;
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -72,12 +73,14 @@ public:
         if constexpr (cuts) {
             subsets_.clear();
             partition_.fit(lists_.all(boxes));
+            assert(partition_.subset_count() > 0);
             if (partition_.subset_count() > 1)
                 subsets_.distribute(partition_, lists_.all(boxes), swept, counters_);
             else
                 counters_.add(work::subsets);
         }
         if constexpr (SegmentingPartition<Partition>) {
+            assert(partition_.segments().got <= partition_.segments().wanted);
             counters_.add(work::segments_wanted, partition_.segments().wanted);
             counters_.add(work::segments_got, partition_.segments().got);
         }

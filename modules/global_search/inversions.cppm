@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -26,6 +27,7 @@ public:
                     merge(begin, std::min(begin + width, keys_.size()), std::min(begin + 2 * width, keys_.size()));
             keys_.swap(merged_);
         }
+        assert(std::ranges::is_sorted(keys_));
         return inversions;
     }
 

@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -58,6 +59,7 @@ public:
 
     /// To be called when arrivals and departures have been taken note of.
     void settle() {
+        assert(std::ranges::all_of(arrivals_, [&](std::uint32_t id) { return is_arrival(id); }));
         if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
         for (const std::uint32_t id : arrivals_) state_[id] = state::known;
         departures_ = false;

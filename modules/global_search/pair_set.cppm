@@ -1,5 +1,6 @@
 module;
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -84,6 +85,7 @@ private:
 
     void grow() {
         table_.assign(table_.empty() ? 64 : 2 * table_.size(), none);
+        assert(std::has_single_bit(table_.size()) && 2 * pairs_.size() <= table_.size());
         for (std::size_t i = 0; i < pairs_.size(); ++i) table_[slot_of(pairs_[i])] = static_cast<std::uint32_t>(i);
     }
 

@@ -1,5 +1,7 @@
 module;
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,6 +29,7 @@ public:
     /// @throws input_error when the partition makes more than 2^24 + 64 n copies of n objects.
     template <CuttingPartition Partition, CounterPolicy Counters>
     void distribute(const Partition& partition, const whole_subset& all, axis_set axes, Counters& counters) {
+        assert((axes & every_axis) != 0);
         bool counted = false;
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes, k)) {
@@ -41,6 +44,8 @@ public:
                 partition.for_each_subset(p.id, all.boxes[p.id], [&](std::uint32_t s, axis_set owned) {
                     entries_[k][next_[s]++] = {p.id, owned};
                 });
+            // The partition said the same of every box as when it was counted.
+            assert(std::ranges::equal(next_, std::span(starts_).subspan(1)));
         }
         counters.add(work::subsets, size());
         counters.add(work::subset_copies, starts_.back());
@@ -49,6 +54,7 @@ public:
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
 
     [[nodiscard]] partition_subset subset(std::uint32_t s, std::span<const box> boxes) const noexcept {
+        assert(s < size());
         partition_subset part{boxes, {}};
         for (std::size_t k = 0; k < 3; ++k)
             if (!entries_[k].empty())

@@ -1,5 +1,6 @@
 module;
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -95,6 +96,7 @@ public:
                 drain(m, m, here, emit);
             }
         });
+        assert(stack_.empty());
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }

@@ -1,4 +1,6 @@
 module;
+#include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +16,7 @@ namespace aabb {
 
 pipeline::pipeline(const mesh_scene& scene, global_stage& global, local_stage& local)
     : scene_(scene), global_(global), local_(local), boxes_(scene.mesh_of.size()) {
+    assert(std::ranges::all_of(scene.mesh_of, [&](std::uint32_t m) { return m < scene.meshes.size(); }));
     for (const mesh& m : scene.meshes) {
         local_.add_model(m);
         mesh_bounds_.push_back(bounds_of(m));
@@ -53,6 +56,7 @@ void pipeline::search() {
     searched_ = false;
     candidates_.clear();
     global_.search(candidates_);
+    assert(std::ranges::all_of(candidates_, [&](index_pair p) { return p.a < p.b && p.b < boxes_.size(); }));
     searched_ = true;
 }
 
@@ -60,6 +64,7 @@ void pipeline::detect() {
     contacts_.clear();
     if (!searched_)
         throw input_error("there are no candidates to decide on: search was not called, or did not succeed");
+    assert(poses_.size() == boxes_.size());
     append_whole(contacts_, [&] {
         for (const auto [a, b] : candidates_) {
             triangle_pairs_.clear();

@@ -1,9 +1,11 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -94,6 +96,7 @@ public:
         if (subsets > most_subsets)
             throw input_error("axial_cut: " + std::to_string(wanted_) + " segments an axis make " +
                               std::to_string(subsets) + " subsets, more than 2^26");
+        assert(subsets == subset_count());
     }
 
     [[nodiscard]] inline std::uint32_t subset_count() const noexcept {
@@ -170,6 +173,12 @@ private:
             }
             cuts.push_back(list[place].key);
         }
+        assert(is_ascending(cuts));
+    }
+
+    /// No two are equal.
+    [[nodiscard]] static bool is_ascending(std::span<const float> cuts) {
+        return std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end();
     }
 
     [[nodiscard]] static std::size_t first_beyond(std::span<const projection> list, float key) {
