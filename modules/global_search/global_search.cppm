@@ -1,4 +1,5 @@
 module;
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -7,20 +8,23 @@ module;
 #include <utility>
 #include <vector>
 
-export module aabb:global_search;
+export module aabb.global_search;
 
-import :append_whole;
-import :counters;
-import :floating_point;
-import :frame_state;
-import :geometry;
-import :membership;
-import :policy;
-import :projection;
-import :projection_lists;
-import :sort_policy;
-import :subset_lists;
-import :sweep_policy;
+export import :inversions;
+export import :membership;
+export import :pair_set;
+export import :partition_policy;
+export import :projection;
+export import :projection_lists;
+export import :sort_policy;
+export import :spread;
+export import :subset_lists;
+export import :sweep_policy;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.policy;
 
 export namespace aabb {
 
@@ -32,7 +36,7 @@ export namespace aabb {
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters = no_counters>
 class global_search {
     static constexpr bool cuts = CuttingPartition<Partition>;
-    static_assert(detail::is_accepted<detail::sentence_of<Sort, Partition, Sweep>()>);
+    static_assert(is_accepted<sentence_of<Sort, Partition, Sweep>()>);
 
 public:
     global_search()
@@ -69,12 +73,14 @@ public:
         if constexpr (cuts) {
             subsets_.clear();
             partition_.fit(lists_.all(boxes));
+            assert(partition_.subset_count() > 0);
             if (partition_.subset_count() > 1)
                 subsets_.distribute(partition_, lists_.all(boxes), swept, counters_);
             else
                 counters_.add(work::subsets);
         }
         if constexpr (SegmentingPartition<Partition>) {
+            assert(partition_.segments().got <= partition_.segments().wanted);
             counters_.add(work::segments_wanted, partition_.segments().wanted);
             counters_.add(work::segments_got, partition_.segments().got);
         }
@@ -127,7 +133,7 @@ private:
 /// own, and needs of the sort only that it tells of its swaps.
 template <SortPolicy Sort, PartitionPolicy Partition, CoherentSweep Sweep, CounterPolicy Counters>
 class global_search<Sort, Partition, Sweep, Counters> {
-    static_assert(detail::is_accepted<detail::sentence_of<Sort, Partition, Sweep>()>);
+    static_assert(is_accepted<sentence_of<Sort, Partition, Sweep>()>);
 
 public:
     global_search() = default;

@@ -1,13 +1,14 @@
 module;
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-export module aabb:inversions;
+export module aabb.global_search:inversions;
 
-import :policy;
+import aabb.base;
 import :projection;
 
 export namespace aabb {
@@ -26,6 +27,7 @@ public:
                     merge(begin, std::min(begin + width, keys_.size()), std::min(begin + 2 * width, keys_.size()));
             keys_.swap(merged_);
         }
+        assert(std::ranges::is_sorted(keys_));
         return inversions;
     }
 

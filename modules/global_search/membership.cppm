@@ -1,15 +1,15 @@
 module;
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-export module aabb:membership;
+export module aabb.global_search:membership;
 
-import :error;
-import :policy;
+import aabb.base;
 
 export namespace aabb {
 
@@ -59,6 +59,7 @@ public:
 
     /// To be called when arrivals and departures have been taken note of.
     void settle() {
+        assert(std::ranges::all_of(arrivals_, [&](std::uint32_t id) { return is_arrival(id); }));
         if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
         for (const std::uint32_t id : arrivals_) state_[id] = state::known;
         departures_ = false;

@@ -1,16 +1,16 @@
 module;
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
-export module aabb:pair_set;
+export module aabb.global_search:pair_set;
 
-import :error;
-import :geometry;
-import :policy;
+import aabb.base;
+import aabb.geometry;
 
 export namespace aabb {
 
@@ -85,6 +85,7 @@ private:
 
     void grow() {
         table_.assign(table_.empty() ? 64 : 2 * table_.size(), none);
+        assert(std::has_single_bit(table_.size()) && 2 * pairs_.size() <= table_.size());
         for (std::size_t i = 0; i < pairs_.size(); ++i) table_[slot_of(pairs_[i])] = static_cast<std::uint32_t>(i);
     }
 

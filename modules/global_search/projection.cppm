@@ -4,9 +4,9 @@ module;
 #include <cstdint>
 #include <span>
 
-export module aabb:projection;
+export module aabb.global_search:projection;
 
-import :geometry;
+import aabb.geometry;
 
 export namespace aabb {
 

@@ -2,19 +2,20 @@ module;
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <type_traits>
 #include <vector>
 
-export module aabb:projection_lists;
+export module aabb.global_search:projection_lists;
 
-import :counters;
-import :geometry;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
 import :inversions;
 import :membership;
-import :policy;
 import :projection;
 import :sort_policy;
 
@@ -43,6 +44,7 @@ public:
     /// Brings the lists of these axes up to the boxes of a frame, and drops the others.
     template <SortPolicy Sort>
     void sort(std::span<const box> boxes, axis_set axes, Sort& sort, Counters& counters) {
+        assert(axes != 0 && (axes & ~every_axis) == 0);
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(axes & ~axes_, k)) {
                 lists_[k] = members();
@@ -58,6 +60,7 @@ public:
         }
         axes_ = axes;
         arrivals_ = 0;
+        assert(are_of_one_length());
     }
 
     [[nodiscard]] axis_set axes() const noexcept { return axes_; }
@@ -77,7 +80,14 @@ private:
 
     /// Any one list, which has every object.
     [[nodiscard]] const std::vector<projection>& members() const noexcept {
+        assert(axes_ != 0);
         return lists_[static_cast<std::size_t>(std::countr_zero(axes_))];
+    }
+
+    [[nodiscard]] bool are_of_one_length() const noexcept {
+        bool same = true;
+        for (std::size_t k = 0; k < 3; ++k) same &= lists_[k].size() == (has_axis(axes_, k) ? members().size() : 0);
+        return same;
     }
 
     static void sort_new(std::span<const box> boxes, std::size_t axis, std::span<projection> list) {
@@ -120,6 +130,7 @@ private:
 
     /// From the back, so that it needs no room of its own.
     void merge_moved_into(std::span<projection> list, std::size_t still, CounterPolicy auto& counters) {
+        assert(list.size() == still + moved_.size());
         std::size_t out = list.size();
         for (std::size_t i = moved_.size(); i-- > 0;) {
             const std::size_t place = place_of(moved_[i], list.first(still), counters);
@@ -131,6 +142,7 @@ private:
             still = place;
             list[out] = moved_[i];
         }
+        assert(out == still);
     }
 
     /// Behind those of a sorted list that do not follow the entry; doubling steps from the back find it.

@@ -2,10 +2,10 @@ module;
 #include <concepts>
 #include <span>
 
-export module aabb:sort_policy;
+export module aabb.global_search:sort_policy;
 
-import :counters;
-import :policy;
+import aabb.counters;
+import aabb.policy;
 import :projection;
 
 export namespace aabb {

@@ -4,13 +4,13 @@ module;
 #include <cstdint>
 #include <span>
 
-export module aabb:spread;
+export module aabb.global_search:spread;
 
-import :geometry;
+import aabb.geometry;
 import :membership;
 import :projection;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 // How boxes lie along the axes: what strategies choose axes by.

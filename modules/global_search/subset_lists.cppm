@@ -1,55 +1,22 @@
 module;
+#include <algorithm>
 #include <array>
-#include <concepts>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-export module aabb:subset_lists;
+export module aabb.global_search:subset_lists;
 
-import :counters;
-import :error;
-import :geometry;
-import :membership;
-import :policy;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import :partition_policy;
 import :projection;
 
 export namespace aabb {
-
-/// Puts objects into subsets, such that two overlapping boxes share at least one and exactly one owns the pair. A
-/// policy without `for_each_subset` keeps all objects together.
-template <class P>
-concept PartitionPolicy = Strategy<P>;
-
-/// A partition that really cuts. `axes(boxes, objects, swept)` says which sorted lists it needs beside those of the
-/// sweep; `fit(all)` decides the subsets of a frame; `for_each_subset(id, b, visit)` calls
-/// `visit(subset, owned_axes)` for each subset that box b of object `id` reaches into, and `copies(id, b)` says how
-/// many those are without a walk over them.
-template <class P>
-concept CuttingPartition =
-    PartitionPolicy<P> &&
-    requires(P policy, const P fitted, std::span<const box> boxes, const membership& objects, axis_set swept,
-             const whole_subset& all, std::uint32_t id, const box& b, void (*visit)(std::uint32_t, axis_set)) {
-        { policy.axes(boxes, objects, swept) } -> std::same_as<axis_set>;
-        policy.fit(all);
-        { fitted.subset_count() } -> std::convertible_to<std::uint32_t>;
-        fitted.for_each_subset(id, b, visit);
-        { fitted.copies(id, b) } -> std::convertible_to<std::uint64_t>;
-    };
-
-/// Into how many segments axes were to be cut, and were; summed over the axes.
-struct segment_counts {
-    std::uint64_t wanted;
-    std::uint64_t got;
-};
-
-/// A partition whose subsets come from segments of axes.
-template <class P>
-concept SegmentingPartition = CuttingPartition<P> && requires(const P fitted) {
-    { fitted.segments() } -> std::same_as<segment_counts>;
-};
 
 /// The subsets of one frame: for each list the entries of all subsets, subset after subset. Filled from sorted lists in
 /// order, so the sublists come sorted for free.
@@ -62,6 +29,7 @@ public:
     /// @throws input_error when the partition makes more than 2^24 + 64 n copies of n objects.
     template <CuttingPartition Partition, CounterPolicy Counters>
     void distribute(const Partition& partition, const whole_subset& all, axis_set axes, Counters& counters) {
+        assert((axes & every_axis) != 0);
         bool counted = false;
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes, k)) {
@@ -76,6 +44,8 @@ public:
                 partition.for_each_subset(p.id, all.boxes[p.id], [&](std::uint32_t s, axis_set owned) {
                     entries_[k][next_[s]++] = {p.id, owned};
                 });
+            // The partition said the same of every box as when it was counted.
+            assert(std::ranges::equal(next_, std::span(starts_).subspan(1)));
         }
         counters.add(work::subsets, size());
         counters.add(work::subset_copies, starts_.back());
@@ -84,6 +54,7 @@ public:
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
 
     [[nodiscard]] partition_subset subset(std::uint32_t s, std::span<const box> boxes) const noexcept {
+        assert(s < size());
         partition_subset part{boxes, {}};
         for (std::size_t k = 0; k < 3; ++k)
             if (!entries_[k].empty())

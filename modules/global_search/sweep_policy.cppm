@@ -4,14 +4,13 @@ module;
 #include <string_view>
 #include <vector>
 
-export module aabb:sweep_policy;
+export module aabb.global_search:sweep_policy;
 
-import :counters;
-import :geometry;
+import aabb.counters;
+import aabb.geometry;
+import aabb.policy;
 import :membership;
-import :policy;
 import :projection;
-import :sort_policy;
 
 export namespace aabb {
 

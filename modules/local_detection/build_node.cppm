@@ -2,9 +2,9 @@ module;
 #include <cstddef>
 #include <cstdint>
 
-export module aabb:build_node;
+export module aabb.local_detection:build_node;
 
-import :geometry;
+import aabb.geometry;
 
 export namespace aabb {
 

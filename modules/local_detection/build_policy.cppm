@@ -3,11 +3,11 @@ module;
 #include <utility>
 #include <vector>
 
-export module aabb:build_policy;
+export module aabb.local_detection:build_policy;
 
+import aabb.geometry;
+import aabb.policy;
 import :build_node;
-import :mesh;
-import :policy;
 
 export namespace aabb {
 

@@ -1,7 +1,7 @@
 module;
 #include <cstdint>
 
-export module aabb:leaf_test;
+export module aabb.local_detection:leaf_test;
 
 export namespace aabb {
 

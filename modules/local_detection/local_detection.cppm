@@ -1,5 +1,6 @@
 module;
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -7,20 +8,21 @@ module;
 #include <utility>
 #include <vector>
 
-export module aabb:local_detection;
+export module aabb.local_detection;
 
-import :append_whole;
-import :counters;
-import :floating_point;
-import :geometry;
-import :leaf_test;
-import :mesh;
-import :model;
-import :policy;
-import :pose;
-import :tree_policy;
-import :triangle_box;
-import :triangle_policy;
+export import :build_node;
+export import :build_policy;
+export import :leaf_test;
+export import :mesh_fit;
+export import :model;
+export import :tree_policy;
+export import :tree_survey;
+export import :triangle_policy;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.policy;
 
 export namespace aabb {
 
@@ -29,7 +31,7 @@ export namespace aabb {
 /// query throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
-    static_assert(detail::is_accepted<detail::sentence_of<Tree, Triangle>()>);
+    static_assert(is_accepted<sentence_of<Tree, Triangle>()>);
 
 public:
     local_detection()
@@ -91,6 +93,7 @@ public:
                 drain(m, m, here, emit);
             }
         });
+        assert(stack_.empty());
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }

@@ -1,8 +1,8 @@
 module;
 
-export module aabb:mesh_fit;
+export module aabb.local_detection:mesh_fit;
 
-import :error;
+import aabb.base;
 
 export namespace aabb {
 

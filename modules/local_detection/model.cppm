@@ -4,13 +4,11 @@ module;
 #include <utility>
 #include <vector>
 
-export module aabb:model;
+export module aabb.local_detection:model;
 
+import aabb.base;
+import aabb.geometry;
 import :build_policy;
-import :error;
-import :floating_point;
-import :geometry;
-import :mesh;
 import :mesh_fit;
 import :tree_policy;
 

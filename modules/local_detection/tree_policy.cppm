@@ -6,13 +6,12 @@ module;
 #include <span>
 #include <vector>
 
-export module aabb:tree_policy;
+export module aabb.local_detection:tree_policy;
 
+import aabb.geometry;
+import aabb.policy;
 import :build_node;
-import :geometry;
 import :leaf_test;
-import :mesh;
-import :policy;
 
 export namespace aabb {
 

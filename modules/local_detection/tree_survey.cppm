@@ -6,10 +6,9 @@ module;
 #include <string>
 #include <vector>
 
-export module aabb:tree_survey;
+export module aabb.local_detection:tree_survey;
 
-import :geometry;
-import :mesh;
+import aabb.geometry;
 import :tree_policy;
 
 export namespace aabb {

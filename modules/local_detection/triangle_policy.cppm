@@ -1,10 +1,10 @@
 module;
 #include <concepts>
 
-export module aabb:triangle_policy;
+export module aabb.local_detection:triangle_policy;
 
-import :geometry;
-import :policy;
+import aabb.geometry;
+import aabb.policy;
 
 export namespace aabb {
 

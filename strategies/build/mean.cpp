@@ -7,10 +7,11 @@ module;
 
 module aabb.build.mean;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 import aabb.build.top_down;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

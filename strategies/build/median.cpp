@@ -7,7 +7,8 @@ module;
 
 module aabb.build.median;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 import aabb.build.top_down;
 
 namespace aabb {

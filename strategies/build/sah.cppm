@@ -4,7 +4,8 @@ module;
 
 export module aabb.build.sah;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 
 export namespace aabb {
 

@@ -8,9 +8,10 @@ module;
 /// Builds from the root down, node by node, whatever says where a node is split.
 export module aabb.build.top_down;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb::detail {

@@ -1,9 +1,11 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -14,9 +16,12 @@ module;
 
 export module aabb.partition.axial_cut;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
@@ -91,6 +96,7 @@ public:
         if (subsets > most_subsets)
             throw input_error("axial_cut: " + std::to_string(wanted_) + " segments an axis make " +
                               std::to_string(subsets) + " subsets, more than 2^26");
+        assert(subsets == subset_count());
     }
 
     [[nodiscard]] inline std::uint32_t subset_count() const noexcept {
@@ -167,6 +173,12 @@ private:
             }
             cuts.push_back(list[place].key);
         }
+        assert(is_ascending(cuts));
+    }
+
+    /// No two are equal.
+    [[nodiscard]] static bool is_ascending(std::span<const float> cuts) {
+        return std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end();
     }
 
     [[nodiscard]] static std::size_t first_beyond(std::span<const projection> list, float key) {

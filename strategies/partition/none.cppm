@@ -3,7 +3,7 @@ module;
 
 export module aabb.partition.none;
 
-import aabb;
+import aabb.global_search;
 
 export namespace aabb {
 

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,9 +14,12 @@ module;
 
 export module aabb.partition.uniform_grid;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
@@ -70,6 +74,7 @@ public:
         double size = std::max(2 * extents / objects, span * 0x1p-20);
         if (size == 0) return;  // all objects at one point
         while (cells_of(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
+        assert(static_cast<double>(subset_count()) <= most_cells);
     }
 
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return cells_[0] * cells_[1] * cells_[2]; }

@@ -5,7 +5,7 @@ module;
 
 export module aabb.prepare.none;
 
-import aabb;
+import aabb.pipeline;
 
 export namespace aabb {
 

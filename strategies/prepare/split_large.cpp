@@ -12,9 +12,13 @@ module;
 
 module aabb.prepare.split_large;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

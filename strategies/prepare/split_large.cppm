@@ -12,7 +12,8 @@ module;
 
 export module aabb.prepare.split_large;
 
-import aabb;
+import aabb.pipeline;
+import aabb.policy;
 
 export namespace aabb {
 

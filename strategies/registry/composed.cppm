@@ -9,7 +9,9 @@ module;
 /// the registry. It knows neither kinds nor stages.
 export module aabb.composed;
 
-import aabb;
+import aabb.counters;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 
 export namespace aabb::composed {

@@ -11,7 +11,11 @@ module;
 /// A global search composed statically, behind the interface of a stage.
 export module aabb.composed.global_search;
 
-import aabb;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.composed;
 
 export namespace aabb::composed {

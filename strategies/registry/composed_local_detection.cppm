@@ -13,7 +13,12 @@ module;
 /// A local detection composed statically, behind the interface of a stage; and a triangle test alone.
 export module aabb.composed.local_detection;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.composed;
 
 export namespace aabb::composed {

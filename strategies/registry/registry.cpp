@@ -11,7 +11,10 @@ module;
 
 module aabb.registry;
 
-import aabb;
+import aabb.base;
+import aabb.local_detection;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.composed;
 import aabb.composed.global_search;
 import aabb.composed.local_detection;

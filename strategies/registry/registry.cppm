@@ -9,7 +9,9 @@ module;
 /// when a strategy changes.
 export module aabb.registry;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 export import :kinds;
 
 export namespace aabb {

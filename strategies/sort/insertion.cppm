@@ -5,7 +5,8 @@ module;
 
 export module aabb.sort.insertion;
 
-import aabb;
+import aabb.counters;
+import aabb.global_search;
 
 export namespace aabb {
 

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,7 +10,9 @@ module;
 
 export module aabb.sort.shell;
 
-import aabb;
+import aabb.counters;
+import aabb.global_search;
+import aabb.policy;
 
 export namespace aabb {
 
@@ -41,6 +44,7 @@ public:
             return;
         }
         const table& gaps = config_.gaps == gap_sequence::ciura ? ciura : tokuda;
+        assert(list.size() / 2 <= gaps.back());
         for (std::size_t i = gaps.size(); i-- > 0;)
             if (gaps[i] < list.size()) pass(list, gaps[i], counters);
     }

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,7 +11,10 @@ module;
 
 export module aabb.sweep.all_axes;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
 
 export namespace aabb {
 
@@ -40,6 +44,7 @@ public:
             if (const auto& list = subset.lists[static_cast<std::size_t>(k)]; !list.empty()) {
                 axis[n_lists] = k;
                 lists[n_lists++] = list;
+                assert(list.size() == lists[0].size());
             }
         if (n_lists == 0 || lists[0].size() < 2) return;
         const std::size_t n = lists[0].size();
@@ -69,6 +74,7 @@ public:
         for (std::size_t first = 0; first < n; first += rows) {
             const std::size_t last = std::min(first + rows, n);
             marks_.assign((last - first) * words, 0);
+            assert(marks_.size() <= std::max(most_words, words));
             walk(subset.boxes, lists[1], axis[1], first, last, counters, [&](std::size_t i, std::size_t j) {
                 if (overlap_on_first(i, j)) marks_[(i - first) * words + j / 64] |= std::uint64_t{1} << j % 64;
             });

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <ranges>
@@ -12,7 +13,10 @@ module;
 
 export module aabb.sweep.incremental;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
 
 export namespace aabb {
 
@@ -66,6 +70,7 @@ public:
         }
         if (!objects.arrivals().empty()) find_pairs_of_arrivals(boxes, objects, longest_axis(separation), counters);
         before_.assign(boxes.begin(), boxes.end());
+        assert(are_of_one_length());
     }
 
     void search(std::vector<index_pair>& pairs) const {
@@ -129,9 +134,18 @@ private:
         });
     }
 
+    /// The lists of the axes that have one, and the others are empty.
+    [[nodiscard]] bool are_of_one_length() const {
+        const std::size_t ends = ends_[static_cast<std::size_t>(std::countr_zero(axes_))].size();
+        bool same = true;
+        for (std::size_t k = 0; k < 3; ++k) same &= ends_[k].size() == (has_axis(axes_, k) ? ends : 0);
+        return same;
+    }
+
     /// A list from scratch, of all objects.
     void begin_axis(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         std::vector<interval_end>& list = ends_[axis];
+        assert(list.empty());
         list.reserve(2 * boxes.size());
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             if (!objects.contains(id)) continue;
@@ -187,6 +201,8 @@ private:
             place_[e.id] = static_cast<std::uint32_t>(own.size());
             own.push_back(e.id);
         }
+        // Every interval that begins ends.
+        assert(active_[0].empty() && active_[1].empty());
     }
 
     axis_set axes_ = 0;                              // with a list

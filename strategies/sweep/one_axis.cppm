@@ -11,7 +11,11 @@ module;
 
 export module aabb.sweep.one_axis;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
 
 export namespace aabb {
 

@@ -8,7 +8,8 @@ module;
 
 export module aabb.tree.canonical;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 
 export namespace aabb {
 

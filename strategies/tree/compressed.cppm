@@ -8,7 +8,11 @@ module;
 
 export module aabb.tree.compressed;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.tree.box_cursor;
+import aabb.tree.leafless_config;
+import aabb.tree.sibling_planes;
 
 export namespace aabb {
 

@@ -11,7 +11,11 @@ module;
 
 export module aabb.tree.compressed_literal;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.tree.box_cursor;
+import aabb.tree.leafless_config;
+import aabb.tree.sibling_planes;
 
 export namespace aabb {
 

@@ -8,7 +8,10 @@ module;
 
 export module aabb.tree.leafless;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.tree.box_cursor;
+import aabb.tree.leafless_config;
 
 export namespace aabb {
 

@@ -8,7 +8,10 @@ module;
 
 export module aabb.tree.shared_planes;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.tree.box_cursor;
+import aabb.tree.sibling_planes;
 
 export namespace aabb {
 

@@ -6,9 +6,10 @@ module;
 
 export module aabb.triangle.devillers_guigue;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 
-// Sums and products as they are written: see :floating_point.
+// Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -8,7 +8,8 @@ module;
 
 export module aabb.triangle.exact;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 
 export namespace aabb {
 

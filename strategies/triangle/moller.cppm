@@ -4,7 +4,9 @@ module;
 
 export module aabb.triangle.moller;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.triangle.interval_test;
 
 export namespace aabb {
 

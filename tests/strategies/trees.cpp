@@ -15,6 +15,7 @@
 import aabb;
 import aabb.registry;
 import aabb.strategies;
+import aabb.tree.leafless_config;
 
 using namespace aabb;
 using Catch::Matchers::Message;

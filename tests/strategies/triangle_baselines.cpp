@@ -10,6 +10,7 @@ import aabb;
 import aabb.registry;
 import aabb.triangle.exact;
 import aabb.triangle.devillers_guigue;
+import aabb.triangle.interval_test;
 import aabb.triangle.moller;
 import aabb.triangle.moller_double;
 

@@ -1,0 +1,23 @@
+module;
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+export module aabb.base:append_whole;
+
+export namespace aabb {
+
+/// Calls `append`, which appends to a list; when it throws, what it had appended is taken back.
+template <class T, class Append>
+void append_whole(std::vector<T>& list, Append append) {
+    const std::size_t before = list.size();
+    try {
+        append();
+    } catch (...) {
+        list.resize(before);
+        throw;
+    }
+    assert(list.size() >= before);
+}
+
+}  // namespace aabb

@@ -1,0 +1,9 @@
+/// What everything else stands on: how input is refused, what of a half-made change stays, the bytes that things hold,
+/// and the arithmetic that answers need.
+export module aabb.base;
+
+export import :append_whole;
+export import :error;
+export import :floating_point;
+export import :frame_state;
+export import :memory;

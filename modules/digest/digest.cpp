@@ -1,0 +1,53 @@
+module;
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+
+module aabb.digest;
+
+import aabb.geometry;
+
+namespace aabb {
+
+static_assert(std::endian::native == std::endian::little, "digests hash the bytes of little-endian u32s");
+
+struct digest::state {
+    XXH3_state_t hash;
+};
+
+digest::digest() : state_(std::make_unique<state>()) {
+    XXH3_64bits_reset(&state_->hash);
+}
+digest::~digest() = default;
+digest::digest(digest&&) noexcept = default;
+digest& digest::operator=(digest&&) noexcept = default;
+
+void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
+    assert(std::ranges::is_sorted(sorted));
+    for (const auto [a, b] : sorted) add(std::array{frame, a, b});
+}
+
+void digest::add(std::span<const std::uint32_t> record) {
+    XXH3_64bits_update(&state_->hash, record.data(), record.size_bytes());
+}
+
+std::uint64_t digest::value() const {
+    return XXH3_64bits_digest(&state_->hash);
+}
+
+std::string digest::text() const {
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value()));
+    return digits.data();
+}
+
+}  // namespace aabb

@@ -1,0 +1,38 @@
+module;
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+export module aabb.digest;
+
+import aabb.geometry;
+
+export namespace aabb {
+
+/// XXH3-64 over the sorted records of a result, little-endian u32s: `frame, a, b` for pairs of boxes or triangles,
+/// `frame, a, b, triangle of a, triangle of b` for contacts. Equal for equal sets, whatever computed them.
+class digest {
+public:
+    digest();
+    ~digest();
+    digest(digest&&) noexcept;
+    digest& operator=(digest&&) noexcept;
+
+    /// @param sorted the pairs of one frame, ascending, each once; frames are added in order.
+    void add(std::uint32_t frame, std::span<const index_pair> sorted);
+
+    /// Any record of u32s.
+    void add(std::span<const std::uint32_t> record);
+
+    [[nodiscard]] std::uint64_t value() const;
+
+    /// 16 hexadecimal digits.
+    [[nodiscard]] std::string text() const;
+
+private:
+    struct state;
+    std::unique_ptr<state> state_;
+};
+
+}  // namespace aabb

@@ -1,0 +1,11 @@
+/// Points, triangles, boxes, meshes and poses, and what is decided by their coordinates alone.
+export module aabb.geometry;
+
+export import :box;
+export import :index_pair;
+export import :mesh;
+export import :pose;
+export import :predicates;
+export import :triangle;
+export import :triangle_box;
+export import :vec3;

@@ -1,0 +1,22 @@
+module;
+#include <compare>
+#include <cstdint>
+
+export module aabb.geometry:index_pair;
+
+export namespace aabb {
+
+/// Two indices, objects or triangles. As a pair of objects of one scene: a < b.
+struct index_pair {
+    std::uint32_t a;
+    std::uint32_t b;
+
+    friend constexpr auto operator<=>(const index_pair&, const index_pair&) = default;
+};
+
+/// The pair with the lower index first.
+[[nodiscard]] constexpr index_pair ordered_pair(std::uint32_t a, std::uint32_t b) noexcept {
+    return a < b ? index_pair{a, b} : index_pair{b, a};
+}
+
+}  // namespace aabb

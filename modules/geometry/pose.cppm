@@ -1,0 +1,174 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+export module aabb.geometry:pose;
+
+import aabb.base;
+import :box;
+import :triangle;
+import :vec3;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Rigid motion x -> R x + t, in double. `rotation` is row-major.
+struct pose {
+    std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    vec3d translation = {0, 0, 0};
+
+    friend bool operator==(const pose&, const pose&) = default;
+};
+
+/// max |(R Rᵀ - I)[i][j]|, 0 for an exact rotation.
+[[nodiscard]] inline double orthonormality_error(const pose& p) noexcept {
+    double worst = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            double sum = i == j ? -1.0 : 0.0;
+            for (int k = 0; k < 3; ++k) sum += p.rotation[3 * i + k] * p.rotation[3 * j + k];
+            worst = std::max(worst, std::isnan(sum) ? std::numeric_limits<double>::infinity() : std::abs(sum));
+        }
+    return worst;
+}
+
+/// Refuses what is not a rigid motion: NaN, infinity, R not orthonormal within 1e-6, or a reflection.
+/// @throws input_error that says which.
+inline void require_rigid(const pose& p) {
+    for (const double r : p.rotation)
+        if (!std::isfinite(r)) throw input_error("the pose is not rigid: its rotation has an entry that is not finite");
+    for (const double t : p.translation.at)
+        if (!std::isfinite(t)) throw input_error("the pose has a translation that is not finite");
+    if (orthonormality_error(p) > 1e-6)
+        throw input_error(
+            "the pose is not rigid: its rotation is not orthonormal within 1e-6 (R Rᵀ differs from 1 by " +
+            std::to_string(orthonormality_error(p)) + ")");
+    const auto& r = p.rotation;
+    const double determinant =
+        r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
+    if (determinant < 0) throw input_error("the pose is not rigid: its rotation is a reflection (determinant -1)");
+}
+
+/// Takes vertices and boxes of mesh B into the frame of mesh A.
+///
+/// The image of a vertex defines the truth for every triangle test: z = Rᴬᵀ(Rᴮ x + (tᴮ - tᴬ)) in double, each sum left
+/// to right, no fused multiply-add, rounded to float once. The translations are subtracted first, so that two meshes
+/// moved together keep their vertices, bit by bit, however far: as long as tᴮ - tᴬ does not change.
+class relative_pose {
+public:
+    /// @param reach box of the vertices of B in B's frame; only boxes and vertices inside it may be taken over.
+    /// @throws input_error when they may lie beyond the range of float in A's frame.
+    relative_pose(const pose& a, const pose& b, const box& reach) {
+        for (int i = 0; i < 3; ++i) {
+            between_[i] = b.translation[i] - a.translation[i];
+            for (int k = 0; k < 3; ++k) {
+                columns_b_[k][i] = b.rotation[3 * i + k];
+                rows_a_[k][i] = a.rotation[3 * k + i];
+            }
+        }
+        for (int i = 0; i < 3; ++i) {
+            double magnitude = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double r = a.rotation[3 * k + i];
+                double row = std::abs(between_[k]);
+                for (int j = 0; j < 3; ++j)
+                    row += std::abs(b.rotation[3 * k + j]) *
+                           std::max(std::abs(double{reach.min[j]}), std::abs(double{reach.max[j]}));
+                magnitude += std::abs(r) * row;
+                shift_[i] += r * between_[k];
+            }
+            for (int j = 0; j < 3; ++j) {
+                double sum = 0;
+                for (int k = 0; k < 3; ++k) sum += a.rotation[3 * k + i] * b.rotation[3 * k + j];
+                turn_[j][i] = sum;
+                absolute_turn_[j][i] = std::abs(sum);
+            }
+            // The vertex formula rounds at most 7 times on the way of any term, the box formula at most 10 times (3 in
+            // the product matrix or shift, 5 to the centre or 6 to the radius with the margin in it, and their sum):
+            // each within γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and
+            // the growing.
+            margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude +
+                         std::numeric_limits<double>::denorm_min();
+        }
+        if (!is_valid((*this)(reach)))
+            throw input_error("seen from one mesh, the other lies beyond the range of float");
+    }
+
+    /// Image of a vertex of B, as defined above.
+    [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {
+        const lanes turned =
+            (columns_b_[0] * double{x[0]} + columns_b_[1] * double{x[1]}) + columns_b_[2] * double{x[2]};
+        const lanes world = turned + between_;
+        return in_float((rows_a_[0] * world[0] + rows_a_[1] * world[1]) + rows_a_[2] * world[2]);
+    }
+
+    [[nodiscard]] inline triangle3f operator()(const triangle3f& t) const noexcept {
+        return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
+    }
+
+    /// A box in A's frame that holds the image of every vertex in the box. The bounds are taken in double, grown by the
+    /// margin derived above and rounded to nearest like the images: rounding is monotone, so none can leave the box.
+    [[nodiscard]] inline box operator()(const box& b) const noexcept {
+        lanes centre = shift_;
+        lanes radius = margin_;
+        for (int j = 0; j < 3; ++j) {
+            centre += turn_[j] * ((double{b.min[j]} + double{b.max[j]}) / 2);
+            radius += absolute_turn_[j] * ((double{b.max[j]} - double{b.min[j]}) / 2);
+        }
+        return {in_float(centre - radius), in_float(centre + radius)};
+    }
+
+private:
+    /// x, y, z and nothing.
+    using lanes = double __attribute__((vector_size(32)));
+
+    [[nodiscard]] static inline vec3f in_float(const lanes& v) noexcept {
+        return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+    }
+
+    std::array<lanes, 3> columns_b_{};
+    std::array<lanes, 3> rows_a_{};
+    lanes between_{};              // tᴮ - tᴬ
+    std::array<lanes, 3> turn_{};  // columns of RᴬᵀRᴮ
+    std::array<lanes, 3> absolute_turn_{};
+    lanes shift_{};  // Rᴬᵀ(tᴮ - tᴬ)
+    lanes margin_{};
+};
+
+/// The box, in the world, of a mesh at a pose, for global search: grown so that two meshes whose triangles meet in A's
+/// frame (`relative_pose`) always have overlapping world boxes.
+///
+/// What separates the two frames, over a length L = A's reach plus B's diameter, each box bearing its own share of L:
+/// - the rounding of images to float, at most 2^-24 L, or half the least denormal, 2^-150;
+/// - the distance of a pose from a rotation, at most 1e-6 an entry of R Rᵀ (`require_rigid`), so 3e-6 L;
+/// - the rounding in double of images and of the sums below, at most 16 u (|t| + L), u = 2^-53.
+/// The box grows by 2^-18 L > (2^-24 + 3e-6) L, 2^-48 (|t| + L) and 2^-146.
+[[nodiscard]] inline box world_bounds(const box& local, const pose& p) noexcept {
+    double length = 0;
+    for (int k = 0; k < 3; ++k)
+        length += std::max(std::abs(double{local.min[k]}), std::abs(double{local.max[k]})) +
+                  (double{local.max[k]} - double{local.min[k]});
+    box world;
+    for (int i = 0; i < 3; ++i) {
+        double low = p.translation[i];
+        double high = p.translation[i];
+        for (int j = 0; j < 3; ++j) {
+            const double u = p.rotation[3 * i + j] * local.min[j];
+            const double v = p.rotation[3 * i + j] * local.max[j];
+            low += std::min(u, v);
+            high += std::max(u, v);
+        }
+        const double growth = length * 0x1p-18 + (std::abs(p.translation[i]) + length) * 0x1p-48 + 0x1p-146;
+        // Rounding to nearest is monotone, so both boxes of a pair may be rounded alike.
+        world.min[i] = static_cast<float>(low - growth);
+        world.max[i] = static_cast<float>(high + growth);
+    }
+    return world;
+}
+
+}  // namespace aabb

@@ -1,0 +1,152 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+module aabb.geometry;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+namespace aabb {
+
+namespace {
+
+__extension__ using wide = unsigned __int128;
+
+/// Magnitude of a finite double as mantissa · 2^(place - 1074).
+struct parts {
+    std::uint64_t mantissa;
+    int place;
+};
+
+parts parts_of(double x) noexcept {
+    assert(std::isfinite(x));
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const int exponent = static_cast<int>(bits >> 52 & 0x7ff);
+    const std::uint64_t fraction = bits & 0xf'ffff'ffff'ffff;
+    return exponent == 0 ? parts{fraction, 0} : parts{fraction | std::uint64_t{1} << 52, exponent - 1};
+}
+
+/// Exact sum of up to 24 products of three finite doubles: one fixed-point number wide enough for all of them
+/// (Kulisch's accumulator), so that nothing overflows, underflows or is rounded. Digits of 32 bits stand in signed
+/// words of 64, whose upper halves collect carries until the sign is asked for.
+class product_sum {
+public:
+    void add(double x, double y, double z) noexcept {
+        const parts a = parts_of(x);
+        const parts b = parts_of(y);
+        const parts c = parts_of(z);
+        if (a.mantissa == 0 || b.mantissa == 0 || c.mantissa == 0) return;
+        const bool negative = (std::signbit(x) != std::signbit(y)) != std::signbit(z);
+        const int place = a.place + b.place + c.place;
+        const int first = place / 32;
+        const int shift = place % 32;
+        // The product has at most 159 bits, and with the shift 190: the lowest 64, then the others.
+        const wide ab = wide{a.mantissa} * b.mantissa;
+        const wide low = wide{static_cast<std::uint64_t>(ab)} * c.mantissa;
+        wide high = (ab >> 64) * c.mantissa + (low >> 64);
+        const wide shifted = wide{static_cast<std::uint64_t>(low)} << shift;
+        high = (high << shift) + (shifted >> 64);
+        const std::array<std::uint32_t, 6> digits{
+            static_cast<std::uint32_t>(shifted),    static_cast<std::uint32_t>(shifted >> 32),
+            static_cast<std::uint32_t>(high),       static_cast<std::uint32_t>(high >> 32),
+            static_cast<std::uint32_t>(high >> 64), static_cast<std::uint32_t>(high >> 96)};
+        for (std::size_t k = 0; k < digits.size(); ++k) {
+            std::int64_t& word = words_[static_cast<std::size_t>(first) + k];
+            word += negative ? -std::int64_t{digits[k]} : std::int64_t{digits[k]};
+        }
+        first_ = std::min(first_, first);
+        last_ = std::max(last_, first + 6);
+    }
+
+    void subtract(double x, double y, double z) noexcept { add(-x, y, z); }
+
+    /// Adds det(p, q, r).
+    void add_determinant(const vec3d& p, const vec3d& q, const vec3d& r) noexcept {
+        for (int i = 0; i < 3; ++i) {
+            const int j = (i + 1) % 3;
+            const int k = (i + 2) % 3;
+            add(p[i], q[j], r[k]);
+            subtract(p[i], q[k], r[j]);
+        }
+    }
+
+    /// Adds the component of p × q between the axes x and y.
+    void add_cross(const vec3d& p, const vec3d& q, int x, int y) noexcept {
+        add(p[x], q[y], 1);
+        subtract(p[y], q[x], 1);
+    }
+
+    [[nodiscard]] int sign() const noexcept {
+        std::int64_t carry = 0;
+        bool zero = true;
+        for (int i = first_; i < last_; ++i) {
+            const std::int64_t sum = words_[static_cast<std::size_t>(i)] + carry;
+            zero &= (sum & 0xffff'ffff) == 0;
+            carry = sum >> 32;
+        }
+        if (carry < 0) return -1;
+        return zero && carry == 0 ? 0 : 1;
+    }
+
+private:
+    static constexpr int words = 3 * 2045 / 32 + 6;  // the greatest place of a mantissa is 2045
+
+    std::array<std::int64_t, words> words_{};
+    int first_ = words;
+    int last_ = 0;
+};
+
+/// p - q, if no coordinate needs rounding (Knuth's two-sum; an overflow leaves a NaN behind and counts as rounded).
+bool exact_difference(const vec3d& p, const vec3d& q, vec3d& difference) noexcept {
+    bool exact = true;
+    for (int k = 0; k < 3; ++k) {
+        const double d = p[k] - q[k];
+        const double q_part = p[k] - d;
+        const double p_part = d + q_part;
+        exact &= (p[k] - p_part) + (q_part - q[k]) == 0;
+        difference[k] = d;
+    }
+    return exact;
+}
+
+}  // namespace
+
+int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+    product_sum sum;
+    vec3d ab;
+    vec3d ac;
+    vec3d ad;
+    if (exact_difference(b, a, ab) && exact_difference(c, a, ac) && exact_difference(d, a, ad)) {
+        sum.add_determinant(ab, ac, ad);
+    } else {
+        sum.add_determinant(b, c, d);
+        sum.add_determinant(c, a, d);
+        sum.add_determinant(a, b, d);
+        sum.add_determinant(b, a, c);
+    }
+    return sum.sign();
+}
+
+int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+    product_sum sum;
+    const int x = (axis + 1) % 3;
+    const int y = (axis + 2) % 3;
+    vec3d ab;
+    vec3d ac;
+    if (exact_difference(b, a, ab) && exact_difference(c, a, ac)) {
+        sum.add_cross(ab, ac, x, y);
+    } else {
+        sum.add_cross(a, b, x, y);
+        sum.add_cross(b, c, x, y);
+        sum.add_cross(c, a, x, y);
+    }
+    return sum.sign();
+}
+
+}  // namespace aabb

@@ -1,0 +1,48 @@
+module;
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+export module aabb.global_search:partition_policy;
+
+import aabb.geometry;
+import aabb.policy;
+import :membership;
+import :projection;
+
+export namespace aabb {
+
+/// Puts objects into subsets, such that two overlapping boxes share at least one and exactly one owns the pair. A
+/// policy without `for_each_subset` keeps all objects together.
+template <class P>
+concept PartitionPolicy = Strategy<P>;
+
+/// A partition that really cuts. `axes(boxes, objects, swept)` says which sorted lists it needs beside those of the
+/// sweep; `fit(all)` decides the subsets of a frame; `for_each_subset(id, b, visit)` calls
+/// `visit(subset, owned_axes)` for each subset that box b of object `id` reaches into, and `copies(id, b)` says how
+/// many those are without a walk over them.
+template <class P>
+concept CuttingPartition =
+    PartitionPolicy<P> &&
+    requires(P policy, const P fitted, std::span<const box> boxes, const membership& objects, axis_set swept,
+             const whole_subset& all, std::uint32_t id, const box& b, void (*visit)(std::uint32_t, axis_set)) {
+        { policy.axes(boxes, objects, swept) } -> std::same_as<axis_set>;
+        policy.fit(all);
+        { fitted.subset_count() } -> std::convertible_to<std::uint32_t>;
+        fitted.for_each_subset(id, b, visit);
+        { fitted.copies(id, b) } -> std::convertible_to<std::uint64_t>;
+    };
+
+/// Into how many segments axes were to be cut, and were; summed over the axes.
+struct segment_counts {
+    std::uint64_t wanted;
+    std::uint64_t got;
+};
+
+/// A partition whose subsets come from segments of axes.
+template <class P>
+concept SegmentingPartition = CuttingPartition<P> && requires(const P fitted) {
+    { fitted.segments() } -> std::same_as<segment_counts>;
+};
+
+}  // namespace aabb

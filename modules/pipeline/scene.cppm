@@ -1,0 +1,51 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+export module aabb.pipeline:scene;
+
+import aabb.geometry;
+
+// What happens in a scene, frame by frame; a scene is played once, from frame 0 to the last, so only one frame is held.
+export namespace aabb {
+
+/// Boxes that move. Object i of a frame is its box i.
+class box_scene {
+public:
+    box_scene() = default;
+    box_scene(const box_scene&) = delete;
+    box_scene& operator=(const box_scene&) = delete;
+    virtual ~box_scene() = default;
+
+    [[nodiscard]] virtual std::size_t objects() const = 0;
+    /// Frames played in all, the first one included.
+    [[nodiscard]] virtual std::size_t frames() const = 0;
+    /// The boxes of the next frame; false after the last.
+    /// @throws input_error on a recording that is cut off or holds a box that is not valid.
+    virtual bool next(std::vector<box>& boxes) = 0;
+    /// Which objects take part in the frame last played, by id, 0 or 1; empty where all do. The box of an absent object
+    /// is valid and overlaps no other, so that whoever ignores this finds the same pairs.
+    [[nodiscard]] virtual std::span<const std::uint8_t> present() const { return {}; }
+};
+
+/// Meshes, which mesh each object is, and the objects' poses frame by frame.
+class mesh_scene {
+public:
+    mesh_scene() = default;
+    mesh_scene(const mesh_scene&) = delete;
+    mesh_scene& operator=(const mesh_scene&) = delete;
+    virtual ~mesh_scene() = default;
+
+    std::vector<mesh> meshes;
+    std::vector<std::uint32_t> mesh_of;  ///< by object
+
+    [[nodiscard]] virtual std::size_t frames() const = 0;
+    /// The poses of the next frame, one an object; false after the last. Vertices of meshes that deform move too.
+    virtual bool next(std::vector<pose>& poses) = 0;
+    /// Whether vertices of this mesh move from frame to frame, so that trees and boxes of it must be fitted anew.
+    [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
+};
+
+}  // namespace aabb

@@ -1,0 +1,112 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+export module aabb.pipeline:stage;
+
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+
+// The two stages as a program sees them. Each is composed statically behind one call a frame (global search) or one
+// call a pair of meshes (local detection); between them stands a buffer of candidate pairs.
+export namespace aabb {
+
+/// What one part of a stage holds on the heap.
+struct part_bytes {
+    std::string part;  ///< "projections", "partition", "sweep", "nodes", …
+    std::size_t bytes;
+};
+
+/// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
+/// every later frame, by an input_error; a search that throws appends nothing.
+class global_stage {
+public:
+    global_stage() = default;
+    global_stage(const global_stage&) = delete;
+    global_stage& operator=(const global_stage&) = delete;
+    virtual ~global_stage() = default;
+
+    /// An object comes (its id must not be present) or goes (its id must be). Boxes of others take no part.
+    virtual void insert(std::uint32_t id) = 0;
+    virtual void remove(std::uint32_t id) = 0;
+
+    /// Takes the boxes of a frame, indexed by id: sorts and partitions.
+    /// @throws input_error on a box that is not finite or inverted, and on boxes where no object was ever inserted.
+    virtual void update(std::span<const box> boxes) = 0;
+
+    /// Appends every overlapping pair of present objects, each once, a < b, in no particular order. The boxes given to
+    /// `update` must still be there.
+    /// @throws input_error when the last update did not succeed, or there was none.
+    virtual void search(std::vector<index_pair>& pairs) = 0;
+
+    [[nodiscard]] virtual work_counters counters() const = 0;
+    [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
+    /// What this stage does without, a sentence each.
+    [[nodiscard]] virtual std::vector<std::string> left_out() const = 0;
+};
+
+/// Two meshes at two poses in, intersecting triangle pairs out.
+class local_stage {
+public:
+    local_stage() = default;
+    local_stage(const local_stage&) = delete;
+    local_stage& operator=(const local_stage&) = delete;
+    virtual ~local_stage() = default;
+
+    /// Builds the tree of a mesh, which must outlive the stage; models are numbered from 0.
+    /// @throws input_error on a mesh that `require_valid` refuses.
+    virtual std::uint32_t add_model(const mesh& m) = 0;
+
+    /// Appends every pair of intersecting triangles (a of model A, b of model B), each once, in no particular order.
+    virtual void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                           std::vector<index_pair>& pairs) = 0;
+
+    /// Any one intersecting pair.
+    [[nodiscard]] virtual std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a,
+                                                               std::uint32_t model_b, const pose& pose_b) = 0;
+
+    /// How many intersecting pairs there are.
+    [[nodiscard]] virtual std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                                    const pose& pose_b) = 0;
+
+    /// Appends every pair of intersecting triangles a < b of one model, each once, in no particular order. Neighbours
+    /// are among them, since they meet in the vertices that they share.
+    virtual void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) = 0;
+
+    /// Takes note that vertices of the model's mesh have moved. When it throws, queries of the model do too, until a
+    /// refit succeeds.
+    /// @throws input_error when the mesh is no longer valid or of as many triangles.
+    virtual void refit(std::uint32_t model) = 0;
+
+    /// Walks the model's whole tree and holds it against the mesh; nothing for a system that shows no tree.
+    [[nodiscard]] virtual std::optional<tree_survey> survey(std::uint32_t model) const = 0;
+
+    [[nodiscard]] virtual work_counters counters() const = 0;
+    [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
+    [[nodiscard]] virtual std::vector<std::string> left_out() const = 0;
+};
+
+/// A triangle test alone; it throws input_error as `require_ieee_arithmetic`.
+class triangle_test {
+public:
+    triangle_test() = default;
+    triangle_test(const triangle_test&) = delete;
+    triangle_test& operator=(const triangle_test&) = delete;
+    virtual ~triangle_test() = default;
+
+    [[nodiscard]] virtual bool intersects(const triangle3f& s, const triangle3f& t) const = 0;
+    /// @throws input_error when the test is made for float only.
+    [[nodiscard]] virtual bool intersects(const triangle3d& s, const triangle3d& t) const = 0;
+    [[nodiscard]] virtual bool takes_double() const = 0;
+};
+
+/// Whether a stage counts its work. Timing runs are not counted.
+enum class instrumentation { none, counters };
+
+}  // namespace aabb

@@ -1,0 +1,41 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+export module aabb.policy:choice_parameter;
+
+export namespace aabb {
+
+/// One of several names; the field is an enumeration numbered from 0 in the order of the names.
+template <class Config, class Enum, std::size_t N>
+struct choice_parameter {
+    std::string_view name;
+    Enum Config::* field;
+    std::array<std::string_view, N> names;
+    std::string_view help;
+
+    [[nodiscard]] std::string expected() const {
+        std::string text = "one of ";
+        for (std::size_t i = 0; i < N; ++i) text += (i ? ", " : "") + std::string(names[i]);
+        return text;
+    }
+
+    [[nodiscard]] std::string show(const Config& config) const {
+        const auto chosen = static_cast<std::size_t>(config.*field);
+        assert(chosen < N);
+        return std::string(names[chosen]);
+    }
+
+    [[nodiscard]] bool set(Config& config, std::string_view text) const {
+        const auto found = std::ranges::find(names, text);
+        if (found == names.end()) return false;
+        config.*field = static_cast<Enum>(found - names.begin());
+        return true;
+    }
+};
+
+}  // namespace aabb

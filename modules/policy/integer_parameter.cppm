@@ -1,0 +1,51 @@
+module;
+#include <charconv>
+#include <concepts>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+export module aabb.policy:integer_parameter;
+
+export namespace aabb {
+
+/// A whole number in [least, most], as text; with `or_auto`, "auto" too, which leaves the optional empty.
+template <class Config, class Value, std::integral Whole>
+struct integer_parameter {
+    std::string_view name;
+    Value Config::* field;
+    Whole least;
+    Whole most;
+    std::string_view help;
+
+    static constexpr bool or_auto = std::same_as<Value, std::optional<Whole>>;
+    static_assert(or_auto || std::same_as<Value, Whole>);
+
+    [[nodiscard]] std::string expected() const {
+        return "a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
+               (or_auto ? " or auto" : "");
+    }
+
+    [[nodiscard]] std::string show(const Config& config) const {
+        if constexpr (or_auto)
+            return config.*field ? std::to_string(*(config.*field)) : "auto";
+        else
+            return std::to_string(config.*field);
+    }
+
+    [[nodiscard]] bool set(Config& config, std::string_view text) const {
+        if constexpr (or_auto)
+            if (text == "auto") {
+                config.*field = std::nullopt;
+                return true;
+            }
+        Whole value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc{} || end != text.data() + text.size() || value < least || value > most) return false;
+        config.*field = value;
+        return true;
+    }
+};
+
+}  // namespace aabb

@@ -1,0 +1,60 @@
+module;
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+export module aabb.policy:number_parameter;
+
+export namespace aabb {
+
+/// A real number in (above, at_most], as text; with `or_auto`, "auto" too, which leaves the optional empty.
+template <class Config, class Value>
+struct number_parameter {
+    std::string_view name;
+    Value Config::* field;
+    double above;
+    double at_most;
+    std::string_view help;
+
+    static constexpr bool or_auto = std::same_as<Value, std::optional<double>>;
+
+    [[nodiscard]] std::string expected() const {
+        std::string text = "a number above " + shortest(above);
+        if (at_most < std::numeric_limits<double>::max()) text += " and at most " + shortest(at_most);
+        return text + (or_auto ? " or auto" : "");
+    }
+
+    [[nodiscard]] std::string show(const Config& config) const {
+        if constexpr (or_auto)
+            return config.*field ? shortest(*(config.*field)) : "auto";
+        else
+            return shortest(static_cast<double>(config.*field));
+    }
+
+    [[nodiscard]] bool set(Config& config, std::string_view text) const {
+        if constexpr (or_auto)
+            if (text == "auto") {
+                config.*field = std::nullopt;
+                return true;
+            }
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc{} || end != text.data() + text.size() || !(value > above && value <= at_most))
+            return false;
+        config.*field = value;
+        return true;
+    }
+
+private:
+    [[nodiscard]] static std::string shortest(double value) {
+        std::array<char, 32> text{};
+        return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+    }
+};
+
+}  // namespace aabb

@@ -1,0 +1,59 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+export module aabb.tree.sibling_planes;
+
+import aabb.geometry;
+
+export namespace aabb {
+
+/// The boxes of two siblings without loss, in six floats and six bits (paper, section 3.2, read for both children of a
+/// node at once). Each plane of the parent's box is that of at least one child; the record holds the other child's.
+/// Planes in the order of `box`: three lower ones, three upper ones.
+struct sibling_planes {
+    std::array<float, 6> own;
+};
+static_assert(sizeof(sibling_planes) == 24);
+
+/// Bit k of the symbol: the right child inherits the parent's plane k, the left one has its own; else the reverse.
+inline constexpr std::uint8_t plane_bits = 0b11'1111;
+
+/// The other two bits: the left child is a leaf, the right child is.
+[[nodiscard]] constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
+    return static_cast<std::uint8_t>(64U << side);
+}
+
+/// Sets the record, and the symbol but for its leaf flags.
+/// @param left,right boxes whose union is the parent's.
+constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
+                               std::uint8_t& symbol) noexcept {
+    symbol &= static_cast<std::uint8_t>(~plane_bits);
+    for (int k = 0; k < 3; ++k) {
+        const auto low = static_cast<std::size_t>(k);
+        if (left.min[k] > right.min[k]) symbol |= static_cast<std::uint8_t>(1U << low);
+        if (left.max[k] < right.max[k]) symbol |= static_cast<std::uint8_t>(8U << low);
+        planes.own[low] = std::max(left.min[k], right.min[k]);
+        planes.own[low + 3] = std::min(left.max[k], right.max[k]);
+    }
+}
+
+/// The boxes of the left and the right child.
+[[nodiscard]] constexpr std::array<box, 2> decode_siblings(const box& parent, const sibling_planes& planes,
+                                                           unsigned symbol) noexcept {
+    std::array<box, 2> boxes{};
+    for (int k = 0; k < 3; ++k) {
+        const auto low = static_cast<std::size_t>(k);
+        const bool right_below = symbol >> low & 1;
+        const bool right_above = symbol >> (low + 3) & 1;
+        boxes[0].min[k] = right_below ? planes.own[low] : parent.min[k];
+        boxes[1].min[k] = right_below ? parent.min[k] : planes.own[low];
+        boxes[0].max[k] = right_above ? planes.own[low + 3] : parent.max[k];
+        boxes[1].max[k] = right_above ? parent.max[k] : planes.own[low + 3];
+    }
+    return boxes;
+}
+
+}  // namespace aabb

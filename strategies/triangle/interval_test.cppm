@@ -1,0 +1,171 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+export module aabb.triangle.interval_test;
+
+import aabb.geometry;
+import aabb.policy;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Below which signed distance from a plane, scaled by the length of its normal, a corner counts as lying in the plane.
+enum class epsilon_choice : std::uint8_t {
+    absolute,  ///< 1e-6, as in the original: large against small triangles
+    none,      ///< 0
+    scaled     ///< 1e-6 times the pair's longest extent and the length of the normal
+};
+
+/// The parameter `epsilon` of Möller's test.
+template <class Config>
+[[nodiscard]] constexpr auto epsilon_parameter(epsilon_choice Config::* field) {
+    return choice_parameter{"epsilon", field, std::array<std::string_view, 3>{"absolute", "none", "scaled"},
+                            "distances that count as zero: below 1e-6 as in the original, none, or below 1e-6 of the "
+                            "pair's extent"};
+}
+
+/// Möller's interval test ("A fast triangle-triangle intersection test", 1997) in the arithmetic of Real. Sums keep the
+/// original's order, ties its choice of axis, and products that underflow or overflow its answers.
+template <class Real>
+class interval_test {
+public:
+    interval_test() = default;
+    explicit interval_test(epsilon_choice epsilon) : epsilon_(epsilon) {}
+
+    [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
+        const vec3<Real> normal_t = cross(t[1] - t[0], t[2] - t[0]);
+        const std::array<Real, 3> s_to_t = distances(s, t[0], normal_t, zero_below(s, t, normal_t));
+        if (on_one_side(s_to_t)) return false;
+        const vec3<Real> normal_s = cross(s[1] - s[0], s[2] - s[0]);
+        const std::array<Real, 3> t_to_s = distances(t, s[0], normal_s, zero_below(s, t, normal_s));
+        if (on_one_side(t_to_s)) return false;
+        if (s_to_t == std::array<Real, 3>{} || t_to_s == std::array<Real, 3>{})
+            return coplanar_intersects(s, t, normal_s);
+        // Both triangles cut the line of the two planes; the test compares their intervals on the axis along which the
+        // line runs furthest.
+        const int axis = largest(cross(normal_s, normal_t));
+        const auto [s_low, s_high] = interval(s, s_to_t, axis);
+        const auto [t_low, t_high] = interval(t, t_to_s, axis);
+        return !(s_high < t_low || t_high < s_low);  // not `>=`: after an overflow to NaN the original says yes
+    }
+
+private:
+    /// Signed distances below this count as zero. In double: the float next to 1e-6 lies below it.
+    [[nodiscard]] double zero_below(const triangle3<Real>& s, const triangle3<Real>& t,
+                                    const vec3<Real>& normal) const noexcept {
+        constexpr double epsilon = 1e-6;
+        switch (epsilon_) {
+            case epsilon_choice::absolute: return epsilon;
+            case epsilon_choice::none: return 0;
+            case epsilon_choice::scaled: break;
+        }
+        double extent = 0;
+        for (int k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(
+                {double{s[0][k]}, double{s[1][k]}, double{s[2][k]}, double{t[0][k]}, double{t[1][k]}, double{t[2][k]}});
+            extent = std::max(extent, high - low);
+        }
+        return epsilon * extent * std::sqrt(double{dot(normal, normal)});
+    }
+
+    [[nodiscard]] static std::array<Real, 3> distances(const triangle3<Real>& s, const vec3<Real>& on_plane,
+                                                       const vec3<Real>& normal, double zero_below) noexcept {
+        const Real offset = -dot(normal, on_plane);
+        std::array<Real, 3> d{};
+        for (int i = 0; i < 3; ++i) {
+            const Real distance = dot(normal, s[i]) + offset;
+            d[static_cast<std::size_t>(i)] = std::abs(distance) < zero_below ? 0 : distance;
+        }
+        return d;
+    }
+
+    [[nodiscard]] static bool on_one_side(const std::array<Real, 3>& d) noexcept {
+        return (d[0] > 0 && d[1] > 0 && d[2] > 0) || (d[0] < 0 && d[1] < 0 && d[2] < 0);
+    }
+
+    [[nodiscard]] static int largest(const vec3<Real>& v) noexcept {
+        int k = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
+        return std::abs(v[2]) > std::abs(v[k]) ? 2 : k;
+    }
+
+    /// Where the triangle cuts the line of the planes, in the coordinate `axis`. `d` are the distances of the corners
+    /// from the other plane: not all zero, not all of one sign.
+    [[nodiscard]] static std::pair<Real, Real> interval(const triangle3<Real>& s, const std::array<Real, 3>& d,
+                                                        int axis) noexcept {
+        // The corner that the plane cuts off from the other two.
+        int alone = 0;
+        if (d[0] * d[1] > 0)
+            alone = 2;
+        else if (d[0] * d[2] > 0)
+            alone = 1;
+        else if (d[1] * d[2] > 0 || d[0] != 0)
+            alone = 0;
+        else
+            alone = d[1] != 0 ? 1 : 2;
+        const auto at = [&](int i) { return s[i][axis]; };
+        const auto distance = [&](int i) { return d[static_cast<std::size_t>(i)]; };
+        const auto cut = [&](int other) {
+            return at(alone) + (at(other) - at(alone)) * distance(alone) / (distance(alone) - distance(other));
+        };
+        const Real p = cut(alone == 0 ? 1 : 0);
+        const Real q = cut(alone == 2 ? 1 : 2);
+        return p > q ? std::pair{q, p} : std::pair{p, q};
+    }
+
+    /// Both triangles in the plane of the normal: edges against edges, then each triangle's corner in the other, on the
+    /// axis plane in which their area is largest.
+    [[nodiscard]] static bool coplanar_intersects(const triangle3<Real>& s, const triangle3<Real>& t,
+                                                  const vec3<Real>& normal) noexcept {
+        // Of equal components the original drops the later axis, but y rather than z.
+        const vec3<Real> length{std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])};
+        const int rest = length[2] > length[1] ? 2 : 1;
+        const int dropped = length[0] > length[1] ? (length[0] > length[2] ? 0 : 2) : rest;
+        const int x = dropped == 0 ? 1 : 0;
+        const int y = dropped == 2 ? 1 : 2;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                if (edges_cross(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3], x, y)) return true;
+        return corner_inside(s[0], t, x, y) || corner_inside(t[0], s, x, y);
+    }
+
+    [[nodiscard]] static bool edges_cross(const vec3<Real>& p, const vec3<Real>& p_end, const vec3<Real>& q,
+                                          const vec3<Real>& q_end, int x, int y) noexcept {
+        const Real ax = p_end[x] - p[x];
+        const Real ay = p_end[y] - p[y];
+        const Real bx = q[x] - q_end[x];
+        const Real by = q[y] - q_end[y];
+        const Real cx = p[x] - q[x];
+        const Real cy = p[y] - q[y];
+        const Real f = ay * bx - ax * by;
+        const Real d = by * cx - bx * cy;
+        const Real e = ax * cy - ay * cx;
+        if (f > 0) return d >= 0 && d <= f && e >= 0 && e <= f;
+        return f < 0 && d <= 0 && d >= f && e <= 0 && e >= f;
+    }
+
+    /// Strictly inside, by the lines of the edges. The products of small triangles underflow, and the answer is no.
+    [[nodiscard]] static bool corner_inside(const vec3<Real>& p, const triangle3<Real>& t, int x, int y) noexcept {
+        std::array<Real, 3> side{};
+        for (int i = 0; i < 3; ++i) {
+            const vec3<Real>& from = t[i];
+            const vec3<Real>& to = t[(i + 1) % 3];
+            const Real a = to[y] - from[y];
+            const Real b = -(to[x] - from[x]);
+            const Real c = -a * from[x] - b * from[y];
+            side[static_cast<std::size_t>(i)] = a * p[x] + b * p[y] + c;
+        }
+        return side[0] * side[1] > 0 && side[0] * side[2] > 0;
+    }
+
+    epsilon_choice epsilon_ = epsilon_choice::absolute;
+};
+
+}  // namespace aabb
