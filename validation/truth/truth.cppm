@@ -1,4 +1,5 @@
-/// Why another answer may differ from the exact one. No header of CGAL reaches an importer.
+/// The exact answer on a scene, and why another may differ from it. No header of CGAL reaches an importer.
 export module aabb.truth;
 
 export import :differences;
+export import :exact_answer;
