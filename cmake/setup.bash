@@ -13,9 +13,6 @@ needs=(
     'librapidcheck-dev            -                        <rapidcheck.h>'
     'libbenchmark-dev             google-benchmark-devel   <benchmark/benchmark.h>'
     'libcgal-dev                  CGAL-devel               <CGAL/version.h>'
-    'libfcl-dev                   -                        <fcl/config.h>'
-    'libccd-dev                   libccd-devel             <ccd/ccd.h>'
-    'libeigen3-dev                eigen3-devel             <eigen3/Eigen/Core>'
     'libboost-dev                 boost-devel              <boost/math/distributions/students_t.hpp>'
     'libtomlplusplus-dev          tomlplusplus-devel       <toml++/toml.h>'
     'libcli11-dev                 cli11-devel              <CLI/CLI.hpp>'
@@ -23,6 +20,9 @@ needs=(
     'nlohmann-json3-dev           json-devel               <nlohmann/json.hpp>'
     'libxxhash-dev                xxhash-devel             <xxhash.h>'
 )
+# The same of what each engine needs, as its own line says. Where that is not to be had the engine is left out.
+mapfile -t engine_needs < <(sed -nE 's/^aabblab_engine\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\1 \2 \3/p' \
+    "$root/validation/engines/CMakeLists.txt")
 [[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=('clang-format-19 - clang-format-19' 'clang-tidy-19 - clang-tidy-19')
 # Debian 12 has versions this new in its backports only.
 declare -A least=([cmake]=3.28 [catch2]=3.0)
@@ -217,22 +217,29 @@ has() {
     esac
 }
 
-# Sets `compiler`, or ends with all that is missing.
+# note_lacking NEED: adds it to `lacking` and its packages to the others, where it is not there.
+note_lacking() {
+    local debian fedora what names
+    read -r debian fedora what <<<"$1"
+    if has "$what"; then return; fi
+    lacking+=("$what")
+    IFS=, read -ra names <<<"$debian"
+    missing+=("${names[@]}")
+    IFS=, read -ra names <<<"$fedora"
+    if [[ $fedora == - ]]; then unpackaged+=("$what"); else rpms+=("${names[@]}"); fi
+}
+
+# Sets `compiler`, or ends with all that is missing. Without what only engines need there is a build all the same.
 find_tools() {
-    local lacking=() missing=() rpms=() unpackaged=() debian fedora what need names
+    local lacking=() missing=() rpms=() unpackaged=() need essential
     for compiler in clang++-{19..29} clang++ ''; do
         if at_least "$("${compiler:-false}" -dumpversion 2>/dev/null)" 19.0; then break; fi
     done
-    for need in "${needs[@]}"; do
-        read -r debian fedora what <<<"$need"
-        if has "$what"; then continue; fi
-        lacking+=("$what")
-        IFS=, read -ra names <<<"$debian"
-        missing+=("${names[@]}")
-        IFS=, read -ra names <<<"$fedora"
-        if [[ $fedora == - ]]; then unpackaged+=("$what"); else rpms+=("${names[@]}"); fi
-    done
-    ((${#lacking[@]} == 0)) || fail_lacking "$(no_installing) here is missing" "${lacking[@]}"
+    for need in "${needs[@]}"; do note_lacking "$need"; done
+    essential=${#lacking[@]}
+    for need in "${engine_needs[@]}"; do note_lacking "$need"; done
+    ((essential == 0)) || fail_lacking "$(no_installing) here is missing" "${lacking[@]}"
+    ((${#lacking[@]} == 0)) || say "engines that need $(listed "${lacking[@]}") are left out"
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
@@ -240,7 +247,7 @@ find_tools() {
 # Debian's packages of what the build needs. Those of gnuplot exclude each other, and any of them will do.
 build_packages() {
     local debian what need
-    for need in "${needs[@]}"; do
+    for need in "${needs[@]}" "${engine_needs[@]}"; do
         read -r debian _ what <<<"$need"
         if [[ $what != gnuplot ]] || ! has gnuplot; then printf '%s\n' "${debian//,/$'\n'}"; fi
     done

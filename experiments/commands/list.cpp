@@ -47,6 +47,9 @@ nlohmann::ordered_json everything() {
                                   {"searches_boxes", e.searches_boxes},
                                   {"collides_meshes", e.collides_meshes},
                                   {"exact", e.exact}});
+    all["engines_left_out"] = nlohmann::ordered_json::array();
+    for (const auto& e : aabb::left_out_engines())
+        all["engines_left_out"].push_back({{"name", e.name}, {"not_found", e.library}});
     for (const auto& s : scene_kinds())
         all["scenes"].push_back({{"name", s.name},
                                  {"summary", s.summary},
@@ -107,6 +110,8 @@ void print_text() {
     }
     all.heading("engines");
     for (const auto& e : aabb::engines()) all.entry(e.name, e.summary + " (" + scope_of(e) + ")");
+    for (const auto& e : aabb::left_out_engines())
+        all.entry(e.name, "left out: " + e.library + " was not found when this was built");
     all.heading("scenes");
     for (const auto& s : scene_kinds()) {
         all.entry(s.name, s.summary);

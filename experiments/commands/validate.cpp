@@ -50,7 +50,7 @@ experiment built_in_experiment() {
 }
 
 /// "exact", "wrong", or what is different by class.
-std::string answer_of(const verdict& v) {
+std::string answer_of(const contender_validation& v) {
     if (!v.failure.empty()) return "WRONG";
     if (v.differences.empty()) return "exact";
     std::string text = "inexact:";
@@ -71,11 +71,11 @@ int validate(const validate_request& request) {
     const experiment e = request.config ? open_experiment(*request.config, request.quick) : built_in_experiment();
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
-        const scene_verdicts result = validate_scene(scene, contenders_for(e, scene));
+        const scene_validation result = validate_scene(scene, contenders_for(e, scene));
         print(scene.kind + " (" + visible(parameters_text(scene)) + "), all pairs of " + std::to_string(result.frames) +
-              " frames against " + result.judge + ", digest " + result.digest + "\n\n");
+              " frames against " + result.exact_by + ", digest " + result.digest + "\n\n");
         table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
-        for (const verdict& v : result.verdicts) {
+        for (const contender_validation& v : result.contenders) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
                               v.contacts ? std::to_string(*v.contacts) : "-", answer_of(v)});
             if (v.failure.empty()) continue;

@@ -52,11 +52,9 @@ std::vector<std::string> engines_of(const document& doc) {
     std::vector<std::string> names;
     const node* engines = doc.root().find("engines");
     if (!engines) return names;
-    std::vector<std::string> known;
-    for (const aabb::engine_info& info : aabb::engines()) known.push_back(info.name);
     for (const located_text& one : doc.texts_of("engines", *engines)) {
-        if (std::ranges::find(known, one.text) == known.end())
-            doc.fail(one.line, aabb::unknown_name("engine", one.text, known));
+        if (const std::string refusal = aabb::refusal_of_engine(one.text); !refusal.empty())
+            doc.fail(one.line, refusal);
         if (std::ranges::find(names, one.text) != names.end())
             doc.fail(one.line, "engines lists '" + one.text + "' twice");
         names.push_back(one.text);

@@ -35,7 +35,7 @@ export namespace aabblab {
 [[nodiscard]] std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene);
 
 /// What came out of playing a scene beside the exact answer, untimed.
-struct verdict {
+struct contender_validation {
     contender_name name;
     std::string failure;  ///< the first difference where the contender must be exact; empty where there is none
     std::uint64_t candidates = 0;
@@ -51,16 +51,17 @@ struct verdict {
     std::array<std::uint64_t, byte_columns.size()> bytes{};
 };
 
-struct scene_verdicts {
+struct scene_validation {
     std::uint64_t objects = 0;
     std::uint64_t frames = 0;
-    std::string judge;   ///< what gave the exact answer
-    std::string digest;  ///< of the exact answer
-    std::vector<verdict> verdicts;
+    std::string exact_by;  ///< what gave the exact answer
+    std::string digest;    ///< of the exact answer
+    std::vector<contender_validation> contenders;
 };
 
-/// Plays all contenders in step with a `judge` and compares whole sets, frame by frame. Work is counted on the way.
-[[nodiscard]] scene_verdicts validate_scene(const scene_choice& scene, std::span<const contender> contenders);
+/// Plays all contenders in step with the exact answer and compares whole sets, frame by frame. Work is counted on the
+/// way.
+[[nodiscard]] scene_validation validate_scene(const scene_choice& scene, std::span<const contender> contenders);
 
 /// One repeat.
 struct timing {

@@ -88,43 +88,6 @@ private:
     std::vector<aabb::contact> contacts_;
 };
 
-/// What gives the exact answer. Pairs of boxes: brute force up to 20,000 objects, CGAL above. Contacts: CGAL's exact
-/// kernel on every two objects whose bounding spheres meet; the boxes of global search have no part in them, so that a
-/// pair of objects that wrong boxes lose shows up as missing. The scene must outlive it.
-class judge {
-public:
-    explicit judge(const scene_play& scene);
-
-    /// Says what judges.
-    [[nodiscard]] std::string name() const;
-
-    /// The scene's current frame.
-    /// @param boxes of the objects, in the world
-    void play(std::span<const aabb::box> boxes);
-
-    /// Of the frame, sorted, each once.
-    [[nodiscard]] const std::vector<aabb::index_pair>& pairs() const { return pairs_; }
-    [[nodiscard]] const std::vector<aabb::contact>& contacts() const { return contacts_; }
-
-private:
-    struct sphere {
-        aabb::vec3d centre;
-        double radius;
-    };
-    [[nodiscard]] static sphere sphere_around(const aabb::mesh& m);
-    void follow_meshes();
-    /// Every two objects that can meet, and some that cannot.
-    [[nodiscard]] std::vector<aabb::index_pair> near_objects() const;
-
-    const scene_play& scene_;
-    std::string box_engine_;
-    std::unique_ptr<aabb::global_stage> boxes_;
-    std::unique_ptr<aabb::local_stage> triangles_;  // null in a scene of boxes
-    std::vector<sphere> spheres_;                   // by mesh
-    std::vector<aabb::index_pair> pairs_;
-    std::vector<aabb::contact> contacts_;
-};
-
 /// Number and digest of what is found, frame by frame.
 class tally {
 public:

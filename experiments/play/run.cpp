@@ -27,7 +27,7 @@ struct timed_contender {
     bool strayed = false;
 };
 
-row row_of(const experiment& e, const scene_choice& scene, const scene_verdicts& all, const verdict& v) {
+row row_of(const experiment& e, const scene_choice& scene, const scene_validation& all, const contender_validation& v) {
     row r;
     r.experiment = e.name;
     r.scene = scene;
@@ -115,16 +115,16 @@ struct admission {
     std::vector<std::string> failures;
 };
 
-/// Plays the scene beside the judge.
+/// Plays the scene beside the exact answer.
 admission validated(const experiment& e, const scene_choice& scene, std::span<const contender> contenders,
                     results_folder& results) {
     admission all;
-    const scene_verdicts found = validate_scene(scene, contenders);
+    const scene_validation found = validate_scene(scene, contenders);
     results.set_digest(scene, found.digest);
     std::vector<contender_name> names;
     std::vector<difference> differences;
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        const verdict& v = found.verdicts[i];
+        const contender_validation& v = found.contenders[i];
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())

@@ -53,17 +53,17 @@ struct set_difference {
     std::vector<T> invented;
 };
 
-/// Compares one contender with the judge.
-class comparison {
+/// Compares one contender with the exact answer.
+class validated_player {
 public:
-    comparison(const contender& who, const scene_choice& choice, const scene_play& scene)
+    validated_player(const contender& who, const scene_choice& choice, const scene_play& scene)
         : who_(who),
           choice_(choice),
           scene_(scene),
           player_(who, scene, aabb::instrumentation::counters),
           found_(scene.meshes() != nullptr) {}
 
-    void play(std::size_t frame, const judge& exact) {
+    void play(std::size_t frame, const aabb::exact_answer& exact) {
         player_.update();
         player_.search();
         player_.detect();
@@ -81,8 +81,8 @@ public:
         classify(contacts);
     }
 
-    [[nodiscard]] verdict result() const {
-        verdict v;
+    [[nodiscard]] contender_validation result() const {
+        contender_validation v;
         v.name = who_.name;
         v.failure = failure_;
         v.candidates = found_.candidates();
@@ -173,12 +173,12 @@ std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::vector<aabb:
 
 }  // namespace
 
-scene_verdicts validate_scene(const scene_choice& choice, std::span<const contender> contenders) {
+scene_validation validate_scene(const scene_choice& choice, std::span<const contender> contenders) {
     scene_play scene(choice);
-    judge exact(scene);
+    aabb::exact_answer exact(scene.objects(), scene.meshes());
     tally exact_tally(scene.meshes() != nullptr);
-    std::deque<comparison> comparisons;
-    for (const contender& who : contenders) comparisons.emplace_back(who, choice, scene);
+    std::deque<validated_player> players;
+    for (const contender& who : contenders) players.emplace_back(who, choice, scene);
     std::vector<aabb::box> mesh_bounds;
     if (scene.meshes())
         for (const aabb::mesh& m : scene.meshes()->meshes) mesh_bounds.push_back(aabb::bounds_of(m));
@@ -186,18 +186,18 @@ scene_verdicts validate_scene(const scene_choice& choice, std::span<const conten
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (scene.meshes())
-            exact.play(boxes_of(*scene.meshes(), mesh_bounds, scene.poses()));
+            exact.play({boxes_of(*scene.meshes(), mesh_bounds, scene.poses()), scene.poses(), {}, {}});
         else
-            exact.play(scene.boxes());
+            exact.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
         exact_tally.add(exact.pairs(), exact.contacts());
         shown.at(++done);
-        for (comparison& c : comparisons) {
-            c.play(frame, exact);
+        for (validated_player& p : players) {
+            p.play(frame, exact);
             shown.at(++done);
         }
     }
-    scene_verdicts result{scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), {}};
-    for (const comparison& c : comparisons) result.verdicts.push_back(c.result());
+    scene_validation result{scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), {}};
+    for (const validated_player& p : players) result.contenders.push_back(p.result());
     return result;
 }
 

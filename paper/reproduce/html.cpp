@@ -9,6 +9,8 @@ module;
 #include <string_view>
 #include <vector>
 
+#include "report_css.hpp"
+
 module aabblab.reproduction;
 
 import aabblab.claims;
@@ -19,38 +21,6 @@ import aabblab.statistics;
 namespace aabblab {
 
 namespace {
-
-constexpr std::string_view style = R"(
-:root{--ink:#1b1f24;--soft:#57606a;--line:#d0d7de;--paper:#fff;--tint:#f6f8fa}
-*{box-sizing:border-box}
-body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:72rem;margin:0 auto;padding:1rem}
-h1{font-size:1.7rem;line-height:1.2;margin:.5rem 0}
-h2{font-size:1.25rem;line-height:1.3;margin:2.5rem 0 .5rem;padding-top:.75rem;border-top:1px solid var(--line)}
-p{max-width:46rem;margin:.5rem 0}
-.soft{color:var(--soft);font-size:.9rem;overflow-wrap:anywhere}
-.wide{overflow-x:auto;margin:.75rem 0;max-width:100%}
-table{border-collapse:collapse;font-size:.85rem}
-th,td{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}
-th{background:var(--tint);white-space:nowrap}
-.number{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
-figure{margin:1rem 0}
-figure img{width:100%;max-width:44rem;height:auto;display:block}
-figcaption{color:var(--soft);font-size:.9rem;max-width:44rem}
-.claims{display:grid;gap:.5rem;margin:1rem 0}
-.claim{display:grid;grid-template-columns:3rem 1fr 15rem 13rem;gap:.25rem 1rem;align-items:baseline;padding:.5rem .75rem;
-border:1px solid var(--line);border-left-width:.4rem;border-radius:.3rem;color:inherit;text-decoration:none}
-.claim b{font-variant-numeric:tabular-nums}
-.claim span.number{white-space:nowrap}
-@media(max-width:50rem){.claim{grid-template-columns:2.5rem 1fr}.claim>:nth-child(n+3){grid-column:2;text-align:left}}
-.holds{border-left-color:#009e73}.when{border-left-color:#56b4e9}.same{border-left-color:#999}
-.not{border-left-color:#d55e00}.undecided{border-left-color:#e8c500}
-.verdict{font-weight:600}
-details{margin:.5rem 0}
-summary{cursor:pointer;color:#0550ae}
-pre{overflow-x:auto;background:var(--tint);padding:.75rem;font-size:.8rem;line-height:1.4}
-dl{margin:.5rem 0}dt{font-weight:600;margin-top:1rem}dd{margin:0 0 .25rem;max-width:46rem}
-.wrong{border:2px solid #d55e00;padding:.5rem .75rem}
-)";
 
 /// What a script would be needed for: a picture in the page itself, as its own address.
 std::string address_of(const std::string& svg) {
@@ -83,8 +53,8 @@ public:
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
             "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
             "<link rel=\"icon\" href=\"data:,\">\n<title>AABB Lab: the paper, reproduced</title>\n"
-            "<style>{}</style></head><body>\n",
-            style);
+            "<style>\n{}</style></head><body>\n",
+            embedded::report_css);
     }
 
     void heading(const std::string& id, const std::string& text) {
@@ -131,7 +101,7 @@ void add_summary(page& out, const reproduction& all) {
 
 void add_rule(page& out, const reproduction& all) {
     out.heading("rule", "How a verdict comes about");
-    for (const std::string_view text : rule_text) out.paragraph(std::string(text));
+    for (const std::string& text : rule_paragraphs()) out.paragraph(text);
     out.paragraph(all.null_control.caption);
     out.folded("Every ratio of the null control",
                "<div class=\"wide\">" + to_html(all.null_control.content) + "</div>");

@@ -1,6 +1,5 @@
 module;
 #include <string>
-#include <string_view>
 #include <vector>
 
 module aabblab.reproduction;
@@ -30,7 +29,7 @@ std::string markdown_of(const reproduction& all, const provenance& made, const s
         for (const named_table& t : c.tables) add_table(t);
     }
     text += "## How a verdict comes about\n\n";
-    for (const std::string_view paragraph : rule_text) text += std::string(paragraph) + "\n\n";
+    for (const std::string& paragraph : rule_paragraphs()) text += paragraph + "\n\n";
     add_table(all.null_control);
     text += "## Table 1\n\n";
     for (const named_table& t : all.tables) add_table(t);

@@ -20,10 +20,10 @@ TEST_CASE("every composition is exact on every scene of boxes") {
     REQUIRE(contenders.size() > 500);
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
         if (info.has_meshes) continue;
-        const aabblab::scene_verdicts all =
+        const aabblab::scene_validation all =
             aabblab::validate_scene({info.name, {{"objects", "100"}, {"frames", "4"}}, {}, 3}, contenders);
-        REQUIRE(all.verdicts.size() == contenders.size());
-        for (const aabblab::verdict& v : all.verdicts) {
+        REQUIRE(all.contenders.size() == contenders.size());
+        for (const aabblab::contender_validation& v : all.contenders) {
             INFO(info.name << ": " << v.failure);
             REQUIRE(v.failure.empty());
             REQUIRE(v.digest == all.digest);
@@ -42,11 +42,11 @@ TEST_CASE("every exact local composition is exact on every scene of meshes, and 
         aabblab::scene_choice scene{
             info.name, {{"frames", "3"}}, {"icosphere:triangles=320", "torus_knot:triangles=600"}, 3};
         if (info.name == "mesh_swarm") scene.settings.push_back({"objects", "12"});
-        const aabblab::scene_verdicts all = aabblab::validate_scene(scene, contenders);
-        REQUIRE(all.verdicts.size() == contenders.size());
-        REQUIRE(all.verdicts[0].contacts.value() > 100);
+        const aabblab::scene_validation all = aabblab::validate_scene(scene, contenders);
+        REQUIRE(all.contenders.size() == contenders.size());
+        REQUIRE(all.contenders[0].contacts.value() > 100);
         for (std::size_t i = 0; i < contenders.size(); ++i) {
-            const aabblab::verdict& v = all.verdicts[i];
+            const aabblab::contender_validation& v = all.contenders[i];
             INFO(info.name << ": " << v.failure);
             REQUIRE(v.failure.empty());
             if (contenders[i].exact) REQUIRE(v.digest == all.digest);

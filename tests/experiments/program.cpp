@@ -123,7 +123,7 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
             }
         }
     }
-    for (const char* group : {"engines", "scenes", "shapes", "metrics"})
+    for (const char* group : {"engines", "engines_left_out", "scenes", "shapes", "metrics"})
         for (const auto& entry : all[group]) names.push_back(entry["name"]);
     for (const char* expected :
          {"insertion", "brute_force", "brownian", "icosphere", "time", "counts", "bytes", "error"})
@@ -133,4 +133,7 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
         INFO(name);
         REQUIRE(text.out.find(" " + name) != std::string::npos);
     }
+    for (const auto& engine : all["engines_left_out"])
+        REQUIRE(text.out.find("left out: " + engine["not_found"].get<std::string>() + " was not found") !=
+                std::string::npos);
 }

@@ -343,6 +343,7 @@ TEST_CASE(
     const std::string page = bytes_of_file(folder / "report.html");
     CHECK(page.find("shell is wrong on brownian, frame 3") != std::string::npos);
     CHECK(page.find("<script") == std::string::npos);
+    CHECK(page.find("<style>\n:root{") != std::string::npos);
     const std::regex address(R"((src|href)="([^"]*))");
     for (std::sregex_iterator i(page.begin(), page.end(), address), end; i != end; ++i) {
         const std::string to = (*i)[2];
@@ -374,6 +375,9 @@ TEST_CASE(
         const std::string text = bytes_of_file(folder / report);
         CHECK(text.find(all.null_control.caption) != std::string::npos);
         CHECK(text.find("Each claim has one primary endpoint") != std::string::npos);
+        // Where the file that the program was built with breaks a line, and where it ends.
+        CHECK(text.find("the ratio of two compositions, or builds") != std::string::npos);
+        CHECK(text.find("never between runs or machines.") != std::string::npos);
     }
     CHECK(macros.find("\\aabbset{C5.setup}{scene brownian") != std::string::npos);
 

@@ -48,12 +48,13 @@ printf 'bookworm http://here/debian %s/here.sources:1\n' "$work" >targets
 export PATH=$work/bin WORK=$work
 
 everything='clang\+\+ 19 or newer, clang-scan-deps, CMake 3.28 or newer, ninja, gnuplot, <catch2/catch_test_macros.hpp>,'
-everything+=' <rapidcheck.h>, <benchmark/benchmark.h>, <CGAL/version.h>, <fcl/config.h>, <ccd/ccd.h>, <eigen3/Eigen/Core>,'
+everything+=' <rapidcheck.h>, <benchmark/benchmark.h>, <CGAL/version.h>,'
 everything+=' <boost/math/distributions/students_t.hpp>, <toml\+\+/toml.h>, <CLI/CLI.hpp>, <fmt/core.h>,'
-everything+=' <nlohmann/json.hpp>, <xxhash.h>'
+everything+=' <nlohmann/json.hpp>, <xxhash.h>, <fcl/config.h>, <ccd/ccd.h>'
 tools='clang-19 libclang-rt-19-dev clang-tools-19'
-libraries='librapidcheck-dev libbenchmark-dev libcgal-dev libfcl-dev libccd-dev libeigen3-dev libboost-dev'
-libraries+=' libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev'
+libraries='librapidcheck-dev libbenchmark-dev libcgal-dev libboost-dev'
+libraries+=' libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libfcl-dev libeigen3-dev'
+libraries+=' libccd-dev'
 all="$tools cmake ninja-build gnuplot-nox catch2 $libraries"
 install='apt-get update && apt-get install -y --no-install-recommends'
 
@@ -61,7 +62,7 @@ install='apt-get update && apt-get install -y --no-install-recommends'
 
 here='aabblab: packages are installed on Debian 12 and 13 only, and here is missing:'
 fedora='clang compiler-rt clang-tools-extra cmake ninja-build gnuplot catch-devel google-benchmark-devel CGAL-devel'
-fedora+=' libccd-devel eigen3-devel boost-devel tomlplusplus-devel cli11-devel fmt-devel json-devel xxhash-devel'
+fedora+=' boost-devel tomlplusplus-devel cli11-devel fmt-devel json-devel xxhash-devel libccd-devel'
 unpackaged='Fedora has no package of <rapidcheck.h>, <fcl/config.h>'
 on ID=fedora
 expect 'a bare Fedora' 2 "^$here $everything; $unpackaged; as root, this installs the rest:$" aabblab list
@@ -98,6 +99,12 @@ expect 'the line of the rest' 2 '^  dnf install -y cmake xxhash-devel$' aabblab 
 sed -i 's/ \*xxhash.h\*/ nothing/' bin/clang++-20
 printf '#!/bin/sh\necho cmake version 3.28.3\n' | program cmake
 expect 'nothing that Fedora has is missing' 2 'here is missing: <rapidcheck.h>; Fedora has no package of <rapidcheck.h>\.$' aabblab list
+# What only engines need is told with the rest, and alone keeps nothing from being built.
+sed -i 's| nothing| *fcl/config.h*|' bin/clang++-20
+expect 'an engine and more cannot be had' 2 'here is missing: <rapidcheck.h>, <fcl/config.h>; Fedora has no package' aabblab list
+sed -i 's/^\*rapidcheck.h\*/nothing/' bin/clang++-20
+expect 'an engine is left out' 127 '^aabblab: engines that need <fcl/config.h> are left out$' aabblab list
+rm -r checkout/build
 rm bin/clang++-20 bin/clang-scan-deps-20 bin/ninja bin/gnuplot bin/cmake
 
 # ---- Debian ----

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,18 @@
 import aabb.validation;
 
 using namespace aabb;
+
+namespace {
+
+/// As CMake has them, with blanks.
+std::vector<std::string> declared_names() {
+    std::istringstream text(AABBLAB_ENGINE_NAMES);
+    std::vector<std::string> names;
+    for (std::string name; text >> name;) names.push_back(name);
+    return names;
+}
+
+}  // namespace
 
 TEST_CASE("the engines are listed with what they can do") {
     std::vector<std::string> names;
@@ -19,8 +32,33 @@ TEST_CASE("the engines are listed with what they can do") {
         REQUIRE((info.searches_boxes || info.collides_meshes));
         if (info.searches_boxes) REQUIRE(make_box_engine(info.name) != nullptr);
         if (info.collides_meshes) REQUIRE(make_mesh_engine(info.name) != nullptr);
+        REQUIRE(refusal_of_engine(info.name).empty());
+        REQUIRE(is_exact_engine(info.name) == info.exact);
     }
-    REQUIRE(names == std::vector<std::string>{"brute_force", "cgal", "fcl", "libccd"});
+    REQUIRE(names == declared_names());
+    for (const char* always : {"brute_force", "cgal"}) REQUIRE(std::ranges::find(names, always) != names.end());
+}
+
+TEST_CASE("an engine is in the build or left out, and not both") {
+    for (const char* name : {"fcl", "libccd"}) {
+        const auto there = std::ranges::count(engines(), name, &engine_info::name);
+        const auto left_out = std::ranges::count(left_out_engines(), name, &left_out_engine::name);
+        REQUIRE(there + left_out == 1);
+    }
+}
+
+TEST_CASE("an engine that was left out is refused for that") {
+    const std::vector<engine_info> built = {{"one", "", true, true, true}};
+    const std::vector<left_out_engine> left_out = {{"two", "Two's library"}};
+    REQUIRE(refusal_of_engine("one", built, left_out).empty());
+    REQUIRE(refusal_of_engine("two", built, left_out) ==
+            "the engine 'two' is not in this build: Two's library was not found");
+    REQUIRE(refusal_of_engine("twwo", built, left_out) == "unknown engine 'twwo'; did you mean 'two'?");
+    for (const left_out_engine& engine : left_out_engines()) {
+        REQUIRE(refusal_in([&] { (void)make_box_engine(engine.name); }) == refusal_of_engine(engine.name));
+        REQUIRE(refusal_in([&] { (void)make_mesh_engine(engine.name); }) == refusal_of_engine(engine.name));
+        REQUIRE(refusal_in([&] { (void)is_exact_engine(engine.name); }) == refusal_of_engine(engine.name));
+    }
 }
 
 TEST_CASE("an engine nobody knows is refused with the nearest name") {
@@ -28,7 +66,15 @@ TEST_CASE("an engine nobody knows is refused with the nearest name") {
     REQUIRE(refusal_in([] { (void)make_mesh_engine("libcd"); }) == "unknown engine 'libcd'; did you mean 'libccd'?");
 }
 
-TEST_CASE("libccd has no broad phase") {
-    REQUIRE(refusal_in([] { (void)make_box_engine("libccd"); }) ==
-            "the engine 'libccd' has no broad phase, so it cannot search boxes; it only collides meshes");
+TEST_CASE("an engine is refused for what it cannot do") {
+    for (const engine_info& info : engines()) {
+        if (!info.searches_boxes)
+            REQUIRE(refusal_in([&] { (void)make_box_engine(info.name); }) ==
+                    "the engine '" + info.name +
+                        "' has no broad phase, so it cannot search boxes; it only collides meshes");
+        if (!info.collides_meshes)
+            REQUIRE(refusal_in([&] { (void)make_mesh_engine(info.name); }) ==
+                    "the engine '" + info.name +
+                        "' has no narrow phase, so it cannot collide meshes; it only searches boxes");
+    }
 }

@@ -7,10 +7,12 @@ module;
 #include <span>
 #include <vector>
 
-module aabb.validation;
+module aabb.engines;
 
 import aabb;
-import :parts;
+import :box_engine;
+import :engine;
+import :pairwise;
 
 namespace aabb {
 
@@ -69,18 +71,22 @@ private:
     std::array<std::vector<float>, 3> max_;
 };
 
-}  // namespace
-
-std::unique_ptr<global_stage> make_brute_force_boxes() {
-    return std::make_unique<brute_force_boxes>();
-}
-
 std::vector<index_pair> candidates_by_double_loop(std::span<const box> a, std::span<const box> b) {
     std::vector<index_pair> pairs;
     for (std::uint32_t s = 0; s < a.size(); ++s)
         for (std::uint32_t t = 0; t < b.size(); ++t)
             if (overlaps(a[s], b[t])) pairs.push_back({s, t});
     return pairs;
+}
+
+}  // namespace
+
+engine brute_force_engine() {
+    return {.name = "brute_force",
+            .summary = "every pair of boxes; every pair of triangles whose boxes overlap, in CGAL's exact kernel",
+            .exact = true,
+            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<brute_force_boxes>(); },
+            .meshes = [] { return make_pairwise_engine(candidates_by_double_loop, exactly_intersect); }};
 }
 
 }  // namespace aabb

@@ -1,10 +1,13 @@
 module;
 #include <ccd/ccd.h>
 
-module aabb.validation;
+#include <memory>
+
+module aabb.engines;
 
 import aabb;
-import :parts;
+import :engine;
+import :pairwise;
 
 namespace aabb {
 
@@ -27,8 +30,6 @@ struct ccd_triangle {
     }
 };
 
-}  // namespace
-
 bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
     const ccd_triangle first(s);
     const ccd_triangle second(t);
@@ -39,6 +40,17 @@ bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
     // Without a limit it cycles on flat differences of triangles; a decision takes about ten.
     ccd.max_iterations = 1000;
     return ccdGJKIntersect(&first, &second, &ccd) != 0;
+}
+
+}  // namespace
+
+engine libccd_engine() {
+    return {.name = "libccd",
+            .summary =
+                "libccd's GJK in double on triangles whose boxes overlap; its tolerances are absolute, so small scales "
+                "go wrong",
+            .exact = false,
+            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, gjk_intersect); }};
 }
 
 }  // namespace aabb

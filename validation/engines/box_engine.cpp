@@ -3,10 +3,10 @@ module;
 #include <span>
 #include <vector>
 
-module aabb.validation;
+module aabb.engines;
 
 import aabb;
-import :parts;
+import :box_engine;
 
 namespace aabb {
 

@@ -13,10 +13,10 @@ module;
 #include <utility>
 #include <vector>
 
-module aabb.validation;
+module aabb.engines;
 
 import aabb;
-import :parts;
+import :mesh_engine;
 
 namespace aabb {
 

@@ -2,10 +2,10 @@ module;
 #include <cstdint>
 #include <vector>
 
-module aabb.validation;
+module aabb.engines;
 
 import aabb;
-import :parts;
+import :mesh_engine;
 
 namespace aabb {
 

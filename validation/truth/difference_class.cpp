@@ -7,9 +7,9 @@ module;
 #include <limits>
 #include <vector>
 
-#include "exact_decision.hpp"
+#include "../engines/exact_decision.hpp"
 
-module aabb.validation;
+module aabb.truth;
 
 import aabb;
 

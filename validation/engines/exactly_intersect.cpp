@@ -3,7 +3,7 @@ module;
 
 #include "exact_decision.hpp"
 
-module aabb.validation;
+module aabb.engines;
 
 import aabb;
 

@@ -8,10 +8,11 @@ module;
 #include <utility>
 #include <vector>
 
-module aabb.validation;
+module aabb.engines;
 
 import aabb;
-import :parts;
+import :mesh_engine;
+import :pairwise;
 
 namespace aabb {
 

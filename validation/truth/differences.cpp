@@ -3,7 +3,7 @@ module;
 #include <numeric>
 #include <span>
 
-module aabb.validation;
+module aabb.truth;
 
 import aabb;
 

@@ -1,0 +1,16 @@
+# aabblab_embed(TARGET NAME.EXT): the text of that file as the constant aabblab::embedded::NAME_EXT of the header
+# NAME_EXT.hpp, for the sources of the target.
+function(aabblab_embed target file)
+    string(MAKE_C_IDENTIFIER ${file} name)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(READ ${file} text)
+    file(CONFIGURE OUTPUT ${name}.hpp CONTENT [=[
+#pragma once
+#include <string_view>
+
+namespace aabblab::embedded {
+inline constexpr std::string_view @name@ = R"embedded(@text@)embedded";
+}
+]=] @ONLY)
+    target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+endfunction()

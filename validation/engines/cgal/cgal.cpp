@@ -1,0 +1,50 @@
+module;
+#include <CGAL/box_intersection_d.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+module aabb.engines;
+
+import aabb;
+import :box_engine;
+import :engine;
+import :numbered_box;
+import :pairwise;
+
+namespace aabb {
+
+namespace {
+
+class cgal_boxes final : public box_engine {
+public:
+    [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(boxes_)}}; }
+
+private:
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+        boxes_.clear();
+        for (const std::uint32_t id : ids) boxes_.push_back({boxes[id], id});
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), [&](const numbered_box& a, const numbered_box& b) {
+            pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
+        });
+    }
+
+    std::vector<numbered_box> boxes_;
+};
+
+}  // namespace
+
+engine cgal_engine() {
+    return {.name = "cgal",
+            .summary = "CGAL's intersection of box sequences, and its exact kernel for triangles",
+            .exact = true,
+            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<cgal_boxes>(); },
+            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); }};
+}
+
+}  // namespace aabb

@@ -1,0 +1,25 @@
+module;
+#include <memory>
+#include <string>
+#include <vector>
+
+/// What a file in NAME/ says of the engine NAME; seen by this module only.
+module aabb.engines:engine;
+
+import aabb;
+
+namespace aabb {
+
+/// What the function NAME_engine() of each engine returns.
+struct engine {
+    std::string name;
+    std::string summary;
+    bool exact = false;                                  ///< its pair sets equal the exact ones on every input
+    std::unique_ptr<global_stage> (*boxes)() = nullptr;  ///< null where it cannot stand in for global search
+    std::unique_ptr<local_stage> (*meshes)() = nullptr;  ///< null where it cannot stand in for local detection
+};
+
+/// Those that this build has, in the order of their lines in CMakeLists.txt. Defined in a generated unit.
+[[nodiscard]] std::vector<engine> built_engines();
+
+}  // namespace aabb

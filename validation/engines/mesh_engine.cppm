@@ -1,0 +1,31 @@
+module;
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+module aabb.engines:mesh_engine;
+
+import aabb;
+
+namespace aabb {
+
+/// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.
+class mesh_engine : public local_stage {
+public:
+    void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                   std::vector<index_pair>& pairs) final;
+    [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                            const pose& pose_b) final;
+    void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final;
+    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const final { return std::nullopt; }
+    [[nodiscard]] work_counters counters() const final { return {}; }
+    [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
+
+protected:
+    /// Appends the intersecting pairs.
+    virtual void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                      std::vector<index_pair>& pairs) = 0;
+};
+
+}  // namespace aabb

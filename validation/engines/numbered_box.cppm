@@ -1,0 +1,26 @@
+module;
+#include <cstdint>
+
+module aabb.engines:numbered_box;
+
+import aabb;
+
+namespace aabb {
+
+/// A box as CGAL's algorithm takes it. Two boxes with one number count as the same box, which is never reported.
+/// Coordinates are handed over in double: the algorithm takes the greatest value of their type for infinity, and boxes
+/// may end at the greatest float.
+struct numbered_box {
+    using NT = double;
+    using ID = std::uint64_t;
+
+    box bounds;
+    ID number;
+
+    static int dimension() { return 3; }
+    [[nodiscard]] ID id() const { return number; }
+    [[nodiscard]] NT min_coord(int axis) const { return bounds.min[axis]; }
+    [[nodiscard]] NT max_coord(int axis) const { return bounds.max[axis]; }
+};
+
+}  // namespace aabb
