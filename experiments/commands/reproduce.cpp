@@ -19,6 +19,7 @@
 
 import aabb;
 import aabblab.claims;
+import aabblab.conditions;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.tables;

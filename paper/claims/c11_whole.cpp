@@ -7,12 +7,11 @@ module;
 
 module aabblab.claims;
 
-import :measurements;
+import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
-import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -43,10 +42,7 @@ table half_steps(const std::vector<condition>& conditions) {
             const candidate ratio = candidate_of(c, methods()[i].who, methods()[0].who, measured("frame_ms"));
             cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
         }
-        const auto share = c.spread(methods()[0].who, [](const row& r) -> std::optional<double> {
-            const double global = r.update_ms.value_or(0) + r.search_ms.value_or(0);
-            return r.detect_ms ? std::optional(100 * global / (global + *r.detect_ms)) : std::nullopt;
-        });
+        const auto share = c.spread(methods()[0].who, measured("global_share"));
         cells.push_back(share ? digits_of(share->median) : "-");
     }
     return t;

@@ -10,12 +10,11 @@ module;
 
 module aabblab.claims;
 
-import :measurements;
+import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
 import aabblab.tables;
-import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -47,19 +46,9 @@ struct sizes {
     }
 };
 
-row_value per_element(const row_value& of) {
-    return [of](const row& r) -> std::optional<double> {
-        const std::optional<double> all = of(r);
-        return all ? std::optional(*all / static_cast<double>(r.objects)) : std::nullopt;
-    };
-}
-
 /// Comparisons and moves together: a sort is linear when both are.
 row_value work() {
-    return [comparisons = measured("comparisons"), moves = measured("moves")](const row& r) -> std::optional<double> {
-        const std::optional<double> compared = comparisons(r);
-        return compared ? std::optional(*compared + moves(r).value_or(0)) : std::nullopt;
-    };
+    return sum_of({"comparisons", "moves"});
 }
 
 /// "100 to 100000"
@@ -75,7 +64,7 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
     for (const auto& [displacement, conditions] : by_displacement) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{displacement});
         for (const condition* c : conditions) {
-            const auto inversions = c->spread({{kind::sort, "insertion"}}, per_element(measured("inversions")));
+            const auto inversions = c->spread({{kind::sort, "insertion"}}, an_object(measured("inversions")));
             cells.push_back(inversions ? digits_of(inversions->median) : "-");
         }
     }
@@ -107,7 +96,7 @@ claim_result linear_sort(const measurements& m) {
             sizes all;
             for (const condition* c : conditions) {
                 all.log_n.push_back(std::log10(number_of(c->of(), "objects")));
-                all.per_element.push_back(c->logs({{kind::sort, sort}}, per_element(work())));
+                all.per_element.push_back(c->logs({{kind::sort, sort}}, an_object(work())));
             }
             const cells& any = all.per_element.front();
             candidates.push_back({{{"scene", "line"},
@@ -131,10 +120,9 @@ claim_result linear_sort(const measurements& m) {
              {},
              {}};
     for (const std::string& sort : sorts())
-        f.lines.push_back(
-            series_of(sort, by_displacement["0.1"], "objects", {{kind::sort, sort}}, per_element(work())));
+        f.lines.push_back(series_of(sort, by_displacement["0.1"], "objects", {{kind::sort, sort}}, an_object(work())));
     f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {{kind::sort, "insertion"}},
-                                per_element(measured("inversions"))));
+                                an_object(measured("inversions"))));
     claim.figures.push_back(f);
     return claim;
 }

@@ -12,7 +12,7 @@ module;
 
 module aabblab.claims;
 
-import :measurements;
+import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
@@ -191,7 +191,7 @@ series series_of(const std::string& label, std::span<const condition* const> con
                  const selection& who, const row_value& of) {
     series s{label, series_style::line, {}};
     for (const condition* c : conditions) {
-        const double place = x == "triangles" ? triangles_of(*c) : number_of(c->of(), x);
+        const double place = x == "triangles" ? c->triangles() : number_of(c->of(), x);
         if (const auto point = c->point(place, who, of)) s.points.push_back(*point);
     }
     std::ranges::sort(s.points, {}, &figure_point::x);
@@ -200,9 +200,6 @@ series series_of(const std::string& label, std::span<const condition* const> con
 
 std::string mesh_of(const condition& c) {
     return value_of(c.of(), "meshes");
-}
-double triangles_of(const condition& c) {
-    return c.rows().empty() ? 0 : static_cast<double>(c.rows().front()->triangles.value_or(0));
 }
 
 reproduction judged(const measurements& m) {

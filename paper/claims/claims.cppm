@@ -9,10 +9,10 @@ module;
 /// The claims of the paper, one a file, each decided from measurements by the rule of aabblab.statistics.
 export module aabblab.claims;
 
+import aabblab.conditions;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
-export import :measurements;
 import aabb.registry;
 import aabblab.metrics;
 
@@ -156,8 +156,6 @@ private:
 
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);
-/// Triangles of one of its meshes.
-[[nodiscard]] double triangles_of(const condition& c);
 
 /// The conditions of primary endpoints, in the full and in the quick size.
 [[nodiscard]] bool is_primary_of_c7(const condition& c);

@@ -12,7 +12,7 @@ module;
 
 module aabblab.claims;
 
-import :measurements;
+import aabblab.conditions;
 import aabblab.statistics;
 
 namespace aabblab {

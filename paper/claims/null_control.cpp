@@ -7,7 +7,7 @@ module;
 
 module aabblab.claims;
 
-import :measurements;
+import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.tables;

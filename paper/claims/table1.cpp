@@ -8,11 +8,10 @@ module;
 
 module aabblab.claims;
 
-import :measurements;
+import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.tables;
-import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -55,15 +54,14 @@ table bytes_table(const condition& c) {
              {"indices"}},
             {}};
     for (const layout& one : layouts) {
-        const std::vector<const row*> rows = c.rows_of(built(one, "median"));
-        if (rows.empty()) continue;
-        const auto a_triangle = [&](const row_value& of) {
-            const std::optional<double> bytes = of(*rows.front());
-            return bytes ? fmt::format("{:.2f}", *bytes / static_cast<double>(rows.front()->triangles.value_or(1)))
-                         : "-";
+        const selection who = built(one, "median");
+        if (!c.value(who, measured("tree_bytes"))) continue;
+        const auto text_of = [&](const row_value& bytes) {
+            const std::optional<double> each = c.value(who, a_triangle(bytes));
+            return each ? fmt::format("{:.2f}", *each) : "-";
         };
-        t.rows.push_back({one.name, one.internal, one.leaf, one.bytes, a_triangle(bytes_of({"nodes", "indices"})),
-                          a_triangle(bytes_of({"nodes"})), a_triangle(bytes_of({"indices"}))});
+        t.rows.push_back({one.name, one.internal, one.leaf, one.bytes, text_of(bytes_of({"nodes", "indices"})),
+                          text_of(bytes_of({"nodes"})), text_of(bytes_of({"indices"}))});
     }
     return t;
 }
@@ -78,15 +76,15 @@ table cost_table(const condition& c) {
             {}};
     for (const layout& one : layouts)
         for (const char* build : {"median", "mean", "sah"}) {
-            const std::vector<const row*> rows = c.rows_of(built(one, build));
-            if (rows.empty()) continue;
+            const std::optional<double> bytes = c.value(built(one, build), measured("tree_bytes"));
+            if (!bytes) continue;
             const auto ratio = [&](const row_value& of) {
                 const candidate found = candidate_of(c, built(one, build), built(layouts[0], "median"), of);
                 return !found.log_ratio.known() ? "-" : ratio_text(endpoint_of(found, expectation::less));
             };
-            t.rows.push_back({one.name, build, fmt::format("{:.2f}", measured("tree_bytes")(*rows.front()).value_or(0)),
-                              digits_of(100 * rows.front()->box_inflation.value_or(0)), ratio(measured("build_ms")),
-                              ratio(measured("detect_ms"))});
+            t.rows.push_back({one.name, build, fmt::format("{:.2f}", *bytes),
+                              digits_of(100 * c.value(built(one, build), measured("box_inflation")).value_or(0)),
+                              ratio(measured("build_ms")), ratio(measured("detect_ms"))});
         }
     return t;
 }

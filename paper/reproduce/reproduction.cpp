@@ -2,11 +2,9 @@ module;
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,11 +13,10 @@ module aabblab.reproduction;
 
 import aabb;
 import aabblab.claims;
+import aabblab.conditions;
 import aabblab.figures;
 import aabblab.files;
 import aabblab.tables;
-import aabblab.results;
-import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -82,6 +79,7 @@ std::string text_of_file(const std::filesystem::path& file) {
 
 provenance provenance_of(const std::filesystem::path& folder, const reproduction& all) {
     provenance made;
+    const measurements measured(folder);
     std::vector<std::string> experiments;
     for (const claim_result& c : all.claims)
         for (const std::string& experiment : c.experiments)
@@ -103,20 +101,13 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
         made.cpu = build.value("cpu", "");
         for (const std::string& note : manifest.value("notes", std::vector<std::string>{}))
             if (std::ranges::find(made.notes, note) == made.notes.end()) made.notes.push_back(note);
-        std::set<contender_name> names;
-        std::set<scene_choice> scenes;
-        std::set<std::uint64_t> seeds;
-        for (const row& r : read_rows(folder / experiment / "results.csv")) {
-            ++made.rows;
-            names.insert(r.name);
-            scenes.insert(r.scene);
-            seeds.insert(r.scene.seed);
-            made.processes = std::max<std::size_t>(made.processes, r.process + 1);
-            made.repeats = std::max<std::size_t>(made.repeats, r.repeat + 1);
-        }
-        made.compositions += names.size();
-        made.scenes += scenes.size();
-        made.seeds = std::max(made.seeds, seeds.size());
+        const extent_of_results extent = measured.extent(experiment);
+        made.rows += extent.rows;
+        made.compositions += extent.compositions;
+        made.scenes += extent.scenes;
+        made.processes = std::max(made.processes, extent.processes);
+        made.seeds = std::max(made.seeds, extent.seeds);
+        made.repeats = std::max(made.repeats, extent.repeats);
     }
     return made;
 }

@@ -59,4 +59,33 @@ row_value bytes_of(std::vector<std::string> parts) {
     };
 }
 
+row_value sum_of(const std::vector<std::string>& names) {
+    std::vector<row_value> parts;
+    for (const std::string& name : names) parts.push_back(measured(name));
+    return [parts](const row& r) -> std::optional<double> {
+        std::optional<double> sum;
+        for (const row_value& part : parts) {
+            const std::optional<double> value = part(r);
+            if (&part == parts.data() && !value) return std::nullopt;
+            sum = sum.value_or(0) + value.value_or(0);
+        }
+        return sum;
+    };
+}
+
+row_value an_object(row_value of) {
+    return [of = std::move(of)](const row& r) -> std::optional<double> {
+        const std::optional<double> all = of(r);
+        return all ? std::optional(*all / static_cast<double>(r.objects)) : std::nullopt;
+    };
+}
+
+row_value a_triangle(row_value of) {
+    return [of = std::move(of)](const row& r) -> std::optional<double> {
+        const std::optional<double> all = of(r);
+        return all && r.triangles.value_or(0) > 0 ? std::optional(*all / static_cast<double>(*r.triangles))
+                                                  : std::nullopt;
+    };
+}
+
 }  // namespace aabblab

@@ -54,8 +54,15 @@ struct metric {
 /// Its function.
 [[nodiscard]] const row_value& measured(std::string_view name);
 
-/// Bytes of these parts together; for what no metric has.
+// What no metric has, from what some have.
+
+/// Bytes of these parts together.
 [[nodiscard]] row_value bytes_of(std::vector<std::string> parts);
+/// Of metrics by name; those that a row has not count as 0 beside the first.
+[[nodiscard]] row_value sum_of(const std::vector<std::string>& names);
+/// Over the number of objects, or of triangles of the scene's meshes.
+[[nodiscard]] row_value an_object(row_value of);
+[[nodiscard]] row_value a_triangle(row_value of);
 
 }  // namespace aabblab
 

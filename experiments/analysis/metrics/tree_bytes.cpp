@@ -1,5 +1,5 @@
 module;
-#include <optional>
+#include <string>
 
 module aabblab.metrics;
 
@@ -8,16 +8,8 @@ import aabblab.results;
 namespace aabblab {
 
 metric tree_bytes_metric() {
-    return {"tree_bytes",
-            "bytes",
-            "memory of the trees, a triangle",
-            metric_group::bytes,
-            better::less,
-            [trees = bytes_of({"nodes", "indices"})](const row& r) -> std::optional<double> {
-                const std::optional<double> bytes = trees(r);
-                if (!bytes || r.triangles.value_or(0) == 0) return std::nullopt;
-                return *bytes / static_cast<double>(*r.triangles);
-            }};
+    return {"tree_bytes",        "bytes",      "memory of the trees, a triangle",
+            metric_group::bytes, better::less, a_triangle(bytes_of({"nodes", "indices"}))};
 }
 
 }  // namespace aabblab

@@ -7,14 +7,14 @@ module;
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-module aabblab.claims;
+module aabblab.conditions;
 
-import :measurements;
 import aabb;
 import aabb.registry;
 import aabblab.figures;
@@ -76,6 +76,15 @@ condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(o
         processes_ = std::max<std::size_t>(processes_, r->process + 1);
     }
     std::ranges::sort(seeds_);
+}
+
+double condition::triangles() const {
+    return rows_.empty() ? 0 : static_cast<double>(rows_.front()->triangles.value_or(0));
+}
+
+std::optional<double> condition::value(const selection& who, const row_value& of) const {
+    const std::vector<const row*> rows = rows_of(who);
+    return rows.empty() ? std::nullopt : of(*rows.front());
 }
 
 std::size_t condition::seed_index(const row& r) const {
@@ -142,6 +151,25 @@ const measurements::experiment_results& measurements::read(const std::string& ex
 
 const std::vector<condition>& measurements::of(const std::string& experiment) const {
     return read(experiment).conditions;
+}
+
+extent_of_results measurements::extent(const std::string& experiment) const {
+    extent_of_results all;
+    std::set<contender_name> names;
+    std::set<scene_choice> scenes;
+    std::set<std::uint64_t> seeds;
+    for (const row& r : read(experiment).rows) {
+        ++all.rows;
+        names.insert(r.name);
+        scenes.insert(r.scene);
+        seeds.insert(r.scene.seed);
+        all.processes = std::max<std::size_t>(all.processes, r.process + 1);
+        all.repeats = std::max<std::size_t>(all.repeats, r.repeat + 1);
+    }
+    all.compositions = names.size();
+    all.scenes = scenes.size();
+    all.seeds = seeds.size();
+    return all;
 }
 
 }  // namespace aabblab

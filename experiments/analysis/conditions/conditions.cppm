@@ -11,8 +11,8 @@ module;
 #include <utility>
 #include <vector>
 
-/// What the experiments of the paper measured, read from their results folders.
-export module aabblab.claims:measurements;
+/// What experiments measured, read from their results folders: condition by condition, whatever seeds and processes.
+export module aabblab.conditions;
 
 import aabb;
 import aabb.registry;
@@ -61,9 +61,10 @@ public:
     [[nodiscard]] const factors& of() const { return of_; }
     [[nodiscard]] std::size_t processes() const { return processes_; }
     [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
-    [[nodiscard]] const std::vector<const row*>& rows() const { return rows_; }
-    /// The rows of one composition; empty where it has none (or was wrong).
-    [[nodiscard]] std::vector<const row*> rows_of(const selection& who) const;
+    /// Triangles of its meshes, each counted once; 0 in a scene of boxes.
+    [[nodiscard]] double triangles() const;
+    /// What does not vary between repeats and seeds, of one composition; empty where it has no row (or was wrong).
+    [[nodiscard]] std::optional<double> value(const selection& who, const row_value& of) const;
 
     /// Logarithms of the ratios of two compositions in the same repeat.
     [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& of) const;
@@ -75,12 +76,18 @@ public:
     [[nodiscard]] std::optional<figure_point> point(double x, const selection& who, const row_value& of) const;
 
 private:
+    [[nodiscard]] std::vector<const row*> rows_of(const selection& who) const;
     [[nodiscard]] std::size_t seed_index(const row& r) const;
 
     factors of_;
     std::vector<const row*> rows_;
     std::vector<std::uint64_t> seeds_;
     std::size_t processes_ = 1;
+};
+
+/// How large the results of an experiment are.
+struct extent_of_results {
+    std::size_t rows = 0, compositions = 0, scenes = 0, processes = 0, seeds = 0, repeats = 0;
 };
 
 /// The results of experiments in the folders of one, each read when it is first asked for.
@@ -91,6 +98,7 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     /// The conditions of an experiment in the order of its config; none where it has no results.
     [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const;
+    [[nodiscard]] extent_of_results extent(const std::string& experiment) const;
 
 private:
     struct experiment_results {
