@@ -41,6 +41,7 @@ export import :spread;
 export import :stage;
 export import :subset_lists;
 export import :sweep_policy;
+export import :text_parameter;
 export import :tree_build;
 export import :tree_policy;
 export import :tree_survey;
