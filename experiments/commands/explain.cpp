@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -31,11 +33,7 @@ void print_parts(std::string_view stage, const std::string& made_of, const std::
 void explain_contender(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
     player p(who, scene, aabb::instrumentation::none);
-    for (int frame = 0; frame < 2 && scene.next(); ++frame) {
-        p.update();
-        p.search();
-        p.detect();
-    }
+    play(scene, p, [](const played_frame&) {}, 2);
     const contender_name& name = who.name;
     print("  " + text_of(name) + "\n");
     const std::string global =

@@ -6,6 +6,7 @@ module;
 #include <deque>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -161,42 +162,32 @@ private:
     aabb::differences classes_;
 };
 
-/// In the world, as the pipeline makes them.
-/// @param mesh_bounds brought up to date where meshes have deformed
-std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::vector<aabb::box>& mesh_bounds,
-                                std::span<const aabb::pose> poses) {
-    for (std::uint32_t m = 0; m < mesh_bounds.size(); ++m)
-        if (scene.deforms(m)) mesh_bounds[m] = aabb::bounds_of(scene.meshes[m]);
-    std::vector<aabb::box> boxes;
-    for (std::size_t object = 0; object < poses.size(); ++object)
-        boxes.push_back(aabb::world_bounds(mesh_bounds[scene.mesh_of[object]], poses[object]));
-    return boxes;
-}
-
 }  // namespace
 
 scene_verdicts validate_scene(const scene_choice& choice, std::span<const contender> contenders) {
     scene_play scene(choice);
+    return validate_scene(choice, scene, contenders);
+}
+
+scene_verdicts validate_scene(const scene_choice& choice, scene_play& scene, std::span<const contender> contenders) {
     judge exact(scene);
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<comparison> comparisons;
     for (const contender& who : contenders) comparisons.emplace_back(who, choice, scene);
-    std::vector<aabb::box> mesh_bounds;
-    if (scene.meshes())
-        for (const aabb::mesh& m : scene.meshes()->meshes) mesh_bounds.push_back(aabb::bounds_of(m));
+    std::optional<aabb::posed_boxes> world;
+    if (scene.meshes()) world.emplace(*scene.meshes());
     progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
-        if (scene.meshes())
-            exact.play(boxes_of(*scene.meshes(), mesh_bounds, scene.poses()));
-        else
-            exact.play(scene.boxes());
+        if (world) scene.in_frame([&] { world->update(scene.poses()); });
+        exact.play(world ? world->boxes() : scene.boxes());
         exact_tally.add(exact.pairs(), exact.contacts());
         shown.at(++done);
         for (comparison& c : comparisons) {
             c.play(frame, exact);
             shown.at(++done);
         }
+        scene.tell(exact.pairs(), exact.contacts());
     }
     scene_verdicts result{scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), {}};
     for (const comparison& c : comparisons) result.verdicts.push_back(c.result());
