@@ -139,10 +139,13 @@ experiment read_experiment(const std::filesystem::path& file, experiment_size si
 
 std::string parameters_text(const scene_choice& scene) {
     std::string text;
-    for (const aabb::setting& s : scene.settings) text += s.name + "=" + s.value + " ";
-    for (const std::string& mesh : scene.meshes) text += (&mesh == scene.meshes.data() ? "meshes=" : "+") + mesh;
-    if (!scene.meshes.empty()) text += " ";
-    return text + "seed=" + std::to_string(scene.seed);
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " ") + part; };
+    for (const aabb::setting& s : scene.settings) add(s.name + "=" + s.value);
+    std::string meshes;
+    for (const std::string& mesh : scene.meshes) meshes += (meshes.empty() ? "meshes=" : "+") + mesh;
+    if (!meshes.empty()) add(meshes);
+    if (scene.seed) add("seed=" + std::to_string(*scene.seed));
+    return text;
 }
 
 std::string hash_of(const experiment& e) {
@@ -152,7 +155,7 @@ std::string hash_of(const experiment& e) {
     for (const std::string& engine : e.engines) all += "\n" + engine;
     for (const composition& c : e.compositions) all += "\n" + to_text(c.global) + " + " + to_text(c.local);
     for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
-    all += "\n" + e.mesh_digest;
+    all += "\n" + e.content_digest;
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx",
                   static_cast<unsigned long long>(XXH3_64bits(all.data(), all.size())));

@@ -28,6 +28,7 @@ scene_play::scene_play(const scene_choice& choice) {
         return;
     }
     meshes_ = make_mesh_scene(choice);
+    if (info->plays_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
 }
 
 scene_play::scene_play(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}

@@ -76,7 +76,8 @@ std::string manifest_text(const experiment& e, const std::string& date, const sc
     for (const scene_choice& scene : e.scenes) {
         const std::string parameters = parameters_text(scene);
         const auto digest = digests.find(scene.kind + " " + parameters);
-        scenes.push_back({{"kind", scene.kind}, {"parameters", parameters}, {"seed", scene.seed}});
+        scenes.push_back({{"kind", scene.kind}, {"parameters", parameters}});
+        if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
     const json manifest{{"experiment", e.name},
@@ -93,7 +94,7 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
     const json before = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
     if (before["config"].value("hash", "") != hash_of(e))
-        return where + " are of another config, size or set of meshes";
+        return where + " are of another config or size, or of other meshes or recordings";
     if (before["build"] != build())
         return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
                "), whose times cannot be compared";

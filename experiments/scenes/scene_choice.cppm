@@ -1,5 +1,6 @@
 module;
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,18 @@ struct scene_info {
     std::string name;  ///< "brownian", "lattice"; "mesh_pair", "mesh_swarm"
     std::string summary;
     bool has_meshes;
+    bool plays_file;  ///< the one that its parameter `file` names, as it is: the scene has no seed
     std::vector<aabb::parameter_info> parameters;
 };
 
-/// A scene wanted: its kind, settings that differ from the defaults, a seed. Meshes are files, looked for as given,
-/// then in `experiments/data/`, or generated shapes: "icosphere", "torus_knot:triangles=20000", "noise_sphere".
+/// A scene wanted: its kind, settings that differ from the defaults, a seed where it has one. Meshes are files, looked
+/// for as given, then in `experiments/data/`, or generated shapes: "icosphere", "torus_knot:triangles=20000",
+/// "noise_sphere".
 struct scene_choice {
     std::string kind;
     std::vector<aabb::setting> settings;  ///< "objects", "frames", "displacement", … as text
     std::vector<std::string> meshes;
-    std::uint64_t seed = 1;
+    std::optional<std::uint64_t> seed = 1;  ///< empty where the kind plays a file
 };
 
 }  // namespace aabblab
