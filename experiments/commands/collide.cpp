@@ -2,18 +2,21 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "number.hpp"
 #include "output.hpp"
-#include "stopwatch.hpp"
 
 // Imports, so it comes last.
 #include "composing.hpp"
@@ -22,6 +25,8 @@ import aabb;
 import aabb.registry;
 import aabb.validation;
 import aabblab.pair_output;
+import aabblab.play;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -102,16 +107,37 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
     }
 }
 
-void query(aabb::local_stage& stage, const collide_request& request, const std::array<aabb::pose, 2>& poses,
-           detection_result& result) {
+/// Meshes where they are told to be, each an object: a scene of one frame.
+class posed_meshes final : public aabb::mesh_scene {
+public:
+    /// @param poses as many as meshes, or more
+    posed_meshes(std::vector<aabb::mesh> given, std::span<const aabb::pose> poses) {
+        meshes = std::move(given);
+        poses_.assign(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(meshes.size()));
+        for (std::uint32_t object = 0; object < meshes.size(); ++object) mesh_of.push_back(object);
+    }
+
+    [[nodiscard]] std::size_t frames() const override { return 1; }
+    bool next(std::vector<aabb::pose>& poses) override {
+        poses = poses_;
+        return !std::exchange(played_, true);
+    }
+
+private:
+    std::vector<aabb::pose> poses_;
+    bool played_ = false;
+};
+
+/// Answers in place of `detect`, or by it.
+void query(player& who, const collide_request& request, detection_result& result) {
     if (request.self) {
-        stage.self_pairs(0, result.pairs);
+        who.find_self_pairs(0, result.pairs);
     } else if (request.count) {
-        result.count = stage.count_pairs(0, poses[0], 1, poses[1]);
+        result.count = who.count_contacts();
     } else if (request.first) {
-        if (const auto pair = stage.first_pair(0, poses[0], 1, poses[1])) result.pairs.push_back(*pair);
+        if (const auto c = who.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
     } else {
-        stage.all_pairs(0, poses[0], 1, poses[1], result.pairs);
+        who.detect();
     }
 }
 
@@ -124,42 +150,40 @@ std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
     return shared;
 }
 
-void set_bytes(detection_result& result, const aabb::local_stage& stage, const std::vector<aabb::mesh>& meshes) {
-    result.bytes = stage.bytes();
+void set_bytes(detection_result& result, const player& who) {
+    result.bytes = who.local_bytes();
     std::optional<std::size_t> trees;
     for (const aabb::part_bytes& part : result.bytes)
         if (part.part == "nodes" || part.part == "indices") trees = trees.value_or(0) + part.bytes;
     std::size_t triangles = 0;
-    for (const aabb::mesh& m : meshes) triangles += m.triangles.size();
+    for (const std::uint32_t of_mesh : result.triangles) triangles += of_mesh;
     if (trees) result.bytes_per_triangle = static_cast<double>(*trees) / static_cast<double>(triangles);
-    aabb::part_bytes of_triangles{"triangles", 0};
-    aabb::part_bytes of_vertices{"vertices", 0};
-    for (const aabb::mesh& m : meshes) {
-        of_triangles.bytes += aabb::bytes_of(m.triangles);
-        of_vertices.bytes += aabb::bytes_of(m.vertices);
-    }
-    result.bytes.push_back(of_triangles);
-    result.bytes.push_back(of_vertices);
 }
 
+/// Every two objects are candidates, since boxes in the world say nothing of meshes that were moved together, however
+/// far.
 /// @param table takes the pairs; null where they are not wanted.
-detection_result detect(const collide_request& request, const detection_method& method,
-                        const std::vector<aabb::mesh>& meshes, const std::array<aabb::pose, 2>& poses,
+detection_result detect(const collide_request& request, detection_method& method, scene_play& scene,
                         number_table* table) {
     detection_result result;
-    result.build_ms = milliseconds_of([&] {
-        for (const aabb::mesh& m : meshes) method.stage->add_model(m);
-    });
+    std::optional<player> who;
+    result.build_ms = milliseconds_of([&] { who.emplace(stages{nullptr, std::move(method.stage)}, scene); });
+    scene.next();
+    who->update();
+    who->search();
     try {
-        result.query_ms = milliseconds_of([&] { query(*method.stage, request, poses, result); });
+        result.query_ms = milliseconds_of([&] { query(*who, request, result); });
     } catch (const aabb::input_error& error) {
         throw aabb::input_error(
             fmt::format("{} against {}: {}", request.a, request.b.value_or("itself"), error.what()));
     }
+    const std::vector<aabb::mesh>& meshes = scene.meshes()->meshes;
     for (const aabb::mesh& m : meshes) result.triangles.push_back(m.triangle_count());
-    set_bytes(result, *method.stage, meshes);
+    set_bytes(result, *who);
     if (request.count && !request.self) return result;
-    sort_each_once(result.pairs, method.name);
+    for (const aabb::contact& c : who->sorted_contacts()) result.pairs.push_back({c.triangle_a, c.triangle_b});
+    std::ranges::sort(result.pairs);
+    require_each_once(result.pairs, method.name);
     aabb::digest digest;
     for (const aabb::index_pair pair : result.pairs) {
         const std::uint32_t shared = request.self ? shared_vertices(meshes[0], pair) : 0;
@@ -225,7 +249,7 @@ void require_sense(const collide_request& request) {
 
 void collide(const collide_request& request) {
     require_sense(request);
-    const detection_method method = method_of(request);
+    detection_method method = method_of(request);
     const std::array<aabb::pose, 2> poses = {pose_of(request.poses[0], "--pose-a"),
                                              pose_of(request.poses[1], "--pose-b")};
     std::vector<std::string> names{request.a};
@@ -235,8 +259,8 @@ void collide(const collide_request& request) {
         require_no_mesh(*request.out, names);
         table.emplace(*request.out, request.self ? "a,b,shared_vertices" : "a,b");
     }
-    const std::vector<aabb::mesh> meshes = read_meshes(names);
-    const detection_result result = detect(request, method, meshes, poses, table ? &*table : nullptr);
+    scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), poses));
+    const detection_result result = detect(request, method, scene, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)
         print_json(method, result);

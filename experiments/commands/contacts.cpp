@@ -3,16 +3,19 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <chrono>
 #include <cstddef>
-#include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "output.hpp"
-#include "stopwatch.hpp"
 
 // Imports, so it comes last.
 #include "composing.hpp"
@@ -22,7 +25,9 @@ import aabb.registry;
 import aabb.validation;
 import aabblab.files;
 import aabblab.pair_output;
+import aabblab.play;
 import aabblab.progress;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -40,8 +45,7 @@ struct contacts_request {
 struct both_stages {
     std::string name;
     bool exact;
-    std::unique_ptr<aabb::global_stage> global;
-    std::unique_ptr<aabb::local_stage> local;
+    stages made;
 };
 
 struct contacts_result {
@@ -63,95 +67,87 @@ both_stages stages_of(const contacts_request& request) {
     if (request.engine) {
         if (request.local.any())
             throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it without them");
-        return {global + ", " + *request.engine, exact && aabb::is_exact_engine(*request.engine),
-                aabb::compose_global_search(c, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)};
+        return {global + ", " + *request.engine,
+                exact && aabb::is_exact_engine(*request.engine),
+                {aabb::compose_global_search(c, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)}};
     }
     return {global + ", " + to_text(c, aabb::stage::local_detection),
             exact && is_exact(c, aabb::stage::local_detection),
-            aabb::compose_global_search(c, aabb::instrumentation::none),
-            aabb::compose_local_detection(c, aabb::instrumentation::none)};
+            {aabb::compose_global_search(c, aabb::instrumentation::none),
+             aabb::compose_local_detection(c, aabb::instrumentation::none)}};
 }
 
-std::size_t count_object_pairs(const std::vector<aabb::contact>& sorted) {
+std::size_t count_object_pairs(std::span<const aabb::contact> sorted) {
     std::size_t pairs = 0;
     for (std::size_t i = 0; i < sorted.size(); ++i)
         pairs += i == 0 || sorted[i].a != sorted[i - 1].a || sorted[i].b != sorted[i - 1].b;
     return pairs;
 }
 
-void play(aabb::pipeline& both, const std::vector<aabb::pose>& poses, const std::string& motion, std::uint32_t frame) {
-    try {
-        both.update(poses);
-        both.search();
-        both.detect();
-    } catch (const aabb::input_error& error) {
-        throw aabb::input_error(fmt::format("{}: frame {}: {}", motion, frame, error.what()));
-    }
-}
-
-contacts_result detect_all(aabb::mesh_scene& scene, const std::string& motion, const both_stages& stages,
-                           std::optional<number_table>& table) {
+contacts_result detect_all(scene_play& scene, both_stages& both, std::optional<number_table>& table) {
     contacts_result result;
-    result.objects = scene.mesh_of.size();
-    std::optional<aabb::pipeline> both;
-    result.build_ms = milliseconds_of([&] { both.emplace(scene, *stages.global, *stages.local); });
+    result.objects = scene.objects();
+    std::optional<player> who;
+    result.build_ms = milliseconds_of([&] { who.emplace(std::move(both.made), scene); });
     progress shown("frames searched", scene.frames());
     aabb::digest digest;
-    std::vector<aabb::pose> poses;
-    std::vector<aabb::contact> contacts;
-    for (std::uint32_t frame = 0; scene.next(poses); ++frame) {
-        result.milliseconds.push_back(milliseconds_of([&] { play(*both, poses, motion, frame); }));
-        contacts.assign(both->contacts().begin(), both->contacts().end());
-        sort_each_once(contacts, fmt::format("{}, frame {}", stages.name, frame));
-        for (const aabb::contact& c : contacts) {
-            digest.add(std::array{frame, c.a, c.b, c.triangle_a, c.triangle_b});
-            if (table) table->add({frame, c.a, c.b, c.triangle_a, c.triangle_b});
+    play(scene, *who, [&](const played_frame& frame) {
+        result.milliseconds.push_back(frame.ms());
+        require_each_once(frame.contacts, fmt::format("{}, frame {}", both.name, frame.number));
+        for (const aabb::contact& c : frame.contacts) {
+            digest.add(std::array{frame.number, c.a, c.b, c.triangle_a, c.triangle_b});
+            if (table) table->add({frame.number, c.a, c.b, c.triangle_a, c.triangle_b});
         }
-        result.candidates += both->candidates().size();
-        result.object_pairs += count_object_pairs(contacts);
-        result.contacts += contacts.size();
-        shown.at(frame + 1);
-    }
+        result.candidates += frame.pairs.size();
+        result.object_pairs += count_object_pairs(frame.contacts);
+        result.contacts += frame.contacts.size();
+        shown.at(frame.number + 1);
+    });
     result.digest = digest.text();
     return result;
 }
 
-void print_json(const both_stages& stages, const contacts_result& result) {
-    const nlohmann::ordered_json summary = {{"objects", result.objects},       {"frames", result.milliseconds.size()},
-                                            {"candidates", result.candidates}, {"object_pairs", result.object_pairs},
-                                            {"contacts", result.contacts},     {"digest", result.digest},
-                                            {"build_ms", result.build_ms},     {"ms", result.milliseconds},
-                                            {"method", stages.name},           {"exact", stages.exact}};
+void print_json(const both_stages& both, const contacts_result& result) {
+    const nlohmann::ordered_json summary = {{"objects", result.objects},
+                                            {"frames", result.milliseconds.size()},
+                                            {"candidates", result.candidates},
+                                            {"object_pairs", result.object_pairs},
+                                            {"contacts", result.contacts},
+                                            {"digest", result.digest},
+                                            {"build_ms", result.build_ms},
+                                            {"ms", result.milliseconds},
+                                            {"method", both.name},
+                                            {"exact", both.exact}};
     print(summary.dump() + "\n");
 }
 
-void print_text(const contacts_request& request, const both_stages& stages, const contacts_result& result) {
+void print_text(const contacts_request& request, const both_stages& both, const contacts_result& result) {
     double all = 0;
     for (const double ms : result.milliseconds) all += ms;
     print(fmt::format("{}: {} objects, {} frames\n", visible(request.motion), result.objects,
                       result.milliseconds.size()));
     print(fmt::format("{} contacts of triangles in {} contacts of objects ({} pairs of boxes), digest {}\n",
                       result.contacts, result.object_pairs, result.candidates, result.digest));
-    print(fmt::format("{}{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", stages.name,
-                      stages.exact ? "" : " (inexact)", result.build_ms,
+    print(fmt::format("{}{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", both.name,
+                      both.exact ? "" : " (inexact)", result.build_ms,
                       all / static_cast<double>(result.milliseconds.size())));
 }
 
 void find_contacts(const contacts_request& request) {
-    const both_stages stages = stages_of(request);
+    both_stages both = stages_of(request);
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.motion, 1});
         require_no_mesh(*request.out, request.meshes);
         table.emplace(*request.out, "frame,object_a,object_b,triangle_a,triangle_b");
     }
-    const std::unique_ptr<aabb::mesh_scene> scene = open_motion(request.motion, read_meshes(request.meshes));
-    const contacts_result result = detect_all(*scene, request.motion, stages, table);
+    scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
+    const contacts_result result = detect_all(scene, both, table);
     if (table) table->commit();
     if (request.json)
-        print_json(stages, result);
+        print_json(both, result);
     else
-        print_text(request, stages, result);
+        print_text(request, both, result);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -48,11 +50,7 @@ std::string left_out_by(aabb::strategy_kind kind, const std::string& choice) {
 void explain_contender(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
     player p(who, scene, aabb::instrumentation::none);
-    for (int frame = 0; frame < 2 && scene.next(); ++frame) {
-        p.update();
-        p.search();
-        p.detect();
-    }
+    play(scene, p, [](const played_frame&) {}, 2);
     const contender_name& name = who.name;
     print("  " + text_of(name) + "\n");
     print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());

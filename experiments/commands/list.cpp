@@ -29,8 +29,10 @@ const metric_group_info& group_of(const metric& m) {
 
 nlohmann::ordered_json to_json(std::span<const aabb::parameter_info> parameters) {
     auto all = nlohmann::ordered_json::array();
-    for (const auto& p : parameters)
+    for (const auto& p : parameters) {
         all.push_back({{"name", p.name}, {"expected", p.expected}, {"default", p.fallback}, {"help", p.help}});
+        if (p.fallback.empty()) all.back()["default"] = nullptr;
+    }
     return all;
 }
 
@@ -54,6 +56,7 @@ nlohmann::ordered_json everything() {
         all["scenes"].push_back({{"name", s.name},
                                  {"summary", s.summary},
                                  {"has_meshes", s.has_meshes},
+                                 {"has_seed", !s.plays_file},
                                  {"parameters", to_json(s.parameters)}});
     for (const auto& s : shapes())
         all["shapes"].push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
@@ -77,7 +80,9 @@ public:
     }
     void parameters(std::span<const aabb::parameter_info> all) {
         for (const auto& p : all)
-            lines_.push_back({fmt::format("    {}={}", p.name, p.fallback), fmt::format("{}: {}", p.help, p.expected)});
+            lines_.push_back(
+                {fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
+                 fmt::format("{}: {}{}", p.help, p.expected, p.fallback.empty() ? ", which must be given" : "")});
     }
     void print_all() const {
         std::size_t width = 0;

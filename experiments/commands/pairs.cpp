@@ -2,17 +2,17 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "output.hpp"
-#include "stopwatch.hpp"
 
 // Imports, so it comes last.
 #include "composing.hpp"
@@ -22,7 +22,9 @@ import aabb.registry;
 import aabb.validation;
 import aabblab.files;
 import aabblab.pair_output;
+import aabblab.play;
 import aabblab.progress;
+import aabblab.statistics;
 
 namespace aabblab {
 
@@ -59,36 +61,23 @@ search_method method_of(const pairs_request& request) {
             aabb::compose_global_search(composition, aabb::instrumentation::none)};
 }
 
-search_result search_all(aabb::box_scene& scene, const search_method& method, std::optional<number_table>& table) {
+search_result search_all(scene_play& scene, search_method& method, std::optional<number_table>& table) {
     search_result result;
     result.objects = scene.objects();
-    for (std::uint32_t id = 0; id < result.objects; ++id) method.stage->insert(id);
+    player who({std::move(method.stage), nullptr}, scene);
     progress shown("frames searched", scene.frames());
     aabb::digest digest;
-    std::vector<aabb::box> boxes;
-    std::vector<aabb::index_pair> pairs;
-    for (std::uint32_t frame = 0; scene.next(boxes); ++frame) {
-        pairs.clear();
-        result.milliseconds.push_back(milliseconds_of([&] {
-            method.stage->update(boxes);
-            method.stage->search(pairs);
-        }));
-        sort_each_once(pairs, fmt::format("{}, frame {}", method.name, frame));
-        digest.add(frame, pairs);
+    play(scene, who, [&](const played_frame& frame) {
+        result.milliseconds.push_back(frame.ms());
+        require_each_once(frame.pairs, fmt::format("{}, frame {}", method.name, frame.number));
+        digest.add(frame.number, frame.pairs);
         if (table)
-            for (const auto [a, b] : pairs) table->add({frame, a, b});
-        result.pairs += pairs.size();
-        shown.at(frame + 1);
-    }
+            for (const auto [a, b] : frame.pairs) table->add({frame.number, a, b});
+        result.pairs += frame.pairs.size();
+        shown.at(frame.number + 1);
+    });
     result.digest = digest.text();
     return result;
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    if (values.size() % 2 == 1) return *middle;
-    return (*std::max_element(values.begin(), middle) + *middle) / 2;
 }
 
 void print_json(const search_result& result) {
@@ -105,18 +94,18 @@ void print_text(const pairs_request& request, const search_method& method, const
                       result.milliseconds.size()));
     print(fmt::format("{} overlapping pairs, digest {}\n", result.pairs, result.digest));
     if (!result.milliseconds.empty())
-        print(fmt::format("{}: {:.3f} ms a frame (median)\n", method.name, median(result.milliseconds)));
+        print(fmt::format("{}: {:.3f} ms a frame (median)\n", method.name, quartiles_of(result.milliseconds).median));
 }
 
 void find_pairs(const pairs_request& request) {
-    const search_method method = method_of(request);
-    const std::unique_ptr<aabb::box_scene> scene = open_recording(request.recording);
+    search_method method = method_of(request);
+    scene_play scene(open_recording(request.recording));
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.recording, 1});
         table.emplace(*request.out, "frame,a,b");
     }
-    const search_result result = search_all(*scene, method, table);
+    const search_result result = search_all(scene, method, table);
     if (table) table->commit();
     if (request.json)
         print_json(result);

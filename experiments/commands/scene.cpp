@@ -25,6 +25,7 @@ import aabb;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.picture;
+import aabblab.play;
 import aabblab.progress;
 import aabblab.scenes;
 
@@ -36,7 +37,7 @@ struct scene_request {
     std::string kind;
     std::map<std::string, std::optional<std::string>> settings;  ///< by the parameter's name
     std::vector<std::string> meshes;
-    std::string seed = "1";
+    std::optional<std::string> seed;
     std::optional<std::string> out;
     std::optional<std::string> motion;
     std::optional<std::string> picture;
@@ -46,30 +47,24 @@ struct scene_request {
 class world_boxes final : public aabb::box_scene {
 public:
     /// @param motion null where poses are not to be written.
-    world_boxes(std::unique_ptr<aabb::mesh_scene> scene, motion_file* motion)
-        : scene_(std::move(scene)), motion_(motion) {
-        for (const aabb::mesh& m : scene_->meshes) bounds_.push_back(aabb::bounds_of(m));
-    }
+    world_boxes(const scene_choice& choice, motion_file* motion)
+        : scene_(choice), motion_(motion), world_(*scene_.meshes()) {}
 
-    [[nodiscard]] std::size_t objects() const override { return scene_->mesh_of.size(); }
-    [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
+    [[nodiscard]] const aabb::mesh_scene& meshes() const { return *scene_.meshes(); }
+    [[nodiscard]] std::size_t objects() const override { return scene_.objects(); }
+    [[nodiscard]] std::size_t frames() const override { return scene_.frames(); }
     bool next(std::vector<aabb::box>& boxes) override {
-        if (!scene_->next(poses_)) return false;
-        if (motion_) motion_->add(poses_);
-        for (std::uint32_t m = 0; m < bounds_.size(); ++m)
-            if (scene_->deforms(m)) bounds_[m] = aabb::bounds_of(scene_->meshes[m]);
-        boxes.clear();
-        for (std::size_t object = 0; object < poses_.size(); ++object)
-            boxes.push_back(aabb::world_bounds(bounds_[scene_->mesh_of[object]], poses_[object]));
-        aabb::require_valid(boxes);
+        if (!scene_.next()) return false;
+        if (motion_) motion_->add(scene_.poses());
+        scene_.in_frame([&] { world_.update(scene_.poses()); });
+        boxes.assign(world_.boxes().begin(), world_.boxes().end());
         return true;
     }
 
 private:
-    std::unique_ptr<aabb::mesh_scene> scene_;
+    scene_play scene_;
     motion_file* motion_;
-    std::vector<aabb::box> bounds_;  // by mesh
-    std::vector<aabb::pose> poses_;
+    aabb::posed_boxes world_;
 };
 
 /// A scene that is looked at while it is played.
@@ -93,7 +88,10 @@ private:
     survey seen_;
 };
 
-std::uint64_t parse_seed(const std::string& text) {
+/// Without one given, 1 where the kind has one.
+std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_info& kind) {
+    if (!request.seed) return kind.plays_file ? std::nullopt : std::optional<std::uint64_t>(1);
+    const std::string& text = *request.seed;
     std::uint64_t seed = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
     if (error != std::errc{} || end != text.data() + text.size())
@@ -114,6 +112,7 @@ void require_poses_suffice(const scene_info& kind, const scene_choice& choice, c
         if (scene.deforms(m))
             throw aabb::input_error(kind.name +
                                     " deforms its meshes, so poses alone, as --motion writes them, are not it");
+    if (std::ranges::find(kind.parameters, "normalise", &aabb::parameter_info::name) == kind.parameters.end()) return;
     const auto scaled = std::ranges::find(choice.settings, "normalise", &aabb::setting::name);
     if (scaled == choice.settings.end() || scaled->value != "no")
         throw aabb::input_error(
@@ -124,9 +123,9 @@ std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_
     if (!kind.has_meshes && motion)
         throw aabb::input_error(kind.name + " is a scene of boxes, which have no poses to write with --motion");
     if (!kind.has_meshes) return make_box_scene(choice);
-    std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
-    if (motion) require_poses_suffice(kind, choice, *scene);
-    return std::make_unique<world_boxes>(std::move(scene), motion);
+    auto scene = std::make_unique<world_boxes>(choice, motion);
+    if (motion) require_poses_suffice(kind, choice, scene->meshes());
+    return scene;
 }
 
 /// Every parameter with its value, the defaults too.
@@ -151,7 +150,11 @@ std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request&
 
 void require_outputs(const scene_request& request) {
     const auto outputs = outputs_of(request);
-    for (const auto& [option, file] : outputs) require_no_mesh(file, request.meshes);
+    const auto played = request.settings.find("file");
+    for (const auto& [option, file] : outputs) {
+        require_no_mesh(file, request.meshes);
+        if (played != request.settings.end() && played->second) require_other_file(file, {&*played->second, 1});
+    }
     if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, the file to write");
     for (std::size_t i = 0; i < outputs.size(); ++i)
         for (std::size_t j = i + 1; j < outputs.size(); ++j) {
@@ -166,10 +169,10 @@ void require_outputs(const scene_request& request) {
 
 void write_scene(const scene_request& request) {
     require_outputs(request);
-    scene_choice choice{request.kind, {}, request.meshes, parse_seed(request.seed)};
+    const scene_info& kind = kind_named(request.kind);
+    scene_choice choice{request.kind, {}, request.meshes, seed_of(request, kind)};
     for (const auto& [name, value] : request.settings)
         if (value) choice.settings.push_back({name, *value});
-    const scene_info& kind = kind_named(request.kind);
     // Opened before anything is played, so that a file that cannot be written costs no time and no recording.
     std::optional<motion_file> motion;
     if (request.motion) motion.emplace(*request.motion);
@@ -179,8 +182,8 @@ void write_scene(const scene_request& request) {
     {
         progress shown("frames played", scene.frames());
         if (request.out) {
-            write_recording(scene, request.kind, fmt::format("aabblab, seed {}", choice.seed), *request.out,
-                            [&](std::size_t done) { shown.at(done); });
+            const std::string type = choice.seed ? fmt::format("aabblab, seed {}", *choice.seed) : "aabblab";
+            write_recording(scene, request.kind, type, *request.out, [&](std::size_t done) { shown.at(done); });
         } else {
             std::vector<aabb::box> boxes;
             for (std::size_t done = 1; scene.next(boxes); ++done) shown.at(done);
@@ -215,7 +218,8 @@ void add_parameters(CLI::App& command, scene_request& request) {
     for (const scene_info& kind : scene_kinds())
         for (const aabb::parameter_info& p : kind.parameters) {
             std::string& help = helps[p.name];
-            help += fmt::format("{}{} (default {})", help.empty() ? "Of " : ", ", kind.name, p.fallback);
+            help += fmt::format("{}{}", help.empty() ? "Of " : ", ", kind.name);
+            if (!p.fallback.empty()) help += fmt::format(" (default {})", p.fallback);
         }
     for (const auto& [name, help] : helps)
         command.add_option(option_names(name), request.settings[name], help)->type_name("V");
@@ -225,7 +229,7 @@ void add_parameters(CLI::App& command, scene_request& request) {
 }  // namespace
 
 void add_scene(CLI::App& program, int&) {
-    auto* command = program.add_subcommand("scene", "Write a generated scene as a recording of boxes, or as a picture");
+    auto* command = program.add_subcommand("scene", "Write a scene as a recording of boxes, or as a picture");
     auto request = std::make_shared<scene_request>();
     std::string names;
     for (const std::string& name : scene_names()) names += (names.empty() ? "" : ", ") + name;

@@ -37,7 +37,8 @@ std::vector<aabb::composition> every_composition() {
 experiment built_in_experiment() {
     experiment e;
     for (const scene_info& info : scene_kinds())
-        if (!info.has_meshes) e.scenes.push_back({info.name, {{"objects", "1000"}, {"frames", "5"}}, {}, 1});
+        if (!info.has_meshes && !info.plays_file)
+            e.scenes.push_back({info.name, {{"objects", "1000"}, {"frames", "5"}}, {}, 1});
     e.scenes.insert(e.scenes.end(),
                     {{"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, 1},
                      {"mesh_swarm",

@@ -25,7 +25,7 @@ struct experiment {
     bool quick = false;
     std::vector<std::string> engines;
     std::vector<scene_choice> scenes;
-    std::string mesh_digest;                      ///< of the vertices and triangles of the scenes' meshes
+    std::string content_digest;                   ///< of the scenes' meshes, and of the frames of files that they play
     std::vector<aabb::composition> compositions;  ///< scenes of boxes use the global search of each only
     std::size_t repeats = 9;
     std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
@@ -42,14 +42,15 @@ enum class experiment_size { full, quick };
 
 /// Reads a config and checks all of it, down to making each scene once.
 /// @throws aabb::input_error with file and line on malformed TOML (column too), an unknown key or name (with the
-/// nearest one), a value of a wrong type, a refused combination, a mesh that is not there.
+/// nearest one), a value of a wrong type, a refused combination, a mesh or a file that is not there or cannot be played
+/// to its end. A relative path to such a file is taken as given, else from the folder of the config.
 [[nodiscard]] experiment read_experiment(const std::filesystem::path& file, experiment_size size);
 
 /// The same from text. `file` is for messages.
 [[nodiscard]] experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size);
 
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
-/// meshes. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
+/// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
 
 /// The experiment as its results folder remembers it.

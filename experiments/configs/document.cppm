@@ -1,6 +1,7 @@
 module;
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <set>
 #include <span>
 #include <string>
@@ -45,6 +46,8 @@ public:
     document(const std::string& text, std::string file);
 
     [[nodiscard]] const node& root() const { return root_; }
+    /// Of the config.
+    [[nodiscard]] std::filesystem::path folder() const { return std::filesystem::path(file_).parent_path(); }
 
     [[noreturn]] void fail(int line, const std::string& sentence) const;
     /// "KEY is a number; expected WHAT".

@@ -160,7 +160,7 @@ std::string hash_of(const experiment& e) {
         for (const aabb::strategy_kind kind : aabb::strategy_kinds) all += to_text(c[kind]) + " + ";
     }
     for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
-    all += "\n" + e.mesh_digest;
+    all += "\n" + e.content_digest;
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx",
                   static_cast<unsigned long long>(XXH3_64bits(all.data(), all.size())));

@@ -4,6 +4,8 @@ module;
 #include <bit>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -49,11 +51,15 @@ const scene_info& info_of(const document& doc, const located_text& kind) {
 constexpr std::string_view own_keys[] = {"kind", "seed", "meshes", "without_data"};
 
 void require_known_keys(const document& doc, const node& scene, const scene_info& info) {
+    const node* quick = scene.find("quick");
+    for (const node* table : {&scene, quick})
+        if (const node* seed = table && info.plays_file ? table->find("seed") : nullptr)
+            doc.fail(seed->line, info.name + " plays a file as it is and has no seed");
     std::vector<std::string> known{"kind", "seed", "quick"};
     if (info.has_meshes) known.insert(known.end(), {"meshes", "without_data"});
     for (const aabb::parameter_info& p : info.parameters) known.push_back(p.name);
     doc.require_keys(scene, " of scene " + info.name, known);
-    if (const node* quick = scene.find("quick")) doc.require_keys(*quick, " of scene " + info.name, known);
+    if (quick) doc.require_keys(*quick, " of scene " + info.name, known);
 }
 
 bool is_there(const std::string& mesh) {
@@ -82,15 +88,38 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
     return instead;
 }
 
-std::vector<std::uint64_t> seeds_of(const document& doc, const node* seed) {
-    if (!seed) return {1};
+/// A relative path is looked for as given, then from the folder of the config.
+std::string found_file(const document& doc, const located_text& name) {
+    std::error_code ignored;
+    const std::filesystem::path beside = doc.folder() / name.text;
+    if (name.text.empty() || beside == name.text || std::filesystem::exists(name.text, ignored)) return name.text;
+    if (!std::filesystem::exists(beside, ignored))
+        doc.fail(name.line, name.text + ": no such file, here or in " + doc.folder().string());
+    return beside.string();
+}
+
+/// The settings that a scene is made with, each with its alternatives.
+std::vector<alternatives> settings_of(const document& doc, const node& scene, bool plays_file) {
+    std::vector<alternatives> settings;
+    for (const node& entry : scene.items) {
+        if (std::ranges::find(own_keys, entry.key) != std::end(own_keys)) continue;
+        settings.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
+        if (plays_file && entry.key == "file")
+            for (located_text& name : settings.back().second) name.text = found_file(doc, name);
+    }
+    return settings;
+}
+
+std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const node* seed) {
+    if (!seed) return {1U};
     if (seed->kind != node_kind::list) return {doc.integer_of("seed", *seed, 0)};
     if (seed->items.empty()) doc.fail(seed->line, "seed is an empty list; expected at least one number");
-    std::vector<std::uint64_t> seeds;
+    std::vector<std::optional<std::uint64_t>> seeds;
     std::set<std::uint64_t> seen;
     for (const node& one : seed->items) {
-        seeds.push_back(doc.integer_of("seed", one, 0));
-        if (!seen.insert(seeds.back()).second) doc.fail(one.line, "seed lists '" + one.text + "' twice");
+        const std::uint64_t number = doc.integer_of("seed", one, 0);
+        seeds.emplace_back(number);
+        if (!seen.insert(number).second) doc.fail(one.line, "seed lists '" + one.text + "' twice");
     }
     return seeds;
 }
@@ -102,10 +131,35 @@ void add_meshes(aabb::digest& digest, std::span<const aabb::mesh> meshes) {
     }
 }
 
+/// What a file makes a scene play. Played to its end, a file that is malformed anywhere is refused now.
+void add_frames(aabb::digest& digest, aabb::box_scene& scene) {
+    digest.add(std::array{static_cast<std::uint32_t>(scene.objects()), static_cast<std::uint32_t>(scene.frames())});
+    for (std::vector<aabb::box> boxes; scene.next(boxes);)
+        for (const aabb::box& b : boxes) digest.add(std::bit_cast<std::array<std::uint32_t, 6>>(b));
+}
+void add_frames(aabb::digest& digest, aabb::mesh_scene& scene) {
+    digest.add(
+        std::array{static_cast<std::uint32_t>(scene.mesh_of.size()), static_cast<std::uint32_t>(scene.frames())});
+    for (std::vector<aabb::pose> poses; scene.next(poses);)
+        for (const aabb::pose& p : poses) digest.add(std::bit_cast<std::array<std::uint32_t, 24>>(p));
+}
+
+/// Makes the scene once and digests what stands in its meshes and its file.
+void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
+    if (info.has_meshes) {
+        const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
+        add_meshes(digest, scene->meshes);
+        if (info.plays_file) add_frames(digest, *scene);
+    } else {
+        const std::unique_ptr<aabb::box_scene> scene = make_box_scene(choice);
+        if (info.plays_file) add_frames(digest, *scene);
+    }
+}
+
 /// A scene of the config, before anything is made of it.
 struct written_scene {
     scene_choice choice;
-    bool has_meshes;
+    const scene_info* info;
     int line;
 };
 
@@ -118,23 +172,21 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         doc.fail(written.line, "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
     const std::vector<located_text> names = doc.alternatives_of("kind", *kinds);
     for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
-    std::vector<alternatives> keys;
-    for (const node& entry : scene.items)
-        if (std::ranges::find(own_keys, entry.key) == std::end(own_keys))
-            keys.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
     const node* own_seed = scene.find("seed");
-    const std::vector<std::uint64_t> seeds = seeds_of(doc, own_seed ? own_seed : seed);
-    std::vector<std::size_t> factors = sizes_of(keys);
-    factors.insert(factors.end(), {names.size(), seeds.size()});
-    doc.require_few(written.line, "scenes", factors, scenes.all().size());
+    const std::vector<std::optional<std::uint64_t>> all_seeds = seeds_of(doc, own_seed ? own_seed : seed);
     for (const located_text& kind : names) {
-        const bool has_meshes = info_of(doc, kind).has_meshes;
+        const scene_info& info = info_of(doc, kind);
         const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
+        const std::vector<alternatives> keys = settings_of(doc, scene, info.plays_file);
+        const auto seeds = info.plays_file ? std::vector<std::optional<std::uint64_t>>(1) : all_seeds;
+        std::vector<std::size_t> factors = sizes_of(keys);
+        factors.push_back(seeds.size());
+        doc.require_few(written.line, "scenes", factors, scenes.all().size());
         for (const std::vector<aabb::setting>& settings : multiplied(keys))
-            for (const std::uint64_t one : seeds) {
+            for (const std::optional<std::uint64_t> one : seeds) {
                 const scene_choice choice{kind.text, settings, meshes, one};
                 const std::string text = choice.kind + " " + parameters_text(choice);
-                if (!scenes.add({choice, has_meshes, written.line}, text))
+                if (!scenes.add({choice, &info, written.line}, text))
                     doc.fail(written.line, "this scene is listed twice: " + text);
             }
     }
@@ -161,17 +213,12 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     each_once<written_scene> written;
     for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e.notes, written);
     if (written.all().empty()) doc.fail(scenes->line, "this config has no scene; expected at least one [[scene]]");
-    aabb::digest meshes_made;
-    for (const auto& [choice, has_meshes, line] : written.all()) {
-        doc.at(line, [&] {
-            if (has_meshes)
-                add_meshes(meshes_made, make_mesh_scene(choice)->meshes);
-            else
-                (void)make_box_scene(choice);
-        });
+    aabb::digest content;
+    for (const auto& [choice, info, line] : written.all()) {
+        doc.at(line, [&] { add_content(content, choice, *info); });
         e.scenes.push_back(choice);
     }
-    e.mesh_digest = meshes_made.text();
+    e.content_digest = content.text();
 }
 
 }  // namespace aabblab

@@ -60,8 +60,12 @@ struct scene_validation {
 };
 
 /// Plays all contenders in step with the exact answer and compares whole sets, frame by frame. Work is counted on the
-/// way.
+/// way. The scene is told the exact answer.
 [[nodiscard]] scene_validation validate_scene(const scene_choice& scene, std::span<const contender> contenders);
+/// The same of a scene that is made already, from its first frame on.
+/// @param choice what it is, for messages
+[[nodiscard]] scene_validation validate_scene(const scene_choice& choice, scene_play& scene,
+                                              std::span<const contender> contenders);
 
 /// One repeat.
 struct timing {
@@ -72,7 +76,9 @@ struct timing {
     double detect_ms = 0;
     std::string digest;
 };
+/// The scene is told what the contender itself finds.
 [[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who);
+[[nodiscard]] timing time_scene(scene_play& scene, const contender& who);
 
 /// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
 /// adds a row for each. What the folder has already is not played again; later processes take what the first one

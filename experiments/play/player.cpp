@@ -1,12 +1,15 @@
 module;
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 module aabblab.play;
@@ -14,16 +17,24 @@ module aabblab.play;
 import :player;
 import aabb;
 import aabblab.scenes;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
 scene_play::scene_play(const scene_choice& choice) {
     const auto info = std::ranges::find(scene_kinds(), choice.kind, &scene_info::name);
-    if (info != scene_kinds().end() && info->has_meshes)
-        meshes_ = make_mesh_scene(choice);
-    else
+    if (info == scene_kinds().end() || !info->has_meshes) {
         box_scene_ = make_box_scene(choice);
+        return;
+    }
+    meshes_ = make_mesh_scene(choice);
+    if (info->plays_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
 }
+
+scene_play::scene_play(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
+
+scene_play::scene_play(std::unique_ptr<aabb::mesh_scene> scene, std::string file)
+    : meshes_(std::move(scene)), file_(std::move(file)) {}
 
 std::size_t scene_play::objects() const {
     return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects();
@@ -34,10 +45,17 @@ std::size_t scene_play::frames() const {
 }
 
 bool scene_play::next() {
-    if (meshes_) return meshes_->next(poses_);
-    if (!box_scene_->next(boxes_)) return false;
-    note_changes(box_scene_->present());
+    if (!(meshes_ ? meshes_->next(poses_) : box_scene_->next(boxes_))) return false;
+    if (box_scene_) note_changes(box_scene_->present());
+    ++played_;
     return true;
+}
+
+void scene_play::tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
+    if (meshes_)
+        meshes_->take_contacts(contacts);
+    else
+        box_scene_->take_pairs(pairs);
 }
 
 void scene_play::note_changes(std::span<const std::uint8_t> present) {
@@ -53,28 +71,51 @@ void scene_play::note_changes(std::span<const std::uint8_t> present) {
 }
 
 player::player(const contender& who, const scene_play& scene, aabb::instrumentation counted)
-    : scene_(scene), global_(who.make_global(counted)) {
-    if (scene.meshes()) {
-        local_ = who.make_local(counted);
-        pipeline_ = std::make_unique<aabb::pipeline>(*scene.meshes(), *global_, *local_);
-    }
+    : player(stages{who.make_global(counted), scene.meshes() ? who.make_local(counted) : nullptr}, scene) {}
+
+player::player(stages made, const scene_play& scene) : scene_(scene), made_(std::move(made)) {
+    if (!scene.meshes()) return;
+    if (made_.global)
+        pipeline_.emplace(*scene.meshes(), *made_.global, *made_.local);
+    else
+        pipeline_.emplace(*scene.meshes(), *made_.local);
 }
 
 void player::update() {
-    if (pipeline_) return pipeline_->update(scene_.poses());
-    for (const std::uint32_t object : scene_.departures()) global_->remove(object);
-    for (const std::uint32_t object : scene_.arrivals()) global_->insert(object);
-    global_->update(scene_.boxes());
+    if (pipeline_) return scene_.in_frame([&] { pipeline_->update(scene_.poses()); });
+    for (const std::uint32_t object : scene_.departures()) made_.global->remove(object);
+    for (const std::uint32_t object : scene_.arrivals()) made_.global->insert(object);
+    made_.global->update(scene_.boxes());
 }
 
 void player::search() {
-    if (pipeline_) return pipeline_->search();
+    if (pipeline_) return scene_.in_frame([&] { pipeline_->search(); });
     pairs_.clear();
-    global_->search(pairs_);
+    made_.global->search(pairs_);
 }
 
 void player::detect() {
-    if (pipeline_) pipeline_->detect();
+    if (pipeline_) scene_.in_frame([&] { pipeline_->detect(); });
+}
+
+std::optional<aabb::contact> player::first_contact() {
+    const std::vector<std::uint32_t>& mesh_of = scene_.meshes()->mesh_of;
+    for (const auto [a, b] : pipeline_->candidates())
+        if (const auto found = made_.local->first_pair(mesh_of[a], scene_.poses()[a], mesh_of[b], scene_.poses()[b]))
+            return aabb::contact{a, b, found->a, found->b};
+    return std::nullopt;
+}
+
+std::uint64_t player::count_contacts() {
+    const std::vector<std::uint32_t>& mesh_of = scene_.meshes()->mesh_of;
+    std::uint64_t count = 0;
+    for (const auto [a, b] : pipeline_->candidates())
+        count += made_.local->count_pairs(mesh_of[a], scene_.poses()[a], mesh_of[b], scene_.poses()[b]);
+    return count;
+}
+
+void player::find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs) {
+    made_.local->self_pairs(mesh, pairs);
 }
 
 const std::vector<aabb::index_pair>& player::sorted_pairs() {
@@ -90,15 +131,20 @@ const std::vector<aabb::contact>& player::sorted_contacts() {
 }
 
 aabb::work_counters player::counters() const {
-    aabb::work_counters all = global_->counters();
-    if (local_)
-        for (std::size_t i = 0; i < all.counts.size(); ++i) all.counts[i] += local_->counters().counts[i];
+    aabb::work_counters all;
+    if (made_.global) all = made_.global->counters();
+    if (made_.local)
+        for (std::size_t i = 0; i < all.counts.size(); ++i) all.counts[i] += made_.local->counters().counts[i];
     return all;
 }
 
+std::vector<aabb::part_bytes> player::global_bytes() const {
+    return made_.global ? made_.global->bytes() : std::vector<aabb::part_bytes>{};
+}
+
 std::vector<aabb::part_bytes> player::local_bytes() const {
-    if (!local_) return {};
-    std::vector<aabb::part_bytes> parts = local_->bytes();
+    if (!made_.local) return {};
+    std::vector<aabb::part_bytes> parts = made_.local->bytes();
     std::size_t triangles = 0;
     std::size_t vertices = 0;
     for (const aabb::mesh& m : scene_.meshes()->meshes) {
@@ -115,26 +161,37 @@ std::size_t player::buffer_bytes() const {
 }
 
 std::vector<std::string> player::left_out() const {
-    std::vector<std::string> all = global_->left_out();
-    if (!local_) all.emplace_back("no local detection: no meshes, no trees, no triangle test");
-    for (std::string& sentence : local_ ? local_->left_out() : std::vector<std::string>{})
+    std::vector<std::string> all = made_.global ? made_.global->left_out() : std::vector<std::string>{};
+    if (!made_.local) all.emplace_back("no local detection: no meshes, no trees, no triangle test");
+    for (std::string& sentence : made_.local ? made_.local->left_out() : std::vector<std::string>{})
         if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
     return all;
 }
 
 std::optional<double> player::box_inflation() const {
-    if (!local_) return std::nullopt;
+    if (!made_.local) return std::nullopt;
     double sum = 0;
     const std::size_t meshes = scene_.meshes()->meshes.size();
     for (std::uint32_t m = 0; m < meshes; ++m) {
-        const std::optional<aabb::tree_survey> seen = local_->survey(m);
+        const std::optional<aabb::tree_survey> seen = made_.local->survey(m);
         if (!seen) return std::nullopt;
         sum += seen->area_inflation;
     }
     return sum / static_cast<double>(meshes);
 }
 
-void tally::add(const std::vector<aabb::index_pair>& pairs, const std::vector<aabb::contact>& contacts) {
+void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each, std::size_t most) {
+    for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
+        const double update = milliseconds_of([&] { who.update(); });
+        const double search = milliseconds_of([&] { who.search(); });
+        const double detect = milliseconds_of([&] { who.detect(); });
+        const played_frame played{frame, update, search, detect, who.sorted_pairs(), who.sorted_contacts()};
+        each(played);
+        scene.tell(played.pairs, played.contacts);
+    }
+}
+
+void tally::add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
     candidates_ += pairs.size();
     if (meshes_) {
         contacts_ += contacts.size();

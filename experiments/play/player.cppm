@@ -2,6 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,11 +32,27 @@ class scene_play {
 public:
     /// @throws aabb::input_error where the scene cannot be made.
     explicit scene_play(const scene_choice& choice);
+    explicit scene_play(std::unique_ptr<aabb::box_scene> scene);
+    /// @param file that its poses stand in, for messages; empty where they do not
+    explicit scene_play(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {});
 
     [[nodiscard]] std::size_t objects() const;
     [[nodiscard]] std::size_t frames() const;
     /// Goes to the next frame; false after the last.
     bool next();
+    /// Tells the scene what was found in this frame, both sorted, before it goes to the next; contacts are of meshes.
+    void tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
+    /// Does something with this frame. What is wrong with poses is found by whoever takes them: where they stand in a
+    /// file, the sentence begins with file and frame.
+    template <class Work>
+    void in_frame(Work work) const {
+        try {
+            work();
+        } catch (const aabb::input_error& error) {
+            if (file_.empty()) throw;
+            throw aabb::input_error(file_ + ": frame " + std::to_string(played_ - 1) + ": " + error.what());
+        }
+    }
     /// Null in a scene of boxes.
     [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
     [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }
@@ -49,6 +66,8 @@ private:
 
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
+    std::string file_;        // of poses
+    std::size_t played_ = 0;  // frames
     std::vector<aabb::box> boxes_;
     std::vector<aabb::pose> poses_;
     std::vector<std::uint8_t> present_;  // by object
@@ -56,15 +75,29 @@ private:
     std::vector<std::uint32_t> departures_;
 };
 
+/// What plays a scene, once.
+struct stages {
+    std::unique_ptr<aabb::global_stage> global;  ///< null in a scene of meshes: every two objects are candidates
+    std::unique_ptr<aabb::local_stage> local;    ///< null in a scene of boxes
+};
+
 /// A contender in a scene: its stages, with the trees built. The scene must outlive it.
 class player {
 public:
     player(const contender& who, const scene_play& scene, aabb::instrumentation counted);
+    player(stages made, const scene_play& scene);
 
     /// One frame, in steps that can be timed apart.
+    /// @throws aabb::input_error with file and frame where poses that stand in a file are refused.
     void update();
     void search();
     void detect();
+
+    /// In place of `detect`, in scenes of meshes: any one contact of the frame, how many there are.
+    [[nodiscard]] std::optional<aabb::contact> first_contact();
+    [[nodiscard]] std::uint64_t count_contacts();
+    /// Appends the pairs of intersecting triangles of one mesh of the scene with itself, in no particular order.
+    void find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs);
 
     /// Of the frame, sorted; duplicates stay.
     [[nodiscard]] const std::vector<aabb::index_pair>& sorted_pairs();
@@ -72,7 +105,7 @@ public:
 
     /// Over all frames so far.
     [[nodiscard]] aabb::work_counters counters() const;
-    [[nodiscard]] std::vector<aabb::part_bytes> global_bytes() const { return global_->bytes(); }
+    [[nodiscard]] std::vector<aabb::part_bytes> global_bytes() const;
     [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
     [[nodiscard]] std::size_t buffer_bytes() const;
     [[nodiscard]] std::vector<std::string> left_out() const;
@@ -81,12 +114,28 @@ public:
 
 private:
     const scene_play& scene_;
-    std::unique_ptr<aabb::global_stage> global_;
-    std::unique_ptr<aabb::local_stage> local_;  // null in a scene of boxes, as is the pipeline
-    std::unique_ptr<aabb::pipeline> pipeline_;
+    stages made_;
+    std::optional<aabb::pipeline> pipeline_;  // of meshes
     std::vector<aabb::index_pair> pairs_;
     std::vector<aabb::contact> contacts_;
 };
+
+/// A frame that was played.
+struct played_frame {
+    std::uint32_t number;
+    double update_ms;
+    double search_ms;
+    double detect_ms;
+    std::span<const aabb::index_pair> pairs;  ///< of boxes, sorted; duplicates stay
+    std::span<const aabb::contact> contacts;  ///< the same; empty in a scene of boxes
+
+    [[nodiscard]] double ms() const { return update_ms + search_ms + detect_ms; }
+};
+
+/// Plays what is left of a scene, or so many frames of it. Each frame is handed over, then the scene is told what was
+/// found in it.
+void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each,
+          std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Number and digest of what is found, frame by frame.
 class tally {
@@ -95,7 +144,7 @@ public:
     explicit tally(bool meshes) : meshes_(meshes) {}
 
     /// A frame: both sorted; contacts are empty in a scene of boxes.
-    void add(const std::vector<aabb::index_pair>& pairs, const std::vector<aabb::contact>& contacts);
+    void add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
 
     [[nodiscard]] std::uint64_t candidates() const { return candidates_; }
     [[nodiscard]] std::optional<std::uint64_t> contacts() const;

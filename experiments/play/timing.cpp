@@ -1,5 +1,8 @@
 module;
 #include <chrono>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -8,41 +11,30 @@ module aabblab.play;
 import :player;
 import aabb;
 import aabblab.scenes;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
-namespace {
-
-using clock = std::chrono::steady_clock;
-
-template <class Work>
-double milliseconds_of(Work work) {
-    const clock::time_point start = clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(clock::now() - start).count();
-}
-
-}  // namespace
-
 timing time_scene(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
+    return time_scene(scene, who);
+}
+
+timing time_scene(scene_play& scene, const contender& who) {
     timing times;
     std::optional<player> p;
     times.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
     tally found(scene.meshes() != nullptr);
-    for (bool first = true; scene.next(); first = false) {
-        const double update = milliseconds_of([&] { p->update(); });
-        const double search = milliseconds_of([&] { p->search(); });
-        const double detect = milliseconds_of([&] { p->detect(); });
-        if (first) {
-            times.first_ms = update + search + detect;
+    play(scene, *p, [&](const played_frame& frame) {
+        if (frame.number == 0) {
+            times.first_ms = frame.ms();
         } else {
-            times.update_ms += update;
-            times.search_ms += search;
-            times.detect_ms += detect;
+            times.update_ms += frame.update_ms;
+            times.search_ms += frame.search_ms;
+            times.detect_ms += frame.detect_ms;
         }
-        found.add(p->sorted_pairs(), p->sorted_contacts());
-    }
+        found.add(frame.pairs, frame.contacts);
+    });
     times.digest = found.digest();
     return times;
 }

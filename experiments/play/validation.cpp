@@ -6,6 +6,7 @@ module;
 #include <deque>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -159,34 +160,26 @@ private:
     aabb::differences classes_;
 };
 
-/// In the world, as the pipeline makes them.
-/// @param mesh_bounds brought up to date where meshes have deformed
-std::vector<aabb::box> boxes_of(const aabb::mesh_scene& scene, std::vector<aabb::box>& mesh_bounds,
-                                std::span<const aabb::pose> poses) {
-    for (std::uint32_t m = 0; m < mesh_bounds.size(); ++m)
-        if (scene.deforms(m)) mesh_bounds[m] = aabb::bounds_of(scene.meshes[m]);
-    std::vector<aabb::box> boxes;
-    for (std::size_t object = 0; object < poses.size(); ++object)
-        boxes.push_back(aabb::world_bounds(mesh_bounds[scene.mesh_of[object]], poses[object]));
-    return boxes;
-}
-
 }  // namespace
 
 scene_validation validate_scene(const scene_choice& choice, std::span<const contender> contenders) {
     scene_play scene(choice);
+    return validate_scene(choice, scene, contenders);
+}
+
+scene_validation validate_scene(const scene_choice& choice, scene_play& scene, std::span<const contender> contenders) {
     aabb::exact_answer exact(scene.objects(), scene.meshes());
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<validated_player> players;
     for (const contender& who : contenders) players.emplace_back(who, choice, scene);
-    std::vector<aabb::box> mesh_bounds;
-    if (scene.meshes())
-        for (const aabb::mesh& m : scene.meshes()->meshes) mesh_bounds.push_back(aabb::bounds_of(m));
+    std::optional<aabb::posed_boxes> world;
+    if (scene.meshes()) world.emplace(*scene.meshes());
     progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
-        if (scene.meshes())
-            exact.play({boxes_of(*scene.meshes(), mesh_bounds, scene.poses()), scene.poses(), {}, {}});
+        if (world) scene.in_frame([&] { world->update(scene.poses()); });
+        if (world)
+            exact.play({world->boxes(), scene.poses(), {}, {}});
         else
             exact.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
         exact_tally.add(exact.pairs(), exact.contacts());
@@ -195,6 +188,7 @@ scene_validation validate_scene(const scene_choice& choice, std::span<const cont
             p.play(frame, exact);
             shown.at(++done);
         }
+        scene.tell(exact.pairs(), exact.contacts());
     }
     scene_validation result{scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), {}};
     for (const validated_player& p : players) result.contenders.push_back(p.result());

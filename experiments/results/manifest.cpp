@@ -11,6 +11,7 @@ module;
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 
 #include "commit.hpp"
@@ -75,8 +76,8 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
     json scenes = json::array();
     for (const scene_choice& scene : e.scenes) {
         const auto digest = digests.find(scene);
-        scenes.push_back(
-            {{"kind", scene.kind}, {"parameters", json::parse(parameters_json(scene))}, {"seed", scene.seed}});
+        scenes.push_back({{"kind", scene.kind}, {"parameters", json::parse(parameters_json(scene))}});
+        if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
     const json manifest{
@@ -90,7 +91,8 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
 std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
     const json before = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
-    if (before["config"].value("hash", "") != e.hash) return where + " are of another config, size or set of meshes";
+    if (before["config"].value("hash", "") != e.hash)
+        return where + " are of another config or size, or of other meshes or recordings";
     if (before["build"] != build())
         return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
                "), whose times cannot be compared";
@@ -103,7 +105,8 @@ resumed_manifest resume_manifest(const std::filesystem::path& file, const experi
     const json before = read_json(file);
     resumed_manifest manifest{before.value("date", ""), {}};
     for (const json& scene : before.value("scenes", json::array())) {
-        scene_choice played{scene.value("kind", ""), {}, {}, scene.value("seed", std::uint64_t{0})};
+        scene_choice played{scene.value("kind", ""), {}, {}, std::nullopt};
+        if (scene.contains("seed")) played.seed = scene.value("seed", std::uint64_t{0});
         if (scene.contains("digest") && set_parameters(played, scene.value("parameters", json()).dump()))
             manifest.digests[played] = scene["digest"];
     }

@@ -117,6 +117,7 @@ bool taken(parameters_of<scene_choice>& to, const std::string& text) {
 }
 template <class T>
 bool taken(std::optional<T>& to, const std::string& text) {
+    to.reset();
     return text.empty() || taken(to.emplace(), text);
 }
 

@@ -13,7 +13,7 @@ module aabblab.scenes:boxes;
 
 import aabb;
 import aabblab.files;
-import :motion;
+import :drift;
 import :random;
 import :spacing;
 

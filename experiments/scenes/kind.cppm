@@ -1,6 +1,8 @@
 module;
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,7 +11,8 @@ module;
 #include <vector>
 
 /// What makes a class a kind of scene. It has a name, a summary and parameters like a strategy, and is made from its
-/// configuration and a seed (a scene of boxes), or from its configuration, meshes and a seed (a scene of meshes).
+/// configuration and a seed (a scene of boxes), or from its configuration, meshes and a seed (a scene of meshes). A
+/// kind that plays a file has no seed: it opens what its configuration names as `file`.
 module aabblab.scenes:kind;
 
 import aabb;
@@ -31,6 +34,19 @@ concept MeshScene =
         { S::most_meshes } -> std::convertible_to<std::size_t>;
     };
 
+template <class S>
+concept PlaysFile = aabb::Configurable<S> && requires(const aabb::config_of<S>& config) {
+    { config.file } -> std::convertible_to<std::string>;
+};
+template <class S>
+concept BoxFileScene = PlaysFile<S> && requires(const aabb::config_of<S>& config) {
+    { S::open(config) } -> std::same_as<std::unique_ptr<aabb::box_scene>>;
+};
+template <class S>
+concept MeshFileScene = PlaysFile<S> && requires(const aabb::config_of<S>& config, std::vector<aabb::mesh> meshes) {
+    { S::open(config, std::move(meshes)) } -> std::same_as<std::unique_ptr<aabb::mesh_scene>>;
+};
+
 /// Either of the two functions is null.
 struct scene_kind {
     scene_info info;
@@ -41,16 +57,25 @@ struct scene_kind {
 /// All kinds, in the order of CMakeLists.txt.
 [[nodiscard]] std::span<const scene_kind> kinds();
 
-/// The meshes of these names. @throws aabb::input_error on more names than `most`.
+/// The meshes of these names. @throws aabb::input_error on no name, or more than `most`.
 [[nodiscard]] std::vector<aabb::mesh> meshes_named(std::string_view kind, std::span<const std::string> names,
                                                    std::size_t most);
 
 template <class S>
 [[nodiscard]] scene_kind kind_of() {
-    scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S>, aabb::parameters_of<S>()}};
+    scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S> || MeshFileScene<S>, PlaysFile<S>,
+                     aabb::parameters_of<S>()}};
     if constexpr (BoxScene<S>) {
         kind.make_boxes = [](const scene_choice& choice) -> std::unique_ptr<aabb::box_scene> {
-            return std::make_unique<S>(aabb::configured<S>(choice.settings), choice.seed);
+            return std::make_unique<S>(aabb::configured<S>(choice.settings), *choice.seed);
+        };
+    } else if constexpr (BoxFileScene<S>) {
+        kind.make_boxes = [](const scene_choice& choice) { return S::open(aabb::configured<S>(choice.settings)); };
+    } else if constexpr (MeshFileScene<S>) {
+        kind.make_meshes = [](const scene_choice& choice) {
+            constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+            const aabb::config_of<S> config = aabb::configured<S>(choice.settings);
+            return S::open(config, meshes_named(S::name, choice.meshes, most));
         };
     } else {
         static_assert(MeshScene<S>, "a scene has boxes or meshes");
@@ -58,7 +83,7 @@ template <class S>
             const aabb::config_of<S> config = aabb::configured<S>(choice.settings);
             std::vector<std::string> names = choice.meshes;
             if (names.empty()) names.assign(S::default_meshes.begin(), S::default_meshes.end());
-            return std::make_unique<S>(config, meshes_named(S::name, names, S::most_meshes), choice.seed);
+            return std::make_unique<S>(config, meshes_named(S::name, names, S::most_meshes), *choice.seed);
         };
     }
     return kind;

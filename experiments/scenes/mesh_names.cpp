@@ -89,6 +89,7 @@ loaded_mesh make_mesh(std::string_view name) {
 }
 
 std::vector<aabb::mesh> meshes_named(std::string_view kind, std::span<const std::string> names, std::size_t most) {
+    if (names.empty()) throw aabb::input_error(std::string(kind) + " needs at least one mesh");
     if (names.size() > most)
         throw aabb::input_error(std::string(kind) + " takes at most " + std::to_string(most) + " meshes, not " +
                                 std::to_string(names.size()));

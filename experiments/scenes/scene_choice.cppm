@@ -1,6 +1,7 @@
 module;
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,30 +16,32 @@ struct scene_info {
     std::string name;  ///< "brownian", "lattice"; "mesh_pair", "mesh_swarm"
     std::string summary;
     bool has_meshes;
+    bool plays_file;  ///< the one that its parameter `file` names, as it is: the scene has no seed
     std::vector<aabb::parameter_info> parameters;
 };
 
-/// A scene wanted: its kind, settings that differ from the defaults, a seed. Meshes are files, looked for as given,
-/// then in `experiments/data/`, or generated shapes: "icosphere", "torus_knot:triangles=20000", "noise_sphere".
+/// A scene wanted: its kind, settings that differ from the defaults, a seed where it has one. Meshes are files, looked
+/// for as given, then in `experiments/data/`, or generated shapes: "icosphere", "torus_knot:triangles=20000",
+/// "noise_sphere".
 struct scene_choice {
     std::string kind;
     std::vector<aabb::setting> settings;  ///< "objects", "frames", "displacement", … as text
     std::vector<std::string> meshes;
-    std::uint64_t seed = 1;
+    std::optional<std::uint64_t> seed = 1;  ///< empty where the kind plays a file
 
     friend auto operator<=>(const scene_choice&, const scene_choice&) = default;
 };
 
 /// The same for all scenes that differ in their seed only.
 [[nodiscard]] inline scene_choice whatever_seed(scene_choice scene) {
-    scene.seed = 0;
+    scene.seed.reset();
     return scene;
 }
 
 /// What a scene is apart from its kind and its seed, to be read, not to be taken apart again:
 /// "objects=1000 frames=20 meshes=elephant.off+torus_knot".
 [[nodiscard]] std::string settings_text(const scene_choice& scene);
-/// The same with "seed=1" behind.
+/// The same with "seed=1" behind, where the scene has a seed.
 [[nodiscard]] std::string parameters_text(const scene_choice& scene);
 
 }  // namespace aabblab

@@ -20,6 +20,11 @@ const scene_kind& kind_named(const std::string& name) {
     return *found;
 }
 
+void require_seed(const scene_info& info, const scene_choice& choice) {
+    if (info.plays_file && choice.seed) throw aabb::input_error(info.name + " plays a file as it is and has no seed");
+    if (!info.plays_file && !choice.seed) throw aabb::input_error(info.name + " needs a seed");
+}
+
 }  // namespace
 
 std::span<const scene_info> scene_kinds() {
@@ -49,19 +54,22 @@ std::string settings_text(const scene_choice& scene) {
 
 std::string parameters_text(const scene_choice& scene) {
     const std::string settings = settings_text(scene);
-    return settings + (settings.empty() ? "" : " ") + "seed=" + std::to_string(scene.seed);
+    if (!scene.seed) return settings;
+    return settings + (settings.empty() ? "" : " ") + "seed=" + std::to_string(*scene.seed);
 }
 
 std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice) {
     const scene_kind& kind = kind_named(choice.kind);
     if (kind.make_boxes == nullptr) throw aabb::input_error(choice.kind + " is a scene of meshes, not of boxes");
     if (!choice.meshes.empty()) throw aabb::input_error(choice.kind + " is a scene of boxes and takes no meshes");
+    require_seed(kind.info, choice);
     return kind.make_boxes(choice);
 }
 
 std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice) {
     const scene_kind& kind = kind_named(choice.kind);
     if (kind.make_meshes == nullptr) throw aabb::input_error(choice.kind + " is a scene of boxes, not of meshes");
+    require_seed(kind.info, choice);
     return kind.make_meshes(choice);
 }
 

@@ -7,7 +7,7 @@ module;
 #include <string_view>
 #include <vector>
 
-/// Scenes by name: boxes or meshes that move, the same for the same seed on every machine.
+/// Scenes by name: boxes or meshes that move, the same for the same seed on every machine, or as a file says.
 export module aabblab.scenes;
 
 import aabb;
@@ -20,7 +20,8 @@ export namespace aabblab {
 [[nodiscard]] std::span<const scene_info> scene_kinds();
 [[nodiscard]] std::vector<std::string> scene_names();
 
-/// @throws aabb::input_error on an unknown kind, parameter or value, or on meshes for a scene of boxes.
+/// @throws aabb::input_error on an unknown kind, parameter or value, on meshes for a scene of boxes, on a seed where
+/// there is none and the other way round, and on a file that cannot be played.
 [[nodiscard]] std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice);
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice);
 

@@ -4,7 +4,7 @@ module;
 module aabblab.scenes;
 
 import aabb;
-import :motion;
+import :drift;
 
 namespace aabblab {
 

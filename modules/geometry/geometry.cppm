@@ -2,6 +2,7 @@
 export module aabb.geometry;
 
 export import :box;
+export import :contact;
 export import :index_pair;
 export import :mesh;
 export import :pose;

@@ -9,6 +9,7 @@ export module aabb.pipeline:scene;
 import aabb.geometry;
 
 // What happens in a scene, frame by frame; a scene is played once, from frame 0 to the last, so only one frame is held.
+// Whoever searches its frames tells it what was found, so that what happens next may depend on it.
 export namespace aabb {
 
 /// Boxes that move. Object i of a frame is its box i.
@@ -28,6 +29,9 @@ public:
     /// Which objects take part in the frame last played, by id, 0 or 1; empty where all do. The box of an absent object
     /// is valid and overlaps no other, so that whoever ignores this finds the same pairs.
     [[nodiscard]] virtual std::span<const std::uint8_t> present() const { return {}; }
+    /// Takes the overlapping pairs of the frame last played, sorted, before it is asked for the next. A scene that is
+    /// played without a search hears of none.
+    virtual void take_pairs(std::span<const index_pair> /*pairs*/) {}
 };
 
 /// Meshes, which mesh each object is, and the objects' poses frame by frame.
@@ -46,6 +50,9 @@ public:
     virtual bool next(std::vector<pose>& poses) = 0;
     /// Whether vertices of this mesh move from frame to frame, so that trees and boxes of it must be fitted anew.
     [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
+    /// Takes the contacts of the frame last played, sorted, before it is asked for the next: stepping in time begins
+    /// here. A scene that is played without a search hears of none.
+    virtual void take_contacts(std::span<const contact> /*contacts*/) {}
 };
 
 }  // namespace aabb

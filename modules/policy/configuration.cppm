@@ -19,7 +19,7 @@ export namespace aabb {
 struct parameter_info {
     std::string name;
     std::string expected;
-    std::string fallback;  ///< the default
+    std::string fallback;  ///< the default; empty where there is none and the parameter must be set
     std::string help;
 };
 
@@ -39,7 +39,8 @@ template <Configurable S>
 }
 
 /// The configuration that the settings describe.
-/// @throws input_error on an unknown parameter or a value that is not one.
+/// @throws input_error on an unknown parameter, a value that is not one, or a parameter without a default that is not
+/// set.
 template <Configurable S>
 [[nodiscard]] config_of<S> configured(std::span<const setting> settings) {
     config_of<S> config{};
@@ -61,6 +62,14 @@ template <Configurable S>
         if (names.empty())
             throw input_error(std::string(S::name) + " takes no parameters, so not '" + s.name + "' either");
         throw input_error(unknown_name("parameter of " + std::string(S::name), s.name, names));
+    }
+    if constexpr (!std::same_as<config_of<S>, no_config>) {
+        const auto require = [&](const auto& parameter) {
+            if (parameter.show(config).empty())
+                throw input_error(std::string(S::name) + ": " + std::string(parameter.name) + " must be given, " +
+                                  parameter.expected());
+        };
+        std::apply([&](const auto&... parameter) { (require(parameter), ...); }, S::parameters);
     }
     return config;
 }

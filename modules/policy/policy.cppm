@@ -11,4 +11,5 @@ export import :number_parameter;
 export import :refusal;
 export import :strategy;
 export import :strategy_choice;
+export import :text_parameter;
 export import :type_list;

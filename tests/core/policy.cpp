@@ -37,6 +37,19 @@ struct plain {
     static constexpr std::string_view summary = "has none";
 };
 
+struct named {
+    static constexpr std::string_view name = "named";
+    static constexpr std::string_view summary = "has texts, one of them without a default";
+    struct config {
+        std::string file;
+        std::string style = "plain";
+    };
+    static constexpr std::tuple parameters{
+        text_parameter{"file", &config::file, "the path of a file", "what is read"},
+        text_parameter{"style", &config::style, "the name of a style", "how it looks"}};
+};
+static_assert(Configurable<named>);
+
 tunable::config read(std::string_view text) {
     return configured<tunable>(parse_strategy(text).settings);
 }
@@ -77,6 +90,19 @@ TEST_CASE("a value that is not one is refused with what was expected") {
                          Message("unknown parameter of tunable 'wieght'; did you mean 'weight'?"));
     CHECK_THROWS_MATCHES(configured<plain>(parse_strategy("plain:x=1").settings), input_error,
                          Message("plain takes no parameters, so not 'x' either"));
+}
+
+TEST_CASE("a text is taken as it is, and is never empty") {
+    const std::vector<setting> settings{{"file", "a b,\"c\"+d=e"}};
+    CHECK(configured<named>(settings).file == "a b,\"c\"+d=e");
+    CHECK(configured<named>(settings).style == "plain");
+    CHECK_THROWS_MATCHES(configured<named>(std::vector<setting>{{"file", ""}}), input_error,
+                         Message("named: file must be the path of a file, not ''"));
+    CHECK_THROWS_MATCHES(configured<named>(std::vector<setting>{{"style", "bold"}}), input_error,
+                         Message("named: file must be given, the path of a file"));
+    const auto infos = parameters_of<named>();
+    CHECK(infos[0].fallback.empty());
+    CHECK(infos[1].fallback == "plain");
 }
 
 TEST_CASE("parameters describe themselves") {

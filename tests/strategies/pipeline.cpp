@@ -24,6 +24,24 @@ public:
 
 }  // namespace
 
+TEST_CASE("without global search every two objects are candidates, however far away") {
+    const two_objects scene;
+    const auto local = compose(local_composition{}, instrumentation::none);
+    pipeline alone(scene, *local);
+    std::vector<pose> poses(2);
+    for (pose& p : poses) p.translation[0] = 1e300;
+    alone.update(poses);
+    alone.search();
+    alone.detect();
+    CHECK(alone.boxes().empty());
+    CHECK(alone.candidates().size() == 1);
+    CHECK(alone.contacts().size() == 16);
+    poses[1].rotation[0] = 2;
+    CHECK_THROWS_AS(alone.update(poses), input_error);
+    CHECK_THROWS_AS(alone.search(), input_error);
+    CHECK_THROWS_AS(alone.update(std::vector<pose>(1)), input_error);
+}
+
 TEST_CASE("a frame that a pipeline refused is not searched, and the next one is") {
     const two_objects scene;
     const auto global = compose_global_search(composition{}, instrumentation::none);

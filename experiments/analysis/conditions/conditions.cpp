@@ -157,7 +157,7 @@ extent_of_results measurements::extent(const std::string& experiment) const {
     extent_of_results all;
     std::set<contender_name> names;
     std::set<scene_choice> scenes;
-    std::set<std::uint64_t> seeds;
+    std::set<std::optional<std::uint64_t>> seeds;
     for (const row& r : read(experiment).rows) {
         ++all.rows;
         names.insert(r.name);

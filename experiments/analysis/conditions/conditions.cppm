@@ -81,7 +81,7 @@ private:
 
     factors of_;
     std::vector<const row*> rows_;
-    std::vector<std::uint64_t> seeds_;
+    std::vector<std::optional<std::uint64_t>> seeds_;
     std::size_t processes_ = 1;
 };
 

@@ -63,7 +63,7 @@ summary_line line_of(std::span<const row* const> repeats) {
     summary_line line;
     line.name = repeats[0]->name;
     line.repeats = repeats.size();
-    std::map<std::uint64_t, const row*> seeds;
+    std::map<std::optional<std::uint64_t>, const row*> seeds;
     for (const row* r : repeats) seeds.emplace(r->scene.seed, r);
     for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), line);
     std::vector<double> times, builds;
@@ -86,10 +86,10 @@ summary_line line_of(std::span<const row* const> repeats) {
 
 /// The line's times over those of another in the same repeats of the same seeds.
 void set_ratio(summary_line& line, std::span<const row* const> repeats, std::span<const row* const> base) {
-    std::map<std::pair<std::uint64_t, std::uint64_t>, double> base_ms;  // by seed and repeat
+    std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : base)
         if (ms_a_frame(*b).value_or(0) > 0) base_ms.emplace(std::pair(b->scene.seed, b->repeat), *ms_a_frame(*b));
-    std::map<std::uint64_t, std::size_t> seeds;
+    std::map<std::optional<std::uint64_t>, std::size_t> seeds;
     std::map<std::uint64_t, std::size_t> processes;
     for (const row* r : repeats) {
         seeds.emplace(r->scene.seed, seeds.size());
@@ -142,7 +142,8 @@ struct rows_of_scene {
         const auto [place, is_new] = places.emplace(r.name, lines.size());
         if (is_new) lines.emplace_back();
         lines[place->second].push_back(&r);
-        if (std::ranges::find(scene.seeds, r.scene.seed) == scene.seeds.end()) scene.seeds.push_back(r.scene.seed);
+        if (r.scene.seed && std::ranges::find(scene.seeds, *r.scene.seed) == scene.seeds.end())
+            scene.seeds.push_back(*r.scene.seed);
         if (r.status == "exact") scene.digest = r.digest;
     }
 };

@@ -7,9 +7,9 @@ module;
 #include <filesystem>
 #include <initializer_list>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 module aabblab.pair_output;
 
@@ -18,15 +18,13 @@ import aabblab.files;
 
 namespace aabblab {
 
-void sort_each_once(std::vector<aabb::index_pair>& pairs, std::string_view where) {
-    std::ranges::sort(pairs);
+void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where) {
     const auto twice = std::ranges::adjacent_find(pairs);
     if (twice != pairs.end())
         throw defect(fmt::format("{}: the pair {},{} was reported more than once", where, twice->a, twice->b));
 }
 
-void sort_each_once(std::vector<aabb::contact>& contacts, std::string_view where) {
-    std::ranges::sort(contacts);
+void require_each_once(std::span<const aabb::contact> contacts, std::string_view where) {
     const auto twice = std::ranges::adjacent_find(contacts);
     if (twice != contacts.end())
         throw defect(fmt::format("{}: the contact {},{},{},{} was reported more than once", where, twice->a, twice->b,

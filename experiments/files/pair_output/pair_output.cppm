@@ -2,10 +2,10 @@ module;
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 /// Pairs and contacts on their way out of the program.
 export module aabblab.pair_output;
@@ -21,11 +21,11 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Sorts the pairs that a stage reported.
+/// Refuses what a stage reported twice. Both are sorted.
 /// @param where what reported them, as the sentence begins: "std + none + one_axis, frame 3"
 /// @throws defect where a pair is there more than once.
-void sort_each_once(std::vector<aabb::index_pair>& pairs, std::string_view where);
-void sort_each_once(std::vector<aabb::contact>& contacts, std::string_view where);
+void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where);
+void require_each_once(std::span<const aabb::contact> contacts, std::string_view where);
 
 /// A CSV file of whole numbers. There only once it is committed.
 class number_table {

@@ -11,7 +11,7 @@ module aabblab.scenes:brownian;
 
 import aabb;
 import aabblab.files;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

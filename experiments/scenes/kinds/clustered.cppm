@@ -11,7 +11,7 @@ module aabblab.scenes:clustered;
 
 import aabb;
 import :boxes;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

@@ -9,7 +9,7 @@ module aabblab.scenes:flat;
 
 import aabb;
 import :boxes;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

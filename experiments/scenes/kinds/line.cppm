@@ -9,7 +9,7 @@ module aabblab.scenes:line;
 
 import aabb;
 import :boxes;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

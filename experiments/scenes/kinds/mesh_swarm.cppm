@@ -14,7 +14,7 @@ module aabblab.scenes:mesh_swarm;
 
 import aabb;
 import aabblab.files;
-import :motion;
+import :drift;
 import :random;
 import :rotation;
 

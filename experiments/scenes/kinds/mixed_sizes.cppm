@@ -13,7 +13,7 @@ module aabblab.scenes:mixed_sizes;
 
 import aabb;
 import :boxes;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

@@ -10,7 +10,7 @@ module aabblab.scenes:one_huge;
 
 import aabb;
 import :boxes;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

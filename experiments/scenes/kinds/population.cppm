@@ -10,7 +10,7 @@ module aabblab.scenes:population;
 
 import aabb;
 import :boxes;
-import :motion;
+import :drift;
 import :random;
 
 namespace aabblab {

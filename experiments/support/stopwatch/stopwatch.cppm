@@ -1,8 +1,10 @@
-#pragma once
-
+module;
 #include <chrono>
 
-namespace aabblab {
+/// The one clock that all times are taken with.
+export module aabblab.stopwatch;
+
+export namespace aabblab {
 
 /// Wall time of one call, in milliseconds.
 template <class Work>

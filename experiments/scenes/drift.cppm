@@ -5,7 +5,7 @@ module;
 #include <vector>
 
 /// Points that drift, and roots that are the same everywhere.
-module aabblab.scenes:motion;
+module aabblab.scenes:drift;
 
 import aabb;
 import :random;

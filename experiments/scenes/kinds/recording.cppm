@@ -1,0 +1,28 @@
+module;
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+module aabblab.scenes:recording;
+
+import aabb;
+import aabblab.files;
+
+namespace aabblab {
+
+/// Boxes of the user's own, as they were recorded.
+struct recording {
+    static constexpr std::string_view name = "recording";
+    static constexpr std::string_view summary = "boxes as a recording (.aabbs) has them, frame by frame";
+
+    struct config {
+        std::string file;
+    };
+    static constexpr std::tuple parameters{
+        aabb::text_parameter{"file", &config::file, "the path of a file", "the recording"}};
+
+    [[nodiscard]] static std::unique_ptr<aabb::box_scene> open(const config& c) { return open_recording(c.file); }
+};
+
+}  // namespace aabblab

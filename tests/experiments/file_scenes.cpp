@@ -1,0 +1,271 @@
+// Recordings and motion files as scenes of an experiment.
+
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.configs;
+import aabblab.results;
+import aabblab.scenes;
+
+using aabblab::experiment_size;
+
+namespace {
+
+/// A blank, a comma, quotes, a plus and an equals sign.
+const std::string odd = "a b, \"c\"+d=e";
+
+std::string in_toml(const std::filesystem::path& file) {
+    return "'" + file.string() + "'";
+}
+
+void record(const std::string& file, const std::string& seed) {
+    REQUIRE(run_program(
+                {"scene", "brownian", "--n", "60", "--frames", "3", "--density", "1", "--seed", seed, "--out", file})
+                .status == 0);
+}
+
+const std::string mesh = "icosphere:triangles=80";
+
+void record_motion(const std::string& file) {
+    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "10", "--frames", "3", "--density", "3", "--normalise", "no",
+                         "--mesh", mesh, "--motion", file})
+                .status == 0);
+}
+
+/// @param settings of the scene, lines of TOML
+std::string recording_config(const std::string& settings) {
+    return "name = \"own\"\nseed = [1, 2]\n[[scene]]\nkind = \"recording\"\n" + settings +
+           "[measure]\nrepeats = 1\nmetrics = [\"counts\"]\n";
+}
+
+std::string refusal_of(const std::string& text, const std::string& file = "test.toml") {
+    try {
+        (void)aabblab::parse_experiment(text, file, experiment_size::full);
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+nlohmann::json summary_of(const std::vector<std::string>& command) {
+    const program_result result = run_program(command);
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    return nlohmann::json::parse(result.out);
+}
+
+}  // namespace
+
+TEST_CASE("One's own recordings and motion stand in one table with engines, and every command finds the same in them") {
+    const temporary_folder folder;
+    std::map<std::string, std::string> digests;  // by parameters
+    std::string files;
+    for (const std::string seed : {"3", "4"}) {
+        const std::string file = folder / (odd + seed + ".aabbs");
+        record(file, seed);
+        files += (files.empty() ? "" : ", ") + in_toml(file);
+        digests["file=" + file] = summary_of({"pairs", file, "--json"})["digest"].get<std::string>();
+    }
+    const std::string motion = folder / (odd + ".txt");
+    record_motion(motion);
+    digests["file=" + motion + " meshes=" + mesh] =
+        summary_of({"contacts", motion, mesh, "--json"})["digest"].get<std::string>();
+    REQUIRE(digests.size() == 3);
+    const std::string config = folder.write(
+        "own.toml",
+        "name = \"own\"\nseed = [1, 2]\nengines = [\"cgal\", \"fcl\"]\n[[scene]]\nkind = \"recording\"\n"
+        "file = [" +
+            files + "]\n[[scene]]\nkind = \"motion\"\nfile = " + in_toml(motion) + "\nmeshes = [\"" + mesh +
+            "\"]\n[compose]\nsort = [\"insertion\", \"shell\"]\n"
+            "tree = [\"canonical\", \"compressed\"]\n[measure]\nrepeats = 2\n");
+    const program_result ran = run_program({"run", config, "--out", folder / "out"});
+    INFO(ran.err << ran.out);
+    REQUIRE(ran.status == 0);
+    CHECK(ran.out.find("seed=") == std::string::npos);
+    const auto rows = aabblab::read_rows(folder / "out/results.csv");
+    CHECK(rows.size() == 2 * 2 * (2 + 2) + 2 * (4 + 2));
+    for (const aabblab::row& r : rows) {
+        INFO(r.key());
+        // FCL's triangle test may err.
+        if (r.scene.kind == "recording" || r.name.engine != "fcl") CHECK(r.status == "exact");
+        if (r.status == "exact") CHECK(r.digest == digests.at(parameters_text(r.scene)));
+        CHECK(r.frames == 4);
+    }
+    const std::string validated = run_program({"validate", config}).out;
+    CHECK(validated.find("seed=") == std::string::npos);
+    for (const auto& [parameters, digest] : digests) {
+        CHECK(validated.find("(" + parameters + ")") != std::string::npos);
+        CHECK(validated.find("digest " + digest) != std::string::npos);
+    }
+    const program_result explained = run_program({"explain", config});
+    CHECK(explained.status == 0);
+    CHECK(explained.out.find("motion (file=" + motion) != std::string::npos);
+    const std::string manifest = bytes_of_file(folder / "out/manifest.json");
+    for (const auto& scene : nlohmann::json::parse(manifest)["scenes"]) {
+        const auto& parameters = scene["parameters"];
+        const std::string of = "file=" + parameters["file"].get<std::string>();
+        CHECK(scene["digest"] == digests.at(parameters.contains("meshes") ? of + " meshes=" + mesh : of));
+        CHECK_FALSE(scene.contains("seed"));
+    }
+}
+
+TEST_CASE("Results are resumed until a recording or a motion has changed") {
+    const temporary_folder folder;
+    const std::string recording = folder / "a.aabbs";
+    const std::string motion = folder / "m.txt";
+    record(recording, "1");
+    record_motion(motion);
+    const std::string config =
+        folder.write("c.toml",
+                     "name = \"c\"\n[[scene]]\nkind = \"recording\"\nfile = \"a.aabbs\"\n[[scene]]\nkind = \"motion\"\n"
+                     "file = \"m.txt\"\nmeshes = [\"" +
+                         mesh + "\"]\n[measure]\nrepeats = 1\n");
+    const auto resumed = [&] { return run_program({"run", config, "--out", folder / "out", "--resume"}); };
+    REQUIRE(resumed().status == 0);
+    const std::string before = bytes_of_file(folder / "out/results.csv");
+    REQUIRE(resumed().status == 0);
+    CHECK(bytes_of_file(folder / "out/results.csv") == before);
+    const std::string poses = bytes_of_file(motion);
+    folder.write("m.txt", poses + "4 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const program_result moved = resumed();
+    CHECK(moved.status == 2);
+    CHECK(moved.err.find("of another config") != std::string::npos);
+    folder.write("m.txt", "# a comment changes nothing\n" + poses);
+    CHECK(resumed().status == 0);
+    record(recording, "2");
+    const program_result refused = resumed();
+    CHECK(refused.status == 2);
+    CHECK(is_one_sentence(refused.err));
+    CHECK(refused.err.find("of another config") != std::string::npos);
+    CHECK(bytes_of_file(folder / "out/results.csv") == before);
+}
+
+TEST_CASE("Seeds of a config do not multiply what has none, and one of its own is refused") {
+    const temporary_folder folder;
+    const std::string file = folder / "a.aabbs";
+    record(file, "1");
+    const auto e = aabblab::parse_experiment(
+        recording_config("file = " + in_toml(file) + "\n") + "[[scene]]\nkind = \"still\"\nobjects = 5\n", "test.toml",
+        experiment_size::full);
+    REQUIRE(e.scenes.size() == 1 + 2);
+    CHECK_FALSE(e.scenes[0].seed);
+    CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + file);
+    const std::string said = " recording plays a file as it is and has no seed";
+    CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + said);
+    CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nquick = { seed = 1 }\n")) ==
+          "test.toml:6:" + said);
+    CHECK_THROWS_AS(aabblab::make_box_scene({"recording", {{"file", file}}, {}, 1}), aabb::input_error);
+    CHECK_NOTHROW(aabblab::make_box_scene({"recording", {{"file", file}}, {}, std::nullopt}));
+    CHECK_THROWS_AS(aabblab::make_box_scene({"still", {}, {}, std::nullopt}), aabb::input_error);
+}
+
+TEST_CASE("A file that is not there or malformed is refused with the line of the config") {
+    const temporary_folder folder;
+    const std::string file = folder / "a.aabbs";
+    record(file, "1");
+    CHECK(refusal_of(recording_config("")) == "test.toml:3: recording: file must be given, the path of a file");
+    CHECK(refusal_of(recording_config("file = \"\"\n")).starts_with("test.toml:3: recording: file must be the path"));
+    CHECK(refusal_of(recording_config("file = \"nowhere.aabbs\"\n"), "some/test.toml") ==
+          "some/test.toml:5: nowhere.aabbs: no such file, here or in some");
+    CHECK(refusal_of(recording_config("file = \"/nowhere.aabbs\"\n")) == "test.toml:3: /nowhere.aabbs: no such file");
+    CHECK(
+        refusal_of(recording_config("file = " + in_toml(folder.path()) + "\n")).ends_with(": is a folder, not a file"));
+    CHECK(refusal_of(recording_config("flie = \"a\"\n")).find("did you mean 'file'?") != std::string::npos);
+    std::string bytes = bytes_of_file(file);
+    bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN, in the last box
+    const std::string bad = folder.write("bad.aabbs", bytes);
+    CHECK(refusal_of(recording_config("file = " + in_toml(bad) + "\n")) ==
+          "test.toml:3: " + bad + ": frame 3: box 59 has a coordinate that is not finite");
+    const auto motion = [&](const std::string& poses, const std::string& meshes) {
+        const std::string motion_file = folder.write("m.txt", poses);
+        return refusal_of("name = \"c\"\n[[scene]]\nkind = \"motion\"\nfile = " + in_toml(motion_file) + "\n" + meshes);
+    };
+    const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
+    CHECK(motion(still, "") == "test.toml:2: motion needs at least one mesh");
+    CHECK(motion("x", "meshes = [\"icosphere\"]\n").find("m.txt:1: expected the number of a frame") !=
+          std::string::npos);
+    CHECK(motion(still, "meshes = [\"icosphere\", \"icosphere\"]\n").find("moves 1 objects, but there are 2 meshes") !=
+          std::string::npos);
+    CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
+}
+
+TEST_CASE("A relative path is taken as given, else from the folder of the config") {
+    const temporary_folder folder;
+    std::filesystem::create_directory(folder / "sub");
+    record(folder / "sub/a.aabbs", "1");
+    const auto e = aabblab::parse_experiment(recording_config("file = \"a.aabbs\"\n"), folder / "sub/c.toml",
+                                             experiment_size::full);
+    CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + (folder / "sub/a.aabbs").string());
+    const auto here = std::filesystem::relative(folder / "sub/a.aabbs");
+    const auto as_given = aabblab::parse_experiment(recording_config("file = " + in_toml(here) + "\n"),
+                                                    folder / "c.toml", experiment_size::full);
+    CHECK(aabblab::parameters_text(as_given.scenes[0]) == "file=" + here.string());
+    CHECK(e.content_digest == as_given.content_digest);
+}
+
+TEST_CASE("scene draws a recording, and makes one of a motion") {
+    const temporary_folder folder;
+    const std::string file = folder / (odd + ".aabbs");
+    record(file, "1");
+    const std::string bytes = bytes_of_file(file);
+    const std::string picture = folder / "x.svg";
+    const program_result drawn = run_program({"scene", "recording", "--file", file, "--picture", picture});
+    INFO(drawn.err);
+    REQUIRE(drawn.status == 0);
+    CHECK(drawn.out.find("60 objects, 4 frames") != std::string::npos);
+    CHECK(bytes_of_file(picture).find("seed") == std::string::npos);
+    CHECK(bytes_of_file(picture).find("file=") != std::string::npos);
+    const std::string motion = folder / "m.txt";
+    record_motion(motion);
+    const std::string boxes = folder / "m.aabbs";
+    const std::string again = folder / "again.txt";
+    REQUIRE(
+        run_program({"scene", "motion", "--file", motion, "--mesh", mesh, "--out", boxes, "--motion", again}).status ==
+        0);
+    CHECK(bytes_of_file(again) == bytes_of_file(motion));
+    CHECK(summary_of({"pairs", boxes, "--json"})["pairs"] ==
+          summary_of({"contacts", motion, mesh, "--json"})["candidates"]);
+    const std::string far = folder.write("far.txt", "0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n");
+    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+        {{"scene", "recording", "--picture", picture}, "recording: file must be given, the path of a file"},
+        {{"scene", "recording", "--file", file, "--out", file}, "would write over"},
+        {{"scene", "recording", "--file", file, "--seed", "1", "--picture", picture}, "has no seed"},
+        {{"scene", "recording", "--file", folder / "absent", "--picture", picture}, "no such file"},
+        {{"scene", "brownian", "--file", file, "--picture", picture}, "unknown parameter of brownian 'file'"},
+        {{"scene", "motion", "--file", far, "--mesh", mesh, "--picture", picture},
+         "far.txt: frame 0: object 0 lies beyond the range of float"},
+    };
+    for (const auto& [arguments, said] : refused) {
+        const program_result result = run_program(arguments);
+        INFO(result.err);
+        CHECK(result.status == 2);
+        CHECK(is_one_sentence(result.err));
+        CHECK(result.err.find(said) != std::string::npos);
+    }
+    CHECK(bytes_of_file(file) == bytes);
+}
+
+TEST_CASE("list says which scenes play a file, and that it must be given") {
+    const program_result text = run_program({"list"});
+    CHECK(text.out.find("    file=… ") != std::string::npos);
+    std::set<std::string> seedless;
+    for (const auto& scene : nlohmann::json::parse(run_program({"list", "--json"}).out)["scenes"]) {
+        if (scene["has_seed"].get<bool>()) continue;
+        seedless.insert(scene["name"].get<std::string>());
+        CHECK(scene["parameters"][0]["name"] == "file");
+        CHECK(scene["parameters"][0]["default"].is_null());
+    }
+    CHECK(seedless == std::set<std::string>{"motion", "recording"});
+}

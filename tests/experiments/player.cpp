@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+import aabb;
+import aabb.registry;
+import aabb.validation;
+import aabblab.configs;
+import aabblab.play;
+import aabblab.scenes;
+
+using aabblab::contender;
+using aabblab::played_frame;
+using aabblab::scene_play;
+
+namespace {
+
+const aabb::mesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+
+/// Objects in a row that move towards the first, which stands; each stops for good at its first contact.
+class stopping_meshes final : public aabb::mesh_scene {
+public:
+    explicit stopping_meshes(std::size_t objects) {
+        meshes = {tetrahedron};
+        mesh_of.assign(objects, 0);
+        stopped_.insert(0);
+        poses_.resize(objects);
+        for (std::size_t object = 0; object < objects; ++object)
+            poses_[object].translation[0] = 1.5 * static_cast<double>(object);
+    }
+    [[nodiscard]] std::size_t frames() const override { return 12; }
+    bool next(std::vector<aabb::pose>& poses) override {
+        if (frame_ == frames()) return false;
+        if (frame_++ > 0)
+            for (std::uint32_t object = 0; object < poses_.size(); ++object)
+                if (!stopped_.contains(object)) poses_[object].translation[0] -= 0.25;
+        poses = poses_;
+        return true;
+    }
+    void take_contacts(std::span<const aabb::contact> contacts) override {
+        REQUIRE(std::ranges::is_sorted(contacts));
+        for (const aabb::contact& c : contacts) {
+            stopped_.insert(c.a);
+            stopped_.insert(c.b);
+        }
+    }
+
+private:
+    std::size_t frame_ = 0;
+    std::vector<aabb::pose> poses_;
+    std::set<std::uint32_t> stopped_;
+};
+
+/// The same of unit cubes.
+class stopping_boxes final : public aabb::box_scene {
+public:
+    [[nodiscard]] std::size_t objects() const override { return 4; }
+    [[nodiscard]] std::size_t frames() const override { return 8; }
+    bool next(std::vector<aabb::box>& boxes) override {
+        if (frame_ == frames()) return false;
+        if (frame_++ > 0)
+            for (std::uint32_t object = 1; object < at_.size(); ++object)
+                if (!stopped_.contains(object)) at_[object] -= 0.25F;
+        boxes.clear();
+        for (const float x : at_) boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+        return true;
+    }
+    void take_pairs(std::span<const aabb::index_pair> pairs) override {
+        for (const auto [a, b] : pairs) stopped_.insert({a, b});
+    }
+
+private:
+    std::size_t frame_ = 0;
+    std::vector<float> at_ = {0, 1.5F, 3, 4.5F};
+    std::set<std::uint32_t> stopped_;
+};
+
+std::vector<contender> exact_contenders(bool meshes) {
+    std::vector<contender> all;
+    aabb::composition coherent;
+    coherent[aabb::strategy_kind::sort].name = "insertion";
+    coherent[aabb::strategy_kind::sweep].name = "incremental";
+    coherent[aabb::strategy_kind::tree].name = "compressed";
+    all.push_back(aabblab::contender_of(aabb::composition(), meshes));
+    all.push_back(aabblab::contender_of(coherent, meshes));
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (auto who = aabblab::contender_of(engine, meshes); who && who->exact) all.push_back(*std::move(who));
+    return all;
+}
+
+aabblab::stages local_only() {
+    return {nullptr, aabb::compose_local_detection({}, aabb::instrumentation::none)};
+}
+
+}  // namespace
+
+TEST_CASE("A scene that reacts to contacts shows every contender the same frames, validated and timed") {
+    for (const bool meshes : {true, false}) {
+        const auto made = [&] {
+            return meshes ? scene_play(std::make_unique<stopping_meshes>(4))
+                          : scene_play(std::make_unique<stopping_boxes>());
+        };
+        const std::vector<contender> contenders = exact_contenders(meshes);
+        REQUIRE(contenders.size() > 3);
+        scene_play scene = made();
+        const aabblab::scene_validation all = aabblab::validate_scene({"stopping", {}, {}, 1}, scene, contenders);
+        for (std::size_t i = 0; i < contenders.size(); ++i) {
+            INFO(all.contenders[i].failure);
+            CHECK(all.contenders[i].failure.empty());
+            CHECK(all.contenders[i].digest == all.digest);
+            scene_play again = made();
+            CHECK(aabblab::time_scene(again, contenders[i]).digest == all.digest);
+        }
+        // Each stops where it first touches the one before: nothing passes, and no pair but neighbours ever meets.
+        scene_play last = made();
+        aabblab::player who(contenders[0], last, aabb::instrumentation::none);
+        std::set<aabb::index_pair> met;
+        aabblab::play(last, who, [&](const played_frame& frame) {
+            for (const aabb::index_pair& pair : frame.pairs) met.insert(pair);
+        });
+        CHECK(met == std::set<aabb::index_pair>{{0, 1}, {1, 2}, {2, 3}});
+    }
+}
+
+TEST_CASE("A scene is handed over frame by frame, all of it or the first frames") {
+    const aabblab::scene_choice choice{
+        "mesh_swarm", {{"objects", "12"}, {"frames", "3"}}, {"icosphere:triangles=80"}, 1};
+    const contender who = exact_contenders(true)[0];
+    for (const std::size_t most : {std::size_t{2}, std::size_t{9}}) {
+        scene_play scene(choice);
+        aabblab::player p(who, scene, aabb::instrumentation::none);
+        std::uint32_t frames = 0;
+        std::size_t contacts = 0;
+        aabblab::play(
+            scene, p,
+            [&](const played_frame& frame) {
+                CHECK(frame.number == frames++);
+                CHECK(frame.ms() == frame.update_ms + frame.search_ms + frame.detect_ms);
+                CHECK(frame.update_ms > 0);
+                CHECK(std::ranges::is_sorted(frame.pairs));
+                CHECK(std::ranges::is_sorted(frame.contacts));
+                contacts += frame.contacts.size();
+            },
+            most);
+        CHECK(frames == std::min<std::size_t>(most, 4));
+        CHECK(contacts > 0);
+    }
+}
+
+TEST_CASE("A player without global search tries every two objects, and can be asked for less than all contacts") {
+    scene_play scene(std::make_unique<stopping_meshes>(3));
+    aabblab::player who(local_only(), scene);
+    REQUIRE(scene.next());
+    who.update();
+    who.search();
+    CHECK(who.sorted_pairs() == std::vector<aabb::index_pair>{{0, 1}, {0, 2}, {1, 2}});
+    CHECK_FALSE(who.first_contact());
+    CHECK(who.count_contacts() == 0);
+    CHECK(who.global_bytes().empty());
+    while (!who.first_contact() && scene.next()) {
+        who.update();
+        who.search();
+    }
+    who.detect();
+    const std::vector<aabb::contact> contacts = who.sorted_contacts();
+    REQUIRE_FALSE(contacts.empty());
+    CHECK(who.count_contacts() == contacts.size());
+    CHECK(std::ranges::find(contacts, who.first_contact().value()) != contacts.end());
+    std::vector<aabb::index_pair> neighbours;
+    who.find_self_pairs(0, neighbours);
+    CHECK(neighbours.size() == 6);
+}
+
+TEST_CASE("What is wrong with poses of a file is said with file and frame") {
+    class leaving final : public aabb::mesh_scene {
+    public:
+        leaving() {
+            meshes = {tetrahedron};
+            mesh_of = {0};
+        }
+        [[nodiscard]] std::size_t frames() const override { return 3; }
+        bool next(std::vector<aabb::pose>& poses) override {
+            poses.assign(1, {});
+            poses[0].translation[0] = frame_++ == 2 ? 1e39 : 0;
+            return true;
+        }
+
+    private:
+        int frame_ = 0;
+    };
+    const std::string sentence = "object 0 lies beyond the range of float";
+    for (const auto& [file, place] : {std::pair<std::string, std::string>{"a b.txt", "a b.txt: frame 2: "}, {"", ""}}) {
+        scene_play timed(std::make_unique<leaving>(), file);
+        CHECK_THROWS_MATCHES(aabblab::time_scene(timed, exact_contenders(true)[0]), aabb::input_error,
+                             Catch::Matchers::Message(place + sentence));
+        scene_play validated(std::make_unique<leaving>(), file);
+        CHECK_THROWS_MATCHES(aabblab::validate_scene({"leaving", {}, {}, 1}, validated, {}), aabb::input_error,
+                             Catch::Matchers::Message(place + sentence));
+    }
+}
