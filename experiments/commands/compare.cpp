@@ -32,9 +32,9 @@ constexpr std::string_view text_of(outcome found) {
         case outcome::less: return "less";
         case outcome::same: return "same";
         case outcome::more: return "more";
-        case outcome::open: break;
+        case outcome::undecided: break;
     }
-    return "open";
+    return "undecided";
 }
 
 std::string heading_of(const compared_scene& s) {
@@ -73,27 +73,28 @@ public:
             ++compared_;
             changed_ += time.found == outcome::less || time.found == outcome::more;
             same_ += time.found == outcome::same;
-            open_ += time.found == outcome::open;
-            too_few_ += time.found == outcome::open && time.too_few;
+            undecided_ += time.found == outcome::undecided;
+            too_few_ += time.found == outcome::undecided && time.too_few;
         }
     }
 
     [[nodiscard]] std::string text(std::string_view what) const {
         std::string text =
-            fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} open", compared_,
-                        what, changed_, same_, 100 * equivalence_band, open_);
+            fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided",
+                        compared_, what, changed_, same_, 100 * equivalence_band, undecided_);
         if (too_few_ > 0) text += fmt::format(", {} of them for too few repeats", too_few_);
         text += "\n";
-        if (open_ > 0)
+        if (undecided_ > 0)
             text += fmt::format(
-                "open: their intervals reach beyond {:.0f} %, or show a change only without Holm's correction for all "
+                "undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's correction for "
+                "all "
                 "{}; --all lists them\n",
                 100 * equivalence_band, what);
         return text;
     }
 
 private:
-    std::size_t compared_ = 0, changed_ = 0, same_ = 0, open_ = 0, too_few_ = 0;
+    std::size_t compared_ = 0, changed_ = 0, same_ = 0, undecided_ = 0, too_few_ = 0;
 };
 
 void print_ratios(const comparison& found, bool all) {
@@ -163,7 +164,7 @@ void add_compare(CLI::App& program, int& status) {
         ->type_name("");
     command->add_option("B", request->b, "Another, which is compared with it")->required()->type_name("");
     command->add_flag("--times", request->times, "Compare milliseconds too; of one machine only");
-    command->add_flag("--all", request->all, "List what is unchanged or open too");
+    command->add_flag("--all", request->all, "List what is unchanged or undecided too");
     command->callback([request, &status] { status = compare_folders(*request); });
 }
 

@@ -54,8 +54,7 @@ std::vector<std::string> time_tests(const std::filesystem::path& folder, bool qu
     const std::string made = build_description() + "repetitions " + repetitions + "\n";
     const std::filesystem::path maker = folder / "made_by.txt";
     const auto file_of = [&](std::size_t process) { return folder / ("process-" + std::to_string(process) + ".json"); };
-    std::ifstream in(maker, std::ios::binary);
-    if (std::string{std::istreambuf_iterator<char>(in), {}} != made)
+    if (!std::filesystem::exists(maker) || bytes_of_file(maker) != made)
         for (std::size_t process = 0; std::filesystem::remove(file_of(process));) ++process;
     std::filesystem::create_directories(folder);
     std::ofstream(maker, std::ios::binary) << made;

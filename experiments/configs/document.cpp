@@ -28,11 +28,6 @@ namespace {
 constexpr std::size_t most_parts = 16;  // of a dotted key; a config needs two
 constexpr std::size_t most_products = 100'000;
 
-std::string shortest(double value) {
-    std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 node converted(const toml::node& value) {
     node result;
     result.line = static_cast<int>(value.source().begin.line);
@@ -60,7 +55,7 @@ node converted(const toml::node& value) {
         result.text = std::to_string(integer->get());
     } else if (const auto* real = value.as_floating_point()) {
         result.kind = node_kind::real;
-        result.text = shortest(real->get());
+        result.text = aabb::shortest(real->get());
     } else if (const auto* flag = value.as_boolean()) {
         result.kind = node_kind::boolean;
         result.text = flag->get() ? "true" : "false";

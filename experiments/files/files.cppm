@@ -22,6 +22,10 @@ export namespace aabblab {
 /// infinity or an index out of range.
 [[nodiscard]] loaded_mesh read_mesh(const std::filesystem::path& file);
 
+/// The bytes of a file.
+/// @throws aabb::input_error where it cannot be read.
+[[nodiscard]] std::string bytes_of_file(const std::filesystem::path& file);
+
 /// Refuses work that does not fit into the machine's memory, before anything is allocated.
 /// @throws aabb::input_error that says what takes how many bytes.
 void require_memory(const std::string& what, double bytes);

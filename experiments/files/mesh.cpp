@@ -32,11 +32,6 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
     return std::to_string(count) + " " + std::string(count == 1 ? one : many);
 }
 
-void append(std::string& text, float number) {
-    std::array<char, 32> digits{};
-    text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-}
-
 }  // namespace
 
 std::vector<std::string> mesh_endings() {
@@ -77,7 +72,7 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {
     };
     for (const aabb::vec3f& p : mesh.vertices) {
         for (int k = 0; k < 3; ++k) {
-            append(text, p[k]);
+            text += aabb::shortest(p[k]);
             text += k < 2 ? ' ' : '\n';
         }
         pass_on(1U << 16);

@@ -143,11 +143,7 @@ std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
 
 void motion_file::add(std::span<const aabb::pose> poses) {
     std::string text;
-    const auto append = [&](double number) {
-        std::array<char, 32> digits{};
-        text += ' ';
-        text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-    };
+    const auto append = [&](double number) { text += ' ' + aabb::shortest(number); };
     if (frames_ == 0) text = "# frame object r00 r01 r02 tx r10 r11 r12 ty r20 r21 r22 tz\n";
     for (std::size_t object = 0; object < poses.size(); ++object) {
         text += std::to_string(frames_) + ' ' + std::to_string(object);

@@ -26,8 +26,7 @@ namespace {
 
 /// A row that was cut off while it was written goes.
 void drop_torn_row(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string text = bytes_of_file(file);
     const std::size_t complete = read_csv(text, file.string()).bytes;
     if (complete != text.size()) std::filesystem::resize_file(file, complete);
 }

@@ -19,6 +19,7 @@ module;
 module aabblab.results;
 
 import aabb;
+import aabblab.files;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -36,8 +37,7 @@ std::string cpu_model() {
 
 /// Of the program that runs: what was changed and not committed makes another build too.
 std::string own_digest() {
-    std::ifstream in("/proc/self/exe", std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string bytes = bytes_of_file("/proc/self/exe");
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx",
                   static_cast<unsigned long long>(XXH3_64bits(bytes.data(), bytes.size())));

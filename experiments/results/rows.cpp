@@ -17,6 +17,7 @@ module aabblab.results;
 import :csv;
 import aabb;
 import aabb.registry;
+import aabblab.files;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -150,9 +151,7 @@ std::string line_of(const Row& r, Columns columns) {
 /// @param taken_in sees each row and the line that it begins in
 template <class Row, class Columns, class TakenIn>
 std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, TakenIn taken_in) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (!in.good()) throw aabb::input_error(file.string() + " cannot be read");
+    const std::string text = bytes_of_file(file);
     const std::vector<csv_record> records = read_csv(text, file.string()).records;
     std::vector<Row> rows;
     if (records.empty()) return rows;

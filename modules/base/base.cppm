@@ -7,3 +7,4 @@ export import :error;
 export import :floating_point;
 export import :frame_state;
 export import :memory;
+export import :shortest;

@@ -63,7 +63,7 @@ void pipeline::detect() {
     contacts_.clear();
     if (!searched_)
         throw input_error("there are no candidates to decide on: search was not called, or did not succeed");
-    assert(poses_.size() == boxes_.size());
+    assert(poses_.size() == scene_.mesh_of.size());
     append_whole(contacts_, [&] {
         for (const auto [a, b] : candidates_) {
             triangle_pairs_.clear();

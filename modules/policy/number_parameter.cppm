@@ -10,6 +10,8 @@ module;
 
 export module aabb.policy:number_parameter;
 
+import aabb.base;
+
 export namespace aabb {
 
 /// A real number in (above, at_most], as text; with `or_auto`, "auto" too, which leaves the optional empty.
@@ -48,12 +50,6 @@ struct number_parameter {
             return false;
         config.*field = value;
         return true;
-    }
-
-private:
-    [[nodiscard]] static std::string shortest(double value) {
-        std::array<char, 32> text{};
-        return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
     }
 };
 

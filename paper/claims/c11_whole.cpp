@@ -11,6 +11,7 @@ import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -43,7 +44,7 @@ table half_steps(const std::vector<condition>& conditions) {
             cells.push_back(!ratio.log_ratio.known() ? "-" : ratio_text(endpoint_of(ratio, expectation::less)));
         }
         const auto share = c.spread(methods()[0].who, measured("global_share"));
-        cells.push_back(share ? digits_of(share->median) : "-");
+        cells.push_back(share ? three_digits(share->median) : "-");
     }
     return t;
 }

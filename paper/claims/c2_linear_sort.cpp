@@ -14,6 +14,7 @@ import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -65,7 +66,7 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{displacement});
         for (const condition* c : conditions) {
             const auto inversions = c->spread({{kind::sort, "insertion"}}, an_object(measured("inversions")));
-            cells.push_back(inversions ? digits_of(inversions->median) : "-");
+            cells.push_back(inversions ? three_digits(inversions->median) : "-");
         }
     }
     return t;

@@ -66,7 +66,7 @@ claim_result shell_sort(const measurements& m) {
         {}};
     series shell_wins{"Shell sort wins", series_style::points, {}};
     series insertion_wins{"insertion sort wins", series_style::points, {}};
-    series nobody{"no difference, or open", series_style::points, {}};
+    series nobody{"no difference, or undecided", series_style::points, {}};
     for (const std::string& gaps : gap_sequences()) {
         std::map<std::pair<std::string, double>, std::vector<compared>> along;
         for (const condition& c : conditions) {

@@ -12,6 +12,7 @@ import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -79,8 +80,8 @@ table automatic(const std::vector<condition>& conditions) {
             const auto limit = segments_got(c, axes, 256);
             if (!ratio.log_ratio.known() || !chosen || !limit) continue;
             std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
-            for (const std::string& cell : {std::to_string(axes), digits_of(chosen->median / axes), digits_of(*limit),
-                                            ratio_text(endpoint_of(ratio, expectation::less))})
+            for (const std::string& cell : {std::to_string(axes), three_digits(chosen->median / axes),
+                                            three_digits(*limit), ratio_text(endpoint_of(ratio, expectation::less))})
                 cells.push_back(cell);
         }
     return t;

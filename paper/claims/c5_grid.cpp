@@ -14,6 +14,7 @@ import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -97,7 +98,7 @@ table times(const std::vector<condition>& conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         const auto add = [&](const selection& who) {
             const auto time = c.spread(who, measured("frame_ms"));
-            cells.push_back(time ? digits_of(time->median) : "-");
+            cells.push_back(time ? three_digits(time->median) : "-");
         };
         add(cut);
         for (const std::string& size : cell_sizes()) add(grid(size));

@@ -19,6 +19,7 @@ import aabb.registry;
 import aabblab.metrics;
 import aabb;
 import aabblab.figures;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -83,7 +84,7 @@ table table_of(const test_times& times) {
         const std::string frame = name.ends_with(in_place) ? std::string(in_place) : "";
         const cells ratios = ratios_of(times, name, "test/box" + frame);
         t.rows.push_back(
-            {name, digits_of(q.median), digits_of(q.low) + " to " + digits_of(q.high),
+            {name, three_digits(q.median), three_digits(q.low) + " to " + three_digits(q.high),
              ratios.empty() ? "-" : ratio_text(endpoint_of({{}, bootstrap(ratios)}, expectation::not_more))});
     }
     return t;

@@ -9,6 +9,7 @@ import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.figures;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -35,7 +36,7 @@ table builds(const std::vector<condition>& conditions) {
             for (const row_value& of :
                  {measured("build_ms"), measured("detect_ms"), measured("box_tests"), measured("triangle_tests")}) {
                 const auto value = c.spread(canonical(build), of);
-                cells.push_back(value ? digits_of(value->median) : "-");
+                cells.push_back(value ? three_digits(value->median) : "-");
             }
             t.rows.push_back(cells);
         }

@@ -15,6 +15,7 @@ module aabblab.claims;
 import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
+import aabblab.numbers;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;
@@ -23,11 +24,10 @@ namespace aabblab {
 
 namespace {
 
-std::string grouped(const std::string& text) {
+/// Digits of a long number in groups; anything else as it is.
+std::string grouped_if_number(const std::string& text) {
     if (text.size() < 5 || text.find_first_not_of("0123456789") != std::string::npos) return text;
-    std::string digits = text;
-    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-    return digits;
+    return grouped(std::stoull(text));
 }
 
 std::size_t count_of(std::span<const endpoint> all, support what) {
@@ -35,8 +35,9 @@ std::size_t count_of(std::span<const endpoint> all, support what) {
 }
 
 std::string where_against_band(support found, expectation expected, double ratio) {
-    if (found == support::open && expected == expectation::not_more) return "is not shown to be below 1.05, nor above";
-    if (found == support::open) return "cannot be told from the band of no difference, 0.952 to 1.05";
+    if (found == support::undecided && expected == expectation::not_more)
+        return "is not shown to be below 1.05, nor above";
+    if (found == support::undecided) return "cannot be told from the band of no difference, 0.952 to 1.05";
     if (found == support::no_difference) return "lies within the band of no difference, 0.952 to 1.05";
     if (found == support::favours && expected == expectation::not_more && ratio > 1 / (1 + equivalence_band))
         return "is not above 1.05";
@@ -51,10 +52,10 @@ std::string sentence_of(const claim_result& claim) {
     if (claim.secondary.empty()) return text + ".";
     return text + fmt::format(
                       "; of {} other conditions {} favour the claim, {} contradict it, {} show no difference "
-                      "and {} are open.",
+                      "and {} are undecided.",
                       claim.secondary.size(), count_of(claim.secondary, support::favours),
                       count_of(claim.secondary, support::contradicts),
-                      count_of(claim.secondary, support::no_difference), count_of(claim.secondary, support::open));
+                      count_of(claim.secondary, support::no_difference), count_of(claim.secondary, support::undecided));
 }
 
 }  // namespace
@@ -98,20 +99,20 @@ std::vector<column> place_columns::head() const {
 
 std::vector<std::string> place_columns::cells(const factors& place) const {
     std::vector<std::string> all;
-    for (const std::string& name : names_) all.push_back(grouped(value_of(place, name)));
+    for (const std::string& name : names_) all.push_back(grouped_if_number(value_of(place, name)));
     return all;
 }
 
 std::string dependence_of(const open_choice& choice) {
-    bool open = choice.alternatives.empty();
+    bool undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
-        if (a.measured.found == support::open)
-            open = true;
-        else if (choice.alternatives.front().measured.found != support::open &&
+        if (a.measured.found == support::undecided)
+            undecided = true;
+        else if (choice.alternatives.front().measured.found != support::undecided &&
                  a.measured.found != choice.alternatives.front().measured.found)
             return "yes";
     }
-    return open ? "open" : "no";
+    return undecided ? "undecided" : "no";
 }
 
 endpoint endpoint_of(const candidate& c, expectation expected) {
@@ -153,9 +154,9 @@ void judge(claim_result& claim, std::vector<candidate> candidates) {
     if (claim.has_primary) {
         claim.verdict = verdict_of(claim.primary.found, supports);
         if (claim.verdict == verdict_kind::holds_when) {
-            if (count_of(all, support::favours) + count_of(all, support::open) == all.size()) {
-                claim.when = fmt::format("in {} of {} conditions, the others are open", count_of(all, support::favours),
-                                         all.size());
+            if (count_of(all, support::favours) + count_of(all, support::undecided) == all.size()) {
+                claim.when = fmt::format("in {} of {} conditions, the others are undecided",
+                                         count_of(all, support::favours), all.size());
             } else if (const std::string simplest = simplest_condition(all); !simplest.empty()) {
                 claim.when = "when " + simplest;
             } else {
@@ -216,14 +217,8 @@ reproduction judged(const measurements& m) {
     return all;
 }
 
-std::string digits_of(double value) {
-    const double size = std::abs(value);
-    if (size == 0) return "0";
-    return fmt::format("{:.{}f}", value, size < 0.01 ? 4 : size < 1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0);
-}
-
 std::string ratio_digits_of(double ratio) {
-    return ratio >= 1 && ratio < 10 ? fmt::format("{:.3f}", ratio) : digits_of(ratio);
+    return ratio >= 1 && ratio < 10 ? fmt::format("{:.3f}", ratio) : three_digits(ratio);
 }
 
 std::string ratio_text(const endpoint& e) {
@@ -235,7 +230,7 @@ std::string text_of(const factors& where) {
     std::string text;
     for (const auto& [name, value] : where)
         if (!value.empty())
-            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + grouped(value));
+            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + grouped_if_number(value));
     return text;
 }
 
@@ -244,9 +239,9 @@ std::string text_of(support found) {
         case support::favours: return "for";
         case support::no_difference: return "no difference";
         case support::contradicts: return "against";
-        case support::open: break;
+        case support::undecided: break;
     }
-    return "open";
+    return "undecided";
 }
 
 std::string text_of(const claim_result& claim) {
@@ -269,7 +264,7 @@ table verdict_table(const reproduction& all) {
              {"for"},
              {"against"},
              {"same"},
-             {"open"}},
+             {"undecided"}},
             {}};
     for (const claim_result& c : all.claims) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c)});
@@ -277,7 +272,7 @@ table verdict_table(const reproduction& all) {
         cells.push_back(c.has_primary
                             ? ratio_digits_of(c.primary.range.low) + " to " + ratio_digits_of(c.primary.range.high)
                             : "-");
-        for (const support what : {support::favours, support::contradicts, support::no_difference, support::open})
+        for (const support what : {support::favours, support::contradicts, support::no_difference, support::undecided})
             cells.push_back(std::to_string(count_of(c.secondary, what)));
     }
     return t;

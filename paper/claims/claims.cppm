@@ -23,8 +23,8 @@ struct endpoint {
     factors where;
     double ratio = 0;
     interval range{};  ///< 95 %, of this endpoint alone
-    support found = support::open;
-    support alone = support::open;  ///< what its own interval says, as if there were no others
+    support found = support::undecided;
+    support alone = support::undecided;  ///< what its own interval says, as if there were no others
 };
 
 /// A table of a report.
@@ -64,7 +64,7 @@ struct open_choice {
     };
     std::vector<alternative> alternatives;  ///< ours first
 };
-/// Whether the outcome depends on the choice: "no", "yes", or "open" where an alternative cannot be told.
+/// Whether the outcome depends on the choice: "no", "yes", or "undecided" where an alternative cannot be told.
 [[nodiscard]] std::string dependence_of(const open_choice& choice);
 
 /// All that the paper's experiments show.
@@ -80,9 +80,9 @@ struct reproduction {
 
 /// The simplest condition on one or two factors that tells the endpoints that favour a claim from those that are
 /// decided otherwise: "objects is at least 10000", "sort is insertion or displacement is 1". None that is met by an
-/// endpoint which is open among many, but decided otherwise when taken alone. Empty where there is none so simple. Two
-/// factors need two endpoints on either side, lest some pair of them always fits, and no single factor that is nearly
-/// right.
+/// endpoint which is undecided among many, but decided otherwise when taken alone. Empty where there is none so simple.
+/// Two factors need two endpoints on either side, lest some pair of them always fits, and no single factor that is
+/// nearly right.
 [[nodiscard]] std::string simplest_condition(std::span<const endpoint> all);
 
 /// One condition that tells most of them apart, and how many; empty where there is none.
@@ -97,8 +97,6 @@ struct reproduction {
 [[nodiscard]] std::string ratio_text(const endpoint& e);
 /// Three decimals, so that 1.048 is not taken for the band's edge; fewer from 10 on, four below 0.01.
 [[nodiscard]] std::string ratio_digits_of(double ratio);
-/// Three digits that count.
-[[nodiscard]] std::string digits_of(double value);
 
 /// Claim by claim: verdict, primary ratio with its interval, and where it was measured.
 [[nodiscard]] table verdict_table(const reproduction& all);

@@ -57,12 +57,12 @@ void add_predicates(std::span<const endpoint> all, const std::string& name, std:
                              name});
 }
 
-/// Endpoints that are decided, or open among many but decided otherwise when taken alone, and every condition on one
-/// factor that could tell them apart.
+/// Endpoints that are decided, or undecided among many but decided otherwise when taken alone, and every condition on
+/// one factor that could tell them apart.
 struct told_apart {
     explicit told_apart(std::span<const endpoint> all) {
         for (const endpoint& e : all)
-            if (e.found != support::open || (e.alone != support::open && e.alone != support::favours))
+            if (e.found != support::undecided || (e.alone != support::undecided && e.alone != support::favours))
                 decided.push_back(e);
         std::vector<std::string> names;
         for (const endpoint& e : decided)

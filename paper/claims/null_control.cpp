@@ -51,10 +51,10 @@ named_table null_control(const measurements& m) {
             fmt::format(
                 "Null control: time a frame of a composition under two names. Of {} intervals {} miss 1, where one in "
                 "twenty would be expected to. Each taken alone, {} are decided as a difference, {} as none, "
-                "and {} are open.",
+                "and {} are undecided.",
                 found.size(), without_one, std::ranges::count_if(found, is_difference),
                 std::ranges::count(found, support::no_difference, &endpoint::found),
-                std::ranges::count(found, support::open, &endpoint::found)),
+                std::ranges::count(found, support::undecided, &endpoint::found)),
             t};
 }
 

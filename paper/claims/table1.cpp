@@ -11,6 +11,7 @@ module aabblab.claims;
 import aabblab.conditions;
 import aabb.registry;
 import aabblab.metrics;
+import aabblab.numbers;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -83,7 +84,7 @@ table cost_table(const condition& c) {
                 return !found.log_ratio.known() ? "-" : ratio_text(endpoint_of(found, expectation::less));
             };
             t.rows.push_back({one.name, build, fmt::format("{:.2f}", *bytes),
-                              digits_of(100 * c.value(built(one, build), measured("box_inflation")).value_or(0)),
+                              three_digits(100 * c.value(built(one, build), measured("box_inflation")).value_or(0)),
                               ratio(measured("build_ms")), ratio(measured("detect_ms"))});
         }
     return t;

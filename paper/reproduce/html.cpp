@@ -15,6 +15,7 @@ module aabblab.reproduction;
 
 import aabblab.claims;
 import aabblab.figures;
+import aabblab.files;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -74,7 +75,7 @@ public:
     }
     void add(const figure& f) {
         text_ += "<figure><img alt=\"" + html_text(f.caption) + "\" src=\"" +
-                 address_of(text_of_file(folder_ / "figures" / (f.name + ".svg"))) + "\"><figcaption>" +
+                 address_of(bytes_of_file(folder_ / "figures" / (f.name + ".svg"))) + "\"><figcaption>" +
                  html_text(f.caption) + "</figcaption></figure>\n";
     }
     [[nodiscard]] std::string finished() const { return text_ + "</body></html>\n"; }

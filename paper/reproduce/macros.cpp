@@ -71,7 +71,7 @@ void add_claim(macros& to, const claim_result& c) {
     count("for", support::favours);
     count("against", support::contradicts);
     count("same", support::no_difference);
-    count("open", support::open);
+    count("undecided", support::undecided);
 }
 
 }  // namespace

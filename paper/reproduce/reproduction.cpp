@@ -70,13 +70,6 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
 
 }  // namespace
 
-std::string text_of_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    if (!in) throw aabb::input_error(file.string() + " cannot be read");
-    return text;
-}
-
 provenance provenance_of(const std::filesystem::path& folder, const reproduction& all) {
     provenance made;
     const measurements measured(folder);
@@ -89,7 +82,7 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
     for (const char* experiment : {"choices", "null_control"})
         if (std::filesystem::exists(folder / experiment / "manifest.json")) experiments.emplace_back(experiment);
     for (const std::string& experiment : experiments) {
-        const std::string text = text_of_file(folder / experiment / "manifest.json");
+        const std::string text = bytes_of_file(folder / experiment / "manifest.json");
         const nlohmann::json manifest = nlohmann::json::parse(text);
         const nlohmann::json& build = manifest["build"];
         made.configs.push_back({experiment, manifest["config"].value("text", ""), text});

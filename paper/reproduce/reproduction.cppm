@@ -46,8 +46,6 @@ struct provenance {
 /// How a verdict comes about, from rule.md: a paragraph each, without line breaks.
 [[nodiscard]] std::vector<std::string> rule_paragraphs();
 
-[[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
-
 [[nodiscard]] std::string html_of(const std::filesystem::path& folder, const reproduction& all, const provenance& made,
                                   const std::vector<std::string>& failures);
 [[nodiscard]] std::string markdown_of(const reproduction& all, const provenance& made,

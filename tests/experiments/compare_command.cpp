@@ -127,14 +127,14 @@ TEST_CASE("Few noisy repeats leave it open, and so few that nothing could show i
     measured a = slower;
     a.sorts[1].second = 2;
     a.hour = 1;
-    REQUIRE(outcomes_of(a, slower) == std::vector{outcome::open});
+    REQUIRE(outcomes_of(a, slower) == std::vector{outcome::undecided});
     // One repeat has no noise to be seen, so that anything would seem to be beyond it.
     const measured once{.noise = 0, .seeds = 1, .repeats = 1};
     measured twice_as_slow = once;
     twice_as_slow.sorts[1].second = 4;
     const auto found = compare(run_of(once), run_of(twice_as_slow), aabblab::compared::ratios);
     for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
-        CHECK(time.found == outcome::open);
+        CHECK(time.found == outcome::undecided);
         CHECK(time.too_few);
     }
     const auto enough = compare(run_of(a), run_of(slower), aabblab::compared::ratios);
@@ -163,7 +163,7 @@ TEST_CASE("What is the same by its own interval is so among hundreds of lines, a
     for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
         const bool within = time.around.low > 1 / 1.05 && time.around.high < 1.05;
         CHECK((time.found == outcome::same) == within);
-        CHECK((time.found == outcome::same || time.found == outcome::open));
+        CHECK((time.found == outcome::same || time.found == outcome::undecided));
         same += within;
     }
     CHECK(same > 0);
@@ -232,7 +232,7 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     CHECK(has(result.out, "test: brownian, objects=10 frames=3; time over that of 'insertion'\n"));
     CHECK(has(result.out, "\nstd "));
     CHECK_FALSE(has(result.out, " same\n"));
-    CHECK(has(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 open\n"));
+    CHECK(has(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 undecided\n"));
     CHECK(has(result.out, "bytes_projections  12288  24576  +100.00\n"));
     CHECK(has(result.out, "\n9 counts and sizes compared: 3 changed\n"));
     const program_result all = run_program({"compare", a, b, "--all"});
@@ -240,14 +240,14 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     CHECK(has(all.out, " same\n"));
     CHECK_FALSE(has(all.out, "\nopen: "));
     const std::string noisy = write_results(folder / "noisy", rows_of({.noise = 0.3, .hour = 3}));
-    CHECK(
-        has(run_program({"compare", a, noisy}).out,
-            " 2 open\nopen: their intervals reach beyond 5 %, or show a change only without Holm's correction for all "
-            "ratios; --all lists them\n"));
+    CHECK(has(run_program({"compare", a, noisy}).out,
+              " 2 undecided\nundecided: their intervals reach beyond 5 %, or show a change only without Holm's "
+              "correction for all "
+              "ratios; --all lists them\n"));
     const program_result itself = run_program({"compare", a, a});
     CHECK(itself.status == 0);
     CHECK(has(itself.out,
-              "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 open\n"
+              "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 undecided\n"
               "9 counts and sizes compared: 0 changed\n"));
     CHECK_FALSE(has(itself.out, "left out"));
 }

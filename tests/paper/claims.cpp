@@ -269,8 +269,8 @@ TEST_CASE("An alternative counts only where the others beside it leave it standi
         c11->alternatives, [](const aabblab::open_choice::alternative& a) { return a.label.starts_with("20000 "); });
     REQUIRE(choice != c11->alternatives.end());
     CHECK(choice->measured.alone == support::favours);
-    CHECK(choice->measured.found == support::open);
-    CHECK(same->found == support::open);
+    CHECK(choice->measured.found == support::undecided);
+    CHECK(same->found == support::undecided);
 }
 
 TEST_CASE("What was wrong in a run is said by every later judgement") {
@@ -288,12 +288,12 @@ TEST_CASE("What was wrong in a run is said by every later judgement") {
 
 TEST_CASE("The simplest condition tells endpoints apart") {
     const std::vector<endpoint> by_size{
-        at("brownian", "100", support::contradicts), at("brownian", "1000", support::open),
+        at("brownian", "100", support::contradicts), at("brownian", "1000", support::undecided),
         at("brownian", "10000", support::favours), at("still", "100000", support::favours)};
     CHECK(aabblab::simplest_condition(by_size) == "objects is at least 10000");
     // Open only because there are many: the condition must not speak for it.
     std::vector<endpoint> with_contrary = by_size;
-    with_contrary.push_back(at("clustered", "10000", support::open));
+    with_contrary.push_back(at("clustered", "10000", support::undecided));
     with_contrary.back().alone = support::no_difference;
     CHECK(aabblab::simplest_condition(with_contrary) == "scene is not clustered and objects is at least 10000");
     with_contrary.back().alone = support::favours;
@@ -363,7 +363,7 @@ TEST_CASE(
     }
     CHECK(count > 20);
     for (const char* kind : {"claim", "measured", "setup", "condition", "favourable", "ratio", "low", "high", "verdict",
-                             "because", "endpoints", "for", "against", "same", "open"})
+                             "because", "endpoints", "for", "against", "same", "undecided"})
         for (const claim_result& c : all.claims) CHECK(keys.contains(c.id + "." + kind));
 
     const std::regex tabled(R"(\\aabb(?:long)?table(?:\[[^\]]*\])?\{([^}#]*)\})");

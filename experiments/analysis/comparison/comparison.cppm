@@ -42,10 +42,10 @@ struct compared_time {
     std::string label;  ///< the parts of the name that differ within the scene
     double in_a = 0;    ///< means as aabblab.statistics takes them
     double in_b = 0;
-    double change = 1;              ///< B's over A's
-    interval around{};              ///< of the change, 95 %, of this one alone
-    outcome found = outcome::open;  ///< a change by Holm's rule over all compared with it; `same` alone
-    bool too_few = false;           ///< no change, however large, could be told from accident with these repeats
+    double change = 1;                   ///< B's over A's
+    interval around{};                   ///< of the change, 95 %, of this one alone
+    outcome found = outcome::undecided;  ///< a change by Holm's rule over all compared with it; `same` alone
+    bool too_few = false;                ///< no change, however large, could be told from accident with these repeats
 };
 
 /// A count or a number of bytes that is another in B. Sums over the scene's seeds.

@@ -91,13 +91,13 @@ std::vector<compared_time> judged(std::span<const two_sides> all) {
         time.in_b = std::exp(b.value);
         time.change = std::exp(change.value);
         time.around = {std::exp(around.low), std::exp(around.high)};
-        time.too_few = decide({outcome::more, least * static_cast<double>(all.size())}) == outcome::open;
+        time.too_few = decide({outcome::more, least * static_cast<double>(all.size())}) == outcome::undecided;
     }
     const std::vector<outcome> outcomes = decide_together(evidences);
-    // Only a change needs the correction: hundreds of lines without one would else all be open.
+    // Only a change needs the correction: hundreds of lines without one would else all be undecided.
     for (std::size_t i = 0; i < times.size(); ++i)
         times[i].found =
-            outcomes[i] == outcome::open && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
+            outcomes[i] == outcome::undecided && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
     return times;
 }
 

@@ -29,9 +29,7 @@ namespace {
 /// The date in a PDF is the only thing that changes when nothing else has. Blanks take its place, because a PDF says
 /// where in the file its parts begin.
 void remove_date(const std::filesystem::path& pdf) {
-    std::ifstream in(pdf, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    in.close();
+    std::string bytes = bytes_of_file(pdf);
     const std::size_t begin = bytes.find("/CreationDate (");
     const std::size_t end = bytes.find(')', begin);
     if (begin == std::string::npos || end == std::string::npos) return;

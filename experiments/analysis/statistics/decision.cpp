@@ -36,14 +36,14 @@ evidence evidence_of(const estimate& log_ratio, expectation expected) {
 }
 
 outcome decide(const evidence& e) {
-    return e.p <= one_sided ? e.nearest : outcome::open;
+    return e.p <= one_sided ? e.nearest : outcome::undecided;
 }
 
 std::vector<outcome> decide_together(std::span<const evidence> all) {
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(all[i].p, i); });
-    std::vector<outcome> outcomes(all.size(), outcome::open);
+    std::vector<outcome> outcomes(all.size(), outcome::undecided);
     for (std::size_t done = 0; done < order.size(); ++done) {
         const evidence& next = all[order[done]];
         if (next.p > one_sided / static_cast<double>(order.size() - done)) break;
@@ -57,13 +57,13 @@ support support_of(expectation expected, outcome found) {
         case outcome::less: return support::favours;
         case outcome::same: return expected == expectation::not_more ? support::favours : support::no_difference;
         case outcome::more: return support::contradicts;
-        case outcome::open: break;
+        case outcome::undecided: break;
     }
-    return support::open;
+    return support::undecided;
 }
 
 verdict_kind verdict_of(support primary, std::span<const support> secondary) {
-    if (primary == support::open) return verdict_kind::undecided;
+    if (primary == support::undecided) return verdict_kind::undecided;
     if (primary == support::favours) {
         const bool everywhere = std::ranges::all_of(secondary, [](support s) { return s == support::favours; });
         return everywhere ? verdict_kind::holds : verdict_kind::holds_when;

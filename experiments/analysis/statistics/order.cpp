@@ -19,19 +19,4 @@ quartiles quartiles_of(std::vector<double> values) {
     return {at(0.25), at(0.5), at(0.75)};
 }
 
-interval median_interval(std::vector<double> values) {
-    std::ranges::sort(values);
-    // The chance that fewer than `cut` + 1 of the values lie below the median.
-    const auto n = static_cast<double>(values.size());
-    double chance = std::pow(0.5, n);
-    double sum = chance;
-    std::size_t cut = 0;
-    for (; sum <= 0.025; sum += chance) {
-        chance *= (n - static_cast<double>(cut)) / static_cast<double>(cut + 1);
-        ++cut;
-    }
-    const std::size_t low = cut > 0 ? cut - 1 : 0;
-    return {values[low], values[values.size() - 1 - low]};
-}
-
 }  // namespace aabblab

@@ -23,10 +23,6 @@ struct interval {
     double low;
     double high;
 };
-/// Holds the median of what the values are drawn from with a confidence of 95 % or more, whatever the distribution:
-/// from the order statistics that a sign test would not reject. With fewer than six values it is all their range, which
-/// is less sure. `values` must not be empty.
-[[nodiscard]] interval median_interval(std::vector<double> values);
 
 /// Of measurements: how many processes and seeds, and repeats in each cell of one of each.
 struct sample_size {
@@ -114,10 +110,10 @@ enum class expectation : unsigned char {
 
 /// Where the ratio of two things lies against the band of those that make no difference, 1/1.05 to 1.05.
 enum class outcome : unsigned char {
-    less,  ///< the interval lies below the band
-    same,  ///< within it
-    more,  ///< above it
-    open   ///< it cannot be told
+    less,      ///< the interval lies below the band
+    same,      ///< within it
+    more,      ///< above it
+    undecided  ///< it cannot be told
 };
 
 inline constexpr double equivalence_band = 0.05;
@@ -131,19 +127,19 @@ struct evidence {
 /// @param log_ratio of the logarithm of a ratio
 [[nodiscard]] evidence evidence_of(const estimate& log_ratio, expectation expected = expectation::less);
 
-/// The nearest outcome where the 95 % interval shows it, else open.
+/// The nearest outcome where the 95 % interval shows it, else undecided.
 [[nodiscard]] outcome decide(const evidence& e);
 /// Several at once, by Holm's step-down rule: the chance that any outcome is wrong is kept below 5 %.
 [[nodiscard]] std::vector<outcome> decide_together(std::span<const evidence> all);
 
-enum class support : unsigned char { favours, no_difference, contradicts, open };
+enum class support : unsigned char { favours, no_difference, contradicts, undecided };
 [[nodiscard]] support support_of(expectation expected, outcome found);
 
 enum class verdict_kind : unsigned char { holds, holds_when, no_difference, does_not_hold, undecided };
 
 /// The rule. The primary endpoint decides; where a secondary one does not agree, the claim holds only under conditions:
-/// - primary open: undecided;
-/// - primary favours: holds, if every secondary does, else holds when: what is open has not been shown;
+/// - primary undecided: undecided;
+/// - primary favours: holds, if every secondary does, else holds when: what is undecided has not been shown;
 /// - primary otherwise: holds when, if a secondary favours, else no difference or does not hold, as the primary says.
 [[nodiscard]] verdict_kind verdict_of(support primary, std::span<const support> secondary);
 

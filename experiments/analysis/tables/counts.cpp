@@ -14,6 +14,7 @@ module;
 module aabblab.tables;
 
 import aabb;
+import aabblab.numbers;
 import aabblab.results;
 
 namespace aabblab {
@@ -36,7 +37,7 @@ std::string spaced(std::string_view name) {
 
 std::string count_text(double value) {
     return value != 0 && value < 100 ? fmt::format("{:.1f}", value)
-                                     : number_text(static_cast<std::uint64_t>(std::llround(value)));
+                                     : grouped(static_cast<std::uint64_t>(std::llround(value)));
 }
 
 }  // namespace

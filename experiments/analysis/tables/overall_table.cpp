@@ -15,6 +15,7 @@ module;
 module aabblab.tables;
 
 import aabb.registry;
+import aabblab.numbers;
 import aabblab.results;
 
 namespace aabblab {
@@ -68,8 +69,8 @@ table overall_table_of(std::span<const scene_summary> scenes) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name, t.rows.size() + 1));
         if (inexact) cells.emplace_back(one.exact ? "exact" : "inexact");
         for (const double ratio : {one.ratio(), one.least, one.greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
-        cells.push_back(number_text(one.scenes));
-        cells.push_back(number_text(one.wins));
+        cells.push_back(grouped(one.scenes));
+        cells.push_back(grouped(one.wins));
     }
     return t;
 }

@@ -14,6 +14,7 @@ module;
 module aabblab.tables;
 
 import aabblab.metrics;
+import aabblab.numbers;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -33,11 +34,6 @@ int decimals_of(const scene_summary& scene) {
     for (const summary_line& line : scene.lines)
         if (line.ms_a_frame) least = std::min(least, line.ms_a_frame->median);
     return least < 1 ? 4 : least < 10 ? 3 : 2;
-}
-
-/// Three digits that count.
-std::string three_digits(double value) {
-    return fmt::format("{:.{}f}", value, value < 0.1 ? 4 : value < 1 ? 3 : value < 10 ? 2 : value < 100 ? 1 : 0);
 }
 
 /// The cells of a line from its times, "-" for what was not timed.
@@ -69,8 +65,8 @@ std::vector<shared_column> shared_columns(std::span<const summary_line* const> r
     bool sized = false;
     for (const summary_line* line : ranking) {
         answer.cells.push_back(answer_of(*line));
-        pairs.cells.push_back(number_text(line->pairs));
-        contacts.cells.push_back(line->contacts ? number_text(*line->contacts) : "-");
+        pairs.cells.push_back(grouped(line->pairs));
+        contacts.cells.push_back(line->contacts ? grouped(*line->contacts) : "-");
         bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
         meshes |= line->contacts.has_value();
         sized |= line->bytes.has_value();
@@ -83,15 +79,9 @@ std::vector<shared_column> shared_columns(std::span<const summary_line* const> r
 
 }  // namespace
 
-std::string number_text(std::uint64_t n) {
-    std::string digits = std::to_string(n);
-    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-    return digits;
-}
-
 std::string kib_text(std::uint64_t bytes) {
     const double kib = static_cast<double>(bytes) / 1024;
-    return kib < 100 ? fmt::format("{:.1f}", kib) : number_text(static_cast<std::uint64_t>(std::llround(kib)));
+    return kib < 100 ? fmt::format("{:.1f}", kib) : grouped(static_cast<std::uint64_t>(std::llround(kib)));
 }
 
 std::string text_or_dash(const std::optional<double>& value, int decimals) {
@@ -139,7 +129,7 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
 
 std::string heading_of(const scene_summary& scene) {
     std::string text =
-        fmt::format("{}: {} objects, {} frames\n", scene.scene.kind, number_text(scene.objects), scene.frames);
+        fmt::format("{}: {} objects, {} frames\n", scene.scene.kind, grouped(scene.objects), scene.frames);
     std::string parameters = settings_text(scene.scene);
     if (scene.seeds.size() == 1) parameters += fmt::format("{}seed={}", parameters.empty() ? "" : " ", scene.seeds[0]);
     text += parameters + "\n";

@@ -117,8 +117,6 @@ namespace aabblab {
 
 /// In characters, not bytes.
 [[nodiscard]] std::size_t text_width(std::string_view text);
-/// "12,345".
-[[nodiscard]] std::string number_text(std::uint64_t n);
 /// Bytes as KiB, with three digits that count.
 [[nodiscard]] std::string kib_text(std::uint64_t bytes);
 /// "0.98-1.02", or "-" where there is none.

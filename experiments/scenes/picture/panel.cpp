@@ -34,7 +34,7 @@ double tick_step(double length, double most) {
     return step;
 }
 
-std::vector<double> ticks(const projection& view, int axis, double pixels, double pixels_each) {
+std::vector<double> ticks(const view_plane& view, int axis, double pixels, double pixels_each) {
     const double least = view.least(axis);
     const double step = tick_step(view.length(axis), std::max(2.0, pixels / pixels_each));
     std::vector<double> values;
@@ -46,7 +46,7 @@ std::vector<double> ticks(const projection& view, int axis, double pixels, doubl
     return values;
 }
 
-std::string axes_of(const projection& view) {
+std::string axes_of(const view_plane& view) {
     std::string svg;
     for (const double value : ticks(view, view.across(), view.width(), 80))
         fmt::format_to(std::back_inserter(svg),
@@ -71,7 +71,7 @@ struct rectangle {
     double left, top, width, height;
 };
 
-rectangle shown(const projection& view, const aabb::box& b) {
+rectangle shown(const view_plane& view, const aabb::box& b) {
     const double left = view.x(b.min[view.across()]);
     const double top = view.y(b.max[view.up()]);
     // What is smaller than a pixel is still to be seen.
@@ -85,7 +85,7 @@ void draw_box(std::string& svg, const rectangle& r, std::string_view kind) {
                    r.top, r.width, r.height);
 }
 
-std::string boxes_of(const projection& view, const survey::frame& frame, const frame_drawing& drawing) {
+std::string boxes_of(const view_plane& view, const survey::frame& frame, const frame_drawing& drawing) {
     double area = 0;
     std::string boxes;
     std::string outlines;
@@ -102,7 +102,7 @@ std::string boxes_of(const projection& view, const survey::frame& frame, const f
                        std::clamp(0.6 / depth, 0.03, 0.35), std::clamp(1.5 / depth, 0.1, 0.8), boxes, outlines);
 }
 
-void draw_path(std::string& svg, const projection& view, const survey::path& path) {
+void draw_path(std::string& svg, const view_plane& view, const survey::path& path) {
     std::string d;
     bool pen_down = false;
     for (const auto& place : path) {
@@ -116,7 +116,7 @@ void draw_path(std::string& svg, const projection& view, const survey::path& pat
 
 }  // namespace
 
-projection::projection(const aabb::box& world, const aabb::vec3d& sides) {
+view_plane::view_plane(const aabb::box& world, const aabb::vec3d& sides) {
     for (int k = 0; k < 3; ++k) {
         const bool is_empty = world.min[k] > world.max[k];
         least_[k] = is_empty ? 0 : double{world.min[k]};
@@ -142,7 +142,7 @@ projection::projection(const aabb::box& world, const aabb::vec3d& sides) {
     scale_[up_] = height_ / length_[up_];
 }
 
-std::string panel_of(const projection& view, pixel corner, std::string_view title, const survey::frame& frame,
+std::string panel_of(const view_plane& view, pixel corner, std::string_view title, const survey::frame& frame,
                      const frame_drawing& drawing, std::span<const survey::path> paths) {
     std::string svg = fmt::format(
         "<g transform=\"translate({:.1f} {:.1f})\">\n<text class=\"title\" x=\"0\" y=\"-10\">{}</text>\n"
@@ -154,7 +154,7 @@ std::string panel_of(const projection& view, pixel corner, std::string_view titl
     return svg + "</g>\n";
 }
 
-std::size_t clear_paths(const projection& view, std::span<const survey::path> paths) {
+std::size_t clear_paths(const view_plane& view, std::span<const survey::path> paths) {
     const double most = 8 * (view.width() + view.height());
     double length = 0;
     std::size_t count = 0;

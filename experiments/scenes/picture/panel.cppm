@@ -21,11 +21,11 @@ constexpr double bottom_margin = 44;
 constexpr double gap = 30;
 
 /// Which two axes are shown, and how lengths become pixels.
-class projection {
+class view_plane {
 public:
     /// Along z lies what falls or is piled up, so z is left out only where it is flat, or less than a quarter as wide
     /// as both others. Where one of the two axes is much longer, each has a scale of its own.
-    projection(const aabb::box& world, const aabb::vec3d& sides);
+    view_plane(const aabb::box& world, const aabb::vec3d& sides);
 
     [[nodiscard]] int across() const { return across_; }
     [[nodiscard]] int up() const { return up_; }
@@ -67,11 +67,11 @@ struct frame_drawing {
     std::size_t pairs = 0;
 };
 
-[[nodiscard]] std::string panel_of(const projection& view, pixel corner, std::string_view title,
+[[nodiscard]] std::string panel_of(const view_plane& view, pixel corner, std::string_view title,
                                    const survey::frame& frame, const frame_drawing& drawing,
                                    std::span<const survey::path> paths);
 
 /// How many of the paths can be drawn before they hide everything: at least one, where there is one.
-[[nodiscard]] std::size_t clear_paths(const projection& view, std::span<const survey::path> paths);
+[[nodiscard]] std::size_t clear_paths(const view_plane& view, std::span<const survey::path> paths);
 
 }  // namespace aabblab

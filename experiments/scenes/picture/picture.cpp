@@ -114,7 +114,7 @@ void add_wrapped(std::vector<std::string>& lines, std::string_view text) {
     lines.emplace_back(text);
 }
 
-std::vector<std::string> caption_lines(const survey& seen, const picture_caption& caption, const projection& view,
+std::vector<std::string> caption_lines(const survey& seen, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
     add_wrapped(lines, caption.summary);
@@ -147,7 +147,7 @@ std::string legend(double y, std::size_t paths, bool has_huge) {
 }  // namespace
 
 std::string picture_of(const survey& seen, const picture_caption& caption) {
-    const projection view(seen.world(), seen.sides());
+    const view_plane view(seen.world(), seen.sides());
     const frame_drawing first = drawing_of(seen.first());
     const frame_drawing last = drawing_of(seen.last());
     const bool is_sampled = std::max(first.present, last.present) > most_boxes;

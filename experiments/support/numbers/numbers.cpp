@@ -1,0 +1,26 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+module aabblab.numbers;
+
+namespace aabblab {
+
+std::string grouped(std::uint64_t n) {
+    std::string digits = std::to_string(n);
+    for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+    return digits;
+}
+
+std::string three_digits(double value) {
+    if (value == 0) return "0";
+    const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+    return fmt::format("{:.{}f}", value, std::clamp(3 - before_point, 0, 6));
+}
+
+}  // namespace aabblab

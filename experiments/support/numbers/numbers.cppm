@@ -1,0 +1,17 @@
+module;
+#include <cstdint>
+#include <string>
+
+/// Numbers as people read them.
+export module aabblab.numbers;
+
+export namespace aabblab {
+
+/// "12,345".
+[[nodiscard]] std::string grouped(std::uint64_t n);
+
+/// With three digits that count, or all that stand before the point: "0.00123", "0.123", "12.3", "1234"; at most six
+/// behind the point.
+[[nodiscard]] std::string three_digits(double value);
+
+}  // namespace aabblab
