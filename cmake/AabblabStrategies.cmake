@@ -43,7 +43,7 @@ function(aabblab_strategy_module kind name)
     endif()
 endfunction()
 
-# Sets <result> to FORMAT for each of the words, KIND and NAME replaced, with the separator between; ! stands for a
+# Sets <result> to FORMAT for each of the words, WORD replaced, with the separator between; ! stands for a
 # semicolon, which a list of CMake would lose.
 function(aabblab_each result format separator)
     set(all "")

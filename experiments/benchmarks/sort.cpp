@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -16,6 +15,7 @@
 import aabb;
 import aabb.strategies;
 import aabblab.cases;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -67,7 +67,6 @@ void count_work(benchmark::State& state, Sort sort, std::span<const list_of_fram
 
 template <class Sort>
 void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
-    using clock = std::chrono::steady_clock;
     aabb::no_counters none;
     list_of_frame list;
     std::size_t next = 0;
@@ -75,10 +74,11 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
         list = lists[next];
         next = (next + 1) % lists.size();
         benchmark::DoNotOptimize(list.data());
-        const clock::time_point begin = clock::now();
-        sort.sort(std::span(list), none);
-        benchmark::ClobberMemory();
-        state.SetIterationTime(std::chrono::duration<double>(clock::now() - begin).count());
+        state.SetIterationTime(milliseconds_of([&] {
+                                   sort.sort(std::span(list), none);
+                                   benchmark::ClobberMemory();
+                               }) /
+                               1000);
     }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -284,7 +283,7 @@ void add_collide(CLI::App& program, int&) {
         ->type_name("M");
     command->add_option("--pose-b", request->poses[1], "Where B is")->type_name("M");
     request->local.add_to(*command);
-    command->add_option("--engine", request->engine, "Reference system in place of tree and triangle test")
+    command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
         ->type_name("E");
     command->add_flag("--self", request->self, "Hold A against itself; pairs that share a vertex are counted apart");
     command->add_flag("--first", request->first, "Stop at the first pair found");

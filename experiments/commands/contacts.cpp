@@ -3,10 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <chrono>
 #include <cstddef>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -168,7 +165,7 @@ void add_contacts(CLI::App& program, int&) {
         ->type_name("");
     request->global.add_to(*command);
     request->local.add_to(*command);
-    command->add_option("--engine", request->engine, "Reference system in place of tree and triangle test")
+    command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
         ->type_name("E");
     command
         ->add_option("--out", request->out,

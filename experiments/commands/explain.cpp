@@ -2,8 +2,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>

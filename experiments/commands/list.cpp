@@ -41,7 +41,8 @@ nlohmann::ordered_json everything() {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         auto& of_kind = all["strategies"][std::string(aabb::name_of(kind))];
         for (const auto& s : aabb::strategies(kind))
-            of_kind.push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
+            of_kind.push_back(
+                {{"name", s.name}, {"summary", s.summary}, {"exact", s.exact}, {"parameters", to_json(s.parameters)}});
     }
     for (const auto& e : aabb::engines())
         all["engines"].push_back({{"name", e.name},
@@ -67,7 +68,9 @@ nlohmann::ordered_json everything() {
                                   {"summary", m.summary},
                                   {"unit", m.unit},
                                   {"recorded", group_of(m).name},
-                                  {"better", m.direction == better::less ? "less" : "more"}});
+                                  {"better", m.direction == better::less   ? "less"
+                                             : m.direction == better::more ? "more"
+                                                                           : "neither"}});
     return all;
 }
 

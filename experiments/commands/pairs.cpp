@@ -3,8 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
-#include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>

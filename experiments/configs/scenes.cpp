@@ -92,10 +92,10 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
 std::string found_file(const document& doc, const located_text& name) {
     std::error_code ignored;
     const std::filesystem::path beside = doc.folder() / name.text;
-    if (name.text.empty() || beside == name.text || std::filesystem::exists(name.text, ignored)) return name.text;
-    if (!std::filesystem::exists(beside, ignored))
-        doc.fail(name.line, name.text + ": no such file, here or in " + doc.folder().string());
-    return beside.string();
+    const bool is_elsewhere = beside != name.text;
+    if (name.text.empty() || std::filesystem::exists(name.text, ignored)) return name.text;
+    if (is_elsewhere && std::filesystem::exists(beside, ignored)) return beside.string();
+    doc.fail(name.line, name.text + ": no such file" + (is_elsewhere ? ", here or in " + doc.folder().string() : ""));
 }
 
 /// The settings that a scene is made with, each with its alternatives.

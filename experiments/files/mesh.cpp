@@ -1,8 +1,6 @@
 module;
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>

@@ -1,8 +1,5 @@
 module;
-#include <chrono>
 #include <cstddef>
-#include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 

@@ -10,7 +10,6 @@ module;
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 
@@ -53,9 +52,9 @@ json build() {
 }
 
 json read_json(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) throw aabb::input_error(file.string() + " is not there; results without it cannot be used");
-    json content = json::parse(in, nullptr, false);
+    if (!std::filesystem::exists(file))
+        throw aabb::input_error(file.string() + " is not there; results without it cannot be used");
+    json content = json::parse(bytes_of_file(file), nullptr, false);
     if (!content.is_object() || !content.contains("build") || !content.contains("config"))
         throw aabb::input_error(file.string() + " is not a manifest of results");
     return content;

@@ -36,7 +36,7 @@ export namespace aabb {
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters = no_counters>
 class global_search {
     static constexpr bool cuts = CuttingPartition<Partition>;
-    static_assert(is_accepted<sentence_of<Sort, Partition, Sweep>()>);
+    static_assert(aabb::is_accepted<sentence_of<Sort, Partition, Sweep>()>);
 
 public:
     global_search()
@@ -133,7 +133,7 @@ private:
 /// own, and needs of the sort only that it tells of its swaps.
 template <SortPolicy Sort, PartitionPolicy Partition, CoherentSweep Sweep, CounterPolicy Counters>
 class global_search<Sort, Partition, Sweep, Counters> {
-    static_assert(is_accepted<sentence_of<Sort, Partition, Sweep>()>);
+    static_assert(aabb::is_accepted<sentence_of<Sort, Partition, Sweep>()>);
 
 public:
     global_search() = default;

@@ -31,7 +31,7 @@ export namespace aabb {
 /// query throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
-    static_assert(is_accepted<sentence_of<Tree, Triangle>()>);
+    static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);
 
 public:
     local_detection()

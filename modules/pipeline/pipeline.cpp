@@ -41,7 +41,7 @@ void pipeline::update(std::span<const pose> poses) {
     else
         require_poses(scene_, poses);
     poses_.assign(poses.begin(), poses.end());
-    if (global_) global_->update(world_->boxes());
+    if (global_) global_->update(boxes());
     frame_.taken();
 }
 
@@ -51,7 +51,6 @@ void pipeline::search() {
     candidates_.clear();
     if (global_) {
         global_->search(candidates_);
-        assert(std::ranges::all_of(candidates_, [&](index_pair p) { return p.a < p.b && p.b < poses_.size(); }));
     } else {
         for (std::uint32_t b = 0; b < poses_.size(); ++b)
             for (std::uint32_t a = 0; a < b; ++a) candidates_.push_back({a, b});

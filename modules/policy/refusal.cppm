@@ -42,7 +42,8 @@ template <class... Policies>
     return copy;
 }
 
-/// Whether the sentence refuses nothing: `static_assert(is_accepted<sentence_of<Sort, Sweep>()>)`.
+/// Whether the sentence refuses nothing: `static_assert(aabb::is_accepted<sentence_of<Sort, Sweep>()>)`. Clang prints
+/// the sentence only where the name is qualified.
 template <sentence Reason>
 inline constexpr bool is_accepted = Reason.text[0] == '\0';
 

@@ -5,7 +5,6 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
@@ -14,14 +13,15 @@ module;
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
 import aabb;
+import aabb.registry;
+import aabblab.conditions;
 import aabblab.figures;
+import aabblab.files;
+import aabblab.metrics;
 import aabblab.numbers;
-import aabblab.tables;
 import aabblab.statistics;
+import aabblab.tables;
 
 namespace aabblab {
 
@@ -31,8 +31,7 @@ namespace {
 using test_times = std::map<std::string, std::vector<std::vector<double>>>;
 
 void read_process(const std::filesystem::path& file, std::size_t process, test_times& times) {
-    std::ifstream in(file);
-    const nlohmann::json results = nlohmann::json::parse(in, nullptr, false);
+    const nlohmann::json results = nlohmann::json::parse(bytes_of_file(file), nullptr, false);
     if (!results.is_object() || !results.contains("benchmarks"))
         throw aabb::input_error(file.string() + " is not a result of Google Benchmark; remove it to measure again");
     for (const nlohmann::json& one : results["benchmarks"]) {

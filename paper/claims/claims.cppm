@@ -1,5 +1,4 @@
 module;
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>

@@ -12,6 +12,7 @@ module;
 module aabblab.reproduction;
 
 import aabblab.claims;
+import aabblab.conditions;
 import aabblab.figures;
 import aabblab.tables;
 import aabblab.statistics;

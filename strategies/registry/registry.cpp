@@ -140,8 +140,8 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
         const auto same_name = std::ranges::find(strategy_kind_infos, s.name, &strategy_kind_info::name);
         const auto own = std::ranges::find(entry_of(kind, choice).info.parameters, s.name, &parameter_info::name);
         if (same_name != strategy_kind_infos.end() && own == entry_of(kind, choice).info.parameters.end())
-            throw input_error(choice.name + " has no parameter " + s.name + ", which is a kind of its own: " + s.name +
-                              " = \"" + s.value + "\" beside " + std::string(name_of(kind)));
+            throw input_error(choice.name + " has no parameter " + s.name + ", which is a kind of its own: write " +
+                              s.name + " = \"" + s.value + "\" or --" + s.name + " " + s.value);
     }
     entry_of(kind, choice).check(choice);
 }

@@ -25,9 +25,11 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     const std::vector<std::string> base = {"collide", a, b, "--json", "--pose-b", "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
     const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
     REQUIRE(reference["pairs"] > 0);
-    const auto tree = GENERATE("canonical", "leafless", "shared_planes", "compressed", "compressed_literal:build=sah",
+    const auto tree = GENERATE("canonical", "leafless", "shared_planes", "compressed", "compressed_literal",
                                "compressed:leaf_test=triangle_box");
-    const program_result result = run_program(joined(base, {"--tree", tree, "--out", folder / "pairs.csv"}));
+    const auto build = GENERATE("median", "sah");
+    const program_result result =
+        run_program(joined(base, {"--tree", tree, "--build", build, "--out", folder / "pairs.csv"}));
     REQUIRE(result.status == 0);
     REQUIRE(result.err.find("b.off: ") != std::string::npos);  // a polygon was fanned
     const auto summary = nlohmann::json::parse(result.out);
@@ -43,7 +45,7 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
 
     std::size_t trees = summary["bytes"]["nodes"].get<std::size_t>() + summary["bytes"]["indices"].get<std::size_t>();
     REQUIRE(summary["bytes_per_triangle"] == static_cast<double>(trees) / 10);
-    REQUIRE(summary["method"] == std::string(tree) + " + exact");
+    REQUIRE(summary["method"] == (build == std::string("sah") ? "sah + " : "") + std::string(tree) + " + exact");
     REQUIRE(summary["exact"] == true);
     REQUIRE(run_program({"collide", a, b, "--triangle", "moller"}).out.find("moller (inexact)") != std::string::npos);
     REQUIRE(summary["bytes"]["triangles"] >= 120);
@@ -138,7 +140,7 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
         {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
         {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
         {{"--engine", "cgl"}, "did you mean 'cgal'?"},
-        {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --tree and --triangle"},
+        {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --build, --tree and --triangle"},
     }));
     const program_result result = run_program(joined({"collide", a, a, "--out", folder / "pairs.csv"}, options));
     INFO(result.err);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -14,15 +15,22 @@
 #include "temporary_folder.hpp"
 
 import aabb;
+import aabb.registry;
 import aabblab.comparison;
 import aabblab.configs;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.statistics;
 
 using aabblab::outcome;
 using aabblab::row;
+using aabblab::scene_choice;
 
 namespace {
+
+scene_choice brownian(std::uint64_t seed) {
+    return {"brownian", {{"objects", "10"}, {"frames", "3"}}, {}, seed};
+}
 
 /// Synthetic results: what plays a scene, and how long a frame takes it.
 struct measured {
@@ -44,7 +52,7 @@ std::vector<row> rows_of(const measured& m) {
             for (const auto& [sort, ms] : m.sorts) {
                 row& r = rows.emplace_back();
                 r.experiment = m.experiment;
-                r.scene = {"brownian", {{"objects", "10"}, {"frames", "3"}}, {}, seed};
+                r.scene = brownian(seed);
                 r.objects = 10;
                 r.frames = 4;
                 r.name[aabb::strategy_kind::sort] = sort;
@@ -108,7 +116,7 @@ TEST_CASE("What became slower against its base is found, though the machine is t
     REQUIRE(outcomes_of(b, {}) == std::vector{outcome::less, outcome::same});
     const auto found = compare(run_of({}), run_of(b), aabblab::compared::ratios_and_times);
     const aabblab::compared_scene& scene = found.scenes.at(0);
-    REQUIRE(scene.parameters == "objects=10 frames=3");
+    REQUIRE(scene.scene == whatever_seed(brownian(1)));
     REQUIRE(scene.base == "insertion");
     REQUIRE(scene.ratios[0].label == "std");
     CHECK(std::abs(scene.ratios[0].in_a - 2) < 0.02);
@@ -214,7 +222,7 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
     for (row& r : b.rows) r.status = "exact";
     const auto different = compare(a, b, aabblab::compared::ratios);
     REQUIRE(different.answers.size() == 1);
-    REQUIRE(different.answers[0].parameters == "objects=10 frames=3 seed=2");
+    REQUIRE(different.answers[0].scene == brownian(2));
     REQUIRE(different.answers[0].in_a == "00000000000000a2");
 }
 

@@ -1,6 +1,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -106,8 +107,10 @@ TEST_CASE("What was a key or a parameter once is refused with the new spelling")
         refusal_of(minimal + "[compose]\nsplit_large = 4\n")
             .ends_with("'split_large' is a strategy, not a kind of them; write prepare = \"split_large\", or { name = "
                        "\"split_large\", … } with its parameters"));
-    REQUIRE(refusal_of(minimal + "[compose]\ntree = { name = \"leafless\", build = \"sah\" }\n")
-                .ends_with("leafless has no parameter build, which is a kind of its own: build = \"sah\" beside tree"));
+    REQUIRE(
+        refusal_of(minimal + "[compose]\ntree = { name = \"leafless\", build = \"sah\" }\n")
+            .ends_with(
+                "leafless has no parameter build, which is a kind of its own: write build = \"sah\" or --build sah"));
 }
 
 TEST_CASE("A strategy may be written as the command line takes it, and what stands under quick is checked at once") {

@@ -46,7 +46,7 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     const auto options = GENERATE(values<std::vector<std::string>>(
         {{},
          {"--tree", "compressed:leaf_test=triangle_box", "--sort", "shell", "--partition", "axial_cut"},
-         {"--tree", "shared_planes:build=sah", "--sweep", "all_axes", "--split-large", "2"}}));
+         {"--tree", "shared_planes", "--build", "sah", "--sweep", "all_axes", "--prepare", "split_large:size=2"}}));
     const program_result result = run_program(joined(base, options));
     REQUIRE(result.status == 0);
     const auto summary = nlohmann::json::parse(result.out);
@@ -129,7 +129,8 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
     const std::string far = folder.write("far.txt", "0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n");
     const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
         {{"contacts", motion, mesh, mesh}, "moves 1 objects, but there are 2 meshes"},
-        {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --tree"},
+        {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"},
+         "--engine stands in for --build, --tree and --triangle"},
         {{"contacts", motion, mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
         {{"contacts", motion, mesh, "--out", motion}, "m.txt"},
         {{"contacts", motion, mesh, "--out", mesh}, "a.off"},

@@ -12,6 +12,7 @@
 #include "temporary_folder.hpp"
 
 import aabb;
+import aabblab.results;
 
 namespace {
 
@@ -69,21 +70,7 @@ std::string digest_of_run(const temporary_folder& folder, const std::string& sce
     const program_result result = run_program({"run", config, "--out", results});
     INFO(result.err);
     REQUIRE(result.status == 0);
-    std::istringstream lines(bytes_of_file(folder / "results" / "results.csv"));
-    std::string names;
-    std::string values;
-    std::getline(lines, names);
-    std::getline(lines, values);
-    const auto fields = [](const std::string& line) {
-        std::vector<std::string> all;
-        std::istringstream parts(line);
-        for (std::string part; std::getline(parts, part, ',');) all.push_back(part);
-        return all;
-    };
-    const std::vector<std::string> columns = fields(names);
-    for (std::size_t i = 0; i < columns.size(); ++i)
-        if (columns[i] == "digest") return fields(values).at(i);
-    return "no digest";
+    return aabblab::read_rows(folder / "results" / "results.csv").at(0).digest;
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
     REQUIRE(text.status == 0);
     const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
     std::vector<std::string> names;
-    for (const char* kind : {"sort", "partition", "sweep", "tree", "triangle"}) {
+    for (const char* kind : {"prepare", "sort", "partition", "sweep", "build", "tree", "triangle"}) {
         REQUIRE(all["strategies"][kind].size() >= 1);
         for (const auto& strategy : all["strategies"][kind]) {
             names.push_back(strategy["name"]);
@@ -125,8 +125,8 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
     }
     for (const char* group : {"engines", "engines_left_out", "scenes", "shapes", "metrics"})
         for (const auto& entry : all[group]) names.push_back(entry["name"]);
-    for (const char* expected :
-         {"insertion", "brute_force", "brownian", "icosphere", "time", "counts", "bytes", "error"})
+    for (const char* expected : {"insertion", "median", "brute_force", "brownian", "icosphere", "frame_ms",
+                                 "comparisons", "all_bytes", "missing"})
         REQUIRE(std::ranges::find(names, expected) != names.end());
     names.emplace_back("triangles=5000");  // of a shape
     for (const std::string& name : names) {

@@ -212,7 +212,7 @@ TEST_CASE("Results of another config are not continued") {
 
 TEST_CASE("What was not to be measured is not measured") {
     experiment e = boxes(5);
-    e.measured = {false, false, false, false};
+    e.recorded.clear();
     const temporary_folder folder;
     results_folder results(folder / "r", record_of(e), existing_results::refuse);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());

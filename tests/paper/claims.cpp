@@ -19,6 +19,7 @@
 #include "worlds.hpp"
 
 import aabblab.claims;
+import aabblab.conditions;
 import aabblab.configs;
 import aabblab.figures;
 import aabblab.reproduction;
@@ -221,7 +222,7 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
 
 TEST_CASE("A composition that was wrong everywhere leaves what compares it with others open") {
     const auto all = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
-        if (p.who.partition.ends_with("cell_size=8")) r.status = "inexact";
+        if (p.who[aabb::strategy_kind::partition].ends_with("cell_size=8")) r.status = "inexact";
     });
     CHECK(text_of(all.claims[4]) == "undecided");
 }
@@ -395,5 +396,5 @@ TEST_CASE(
 
 TEST_CASE("A ratio near the edge of the band is not rounded to the edge") {
     CHECK(ratio_text(endpoint{.where = {}, .ratio = 1.075, .range = {1.0479, 1.1027}}) == "1.075 (1.048 to 1.103)");
-    CHECK(ratio_text(endpoint{.where = {}, .ratio = 0.0182, .range = {0.0099, 12.34}}) == "0.018 (0.0099 to 12.3)");
+    CHECK(ratio_text(endpoint{.where = {}, .ratio = 0.0182, .range = {0.0099, 12.34}}) == "0.0182 (0.00990 to 12.3)");
 }

@@ -26,7 +26,7 @@ public:
 
 TEST_CASE("without global search every two objects are candidates, however far away") {
     const two_objects scene;
-    const auto local = compose(local_composition{}, instrumentation::none);
+    const auto local = compose_local_detection(composition{}, instrumentation::none);
     pipeline alone(scene, *local);
     std::vector<pose> poses(2);
     for (pose& p : poses) p.translation[0] = 1e300;

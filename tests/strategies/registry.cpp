@@ -41,8 +41,8 @@ TEST_CASE("an unknown strategy is refused with the nearest name") {
 
 TEST_CASE("a parameter that is a kind of its own is refused with the new spelling") {
     CHECK_THROWS_MATCHES(require_known(strategy_kind::tree, parse_strategy("canonical:build=sah")), input_error,
-                         Message("canonical has no parameter build, which is a kind of its own: build = \"sah\" beside "
-                                 "tree"));
+                         Message("canonical has no parameter build, which is a kind of its own: write build = \"sah\" "
+                                 "or --build sah"));
 }
 
 TEST_CASE("every kind has a stage, and a usual strategy that exists and makes sense") {

@@ -17,7 +17,7 @@ namespace aabblab {
 
 namespace {
 
-/// Lines of all scenes that are judged together.
+/// Lines of all scenes that are decided together.
 class family {
 public:
     explicit family(std::vector<compared_time> compared_scene::* to) : to_(to) {}
@@ -28,7 +28,7 @@ public:
         lines_.push_back(std::move(line));
     }
 
-    void judge(std::vector<compared_scene>& scenes) const {
+    void decide(std::vector<compared_scene>& scenes) const {
         std::vector<compared_time> times = judged(lines_);
         for (std::size_t i = 0; i < times.size(); ++i) {
             times[i].label = places_[i].second;
@@ -84,8 +84,8 @@ comparison compare(const run_results& a, const run_results& b, compared what) {
                 ratios.add(place, labels[i], both(&*base));
         }
     }
-    ratios.judge(found.scenes);
-    times.judge(found.scenes);
+    ratios.decide(found.scenes);
+    times.decide(found.scenes);
     return found;
 }
 

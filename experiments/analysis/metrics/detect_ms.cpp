@@ -14,7 +14,7 @@ metric detect_ms_metric() {
             metric_group::time,
             better::less,
             [](const row& r) -> std::optional<double> {
-                return r.detect_ms ? std::optional(*r.detect_ms / frames_after_first(r)) : std::nullopt;
+                return r.detect_ms && r.frames > 1 ? std::optional(*r.detect_ms / frames_after_first(r)) : std::nullopt;
             }};
 }
 

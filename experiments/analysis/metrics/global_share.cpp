@@ -12,10 +12,11 @@ metric global_share_metric() {
             "%",
             "share of global search in the time of the frames after frame 0",
             metric_group::time,
-            better::less,
+            better::neither,
             [](const row& r) -> std::optional<double> {
                 const double global = r.update_ms.value_or(0) + r.search_ms.value_or(0);
-                return r.detect_ms ? std::optional(100 * global / (global + *r.detect_ms)) : std::nullopt;
+                return r.detect_ms && r.frames > 1 ? std::optional(100 * global / (global + *r.detect_ms))
+                                                   : std::nullopt;
             }};
 }
 

@@ -19,13 +19,21 @@ double frames_after_first(const row& r) {
     return r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
 }
 
+// What is no work but says how the input, or its cut, was.
+static bool describes(aabb::work counted) {
+    using enum aabb::work;
+    return counted == inversions || counted == subsets || counted == segments_wanted || counted == segments_got ||
+           counted == pieces;
+}
+
 std::vector<metric> work_metrics() {
     std::vector<metric> all;
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         std::string spaced(aabb::work_names[i]);
         std::ranges::replace(spaced, '_', ' ');
         all.push_back({std::string(aabb::work_names[i]), "", spaced + " a frame after frame 0", metric_group::counts,
-                       better::less, [i](const row& r) -> std::optional<double> {
+                       describes(static_cast<aabb::work>(i)) ? better::neither : better::less,
+                       [i](const row& r) -> std::optional<double> {
                            if (!r.counts[i]) return std::nullopt;
                            return static_cast<double>(*r.counts[i]) / frames_after_first(r);
                        }});

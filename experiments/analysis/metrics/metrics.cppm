@@ -30,7 +30,8 @@ inline constexpr std::array<metric_group_info, 4> metric_groups = {{
     {"error", "pairs missed and invented against the exact answer"},
 }};
 
-enum class better : std::uint8_t { less, more };
+/// `neither` where a number describes what was played.
+enum class better : std::uint8_t { less, more, neither };
 
 /// One number of a row; empty where it has none.
 using row_value = std::function<std::optional<double>(const row&)>;

@@ -14,7 +14,7 @@ metric search_ms_metric() {
             metric_group::time,
             better::less,
             [](const row& r) -> std::optional<double> {
-                return r.search_ms ? std::optional(*r.search_ms / frames_after_first(r)) : std::nullopt;
+                return r.search_ms && r.frames > 1 ? std::optional(*r.search_ms / frames_after_first(r)) : std::nullopt;
             }};
 }
 

@@ -14,7 +14,7 @@ metric update_ms_metric() {
             metric_group::time,
             better::less,
             [](const row& r) -> std::optional<double> {
-                return r.update_ms ? std::optional(*r.update_ms / frames_after_first(r)) : std::nullopt;
+                return r.update_ms && r.frames > 1 ? std::optional(*r.update_ms / frames_after_first(r)) : std::nullopt;
             }};
 }
 

@@ -29,7 +29,7 @@ std::string text_of(const std::optional<Number>& value) {
 
 /// Those that are more than a median of rows.
 bool has_own_column(const metric& m) {
-    constexpr std::array<std::string_view, 5> own{"frame_ms", "build_ms", "bytes", "missing", "invented"};
+    constexpr std::array<std::string_view, 5> own{"frame_ms", "build_ms", "all_bytes", "missing", "invented"};
     return std::ranges::find(own, m.name) != own.end();
 }
 
@@ -66,7 +66,7 @@ table full_table_of(std::span<const scene_summary> scenes) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) t.columns.push_back({std::string(name_of(kind))});
     for (const char* name :
          {"engine", "rank", "status", "missing", "invented", "candidates", "contacts", "repeats", "frame_ms",
-          "frame_ms_low", "frame_ms_high", "ratio", "ratio_low", "ratio_high", "build_ms", "bytes"})
+          "frame_ms_low", "frame_ms_high", "ratio", "ratio_low", "ratio_high", "build_ms", "all_bytes"})
         t.columns.push_back({name});
     for (const metric& m : metrics())
         if (!has_own_column(m)) t.columns.push_back({m.name});

@@ -5,7 +5,6 @@ module;
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,7 +46,7 @@ void add_seed(const row& r, double share, summary_line& line) {
     add(line.missing, r.missing);
     add(line.invented, r.invented);
     if (line.status != "inexact") line.status = r.status;
-    const auto all_bytes = measured("bytes")(r);
+    const auto all_bytes = measured("all_bytes")(r);
     line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
     const auto of_trees = measured("tree_bytes")(r);
     if (of_trees.value_or(0) > 0) line.bytes_a_triangle = std::max(line.bytes_a_triangle, of_trees);

@@ -19,7 +19,9 @@ std::string grouped(std::uint64_t n) {
 
 std::string three_digits(double value) {
     if (value == 0) return "0";
-    const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+    // Rounding may carry into a digit more: 9.996 is 10.0.
+    const double rounded = std::stod(fmt::format("{:.2e}", value));
+    const int before_point = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + 1;
     return fmt::format("{:.{}f}", value, std::clamp(3 - before_point, 0, 6));
 }
 

@@ -10,8 +10,8 @@ import aabblab.results;
 
 namespace aabblab {
 
-metric bytes_metric() {
-    return {"bytes",
+metric all_bytes_metric() {
+    return {"all_bytes",
             "bytes",
             "memory of all parts but the meshes, which every composition reads",
             metric_group::bytes,

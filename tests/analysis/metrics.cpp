@@ -1,0 +1,40 @@
+#include <catch2/catch_test_macros.hpp>
+#include <optional>
+#include <set>
+#include <string>
+
+import aabblab.metrics;
+import aabblab.results;
+
+using aabblab::measured;
+using aabblab::row;
+
+TEST_CASE("A metric is no group, and no two have one name") {
+    std::set<std::string> names;
+    for (const aabblab::metric_group_info& group : aabblab::metric_groups) CHECK(names.emplace(group.name).second);
+    for (const std::string& name : aabblab::metric_names()) {
+        INFO(name);
+        CHECK(names.insert(name).second);
+    }
+}
+
+TEST_CASE("Times a frame need a frame after the first one") {
+    row r;
+    r.frames = 3;
+    r.first_ms = 5;
+    r.update_ms = 1;
+    r.search_ms = 2;
+    r.detect_ms = 9;
+    CHECK(measured("frame_ms")(r) == 6);
+    CHECK(measured("update_ms")(r) == 0.5);
+    CHECK(measured("search_ms")(r) == 1);
+    CHECK(measured("detect_ms")(r) == 4.5);
+    CHECK(measured("global_share")(r) == 25);
+    r.frames = 1;
+    r.update_ms = r.search_ms = r.detect_ms = 0;
+    CHECK(measured("frame_ms")(r) == 5);
+    for (const char* none : {"update_ms", "search_ms", "detect_ms", "global_share"}) {
+        INFO(none);
+        CHECK_FALSE(measured(none)(r).has_value());
+    }
+}

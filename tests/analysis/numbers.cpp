@@ -1,0 +1,15 @@
+#include <catch2/catch_test_macros.hpp>
+
+import aabblab.numbers;
+
+using aabblab::three_digits;
+
+TEST_CASE("Three digits are three, after a carry too") {
+    CHECK(three_digits(0) == "0");
+    CHECK(three_digits(0.0182) == "0.0182");
+    CHECK(three_digits(0.99951) == "1.00");
+    CHECK(three_digits(9.996) == "10.0");
+    CHECK(three_digits(99.96) == "100");
+    CHECK(three_digits(-9.996) == "-10.0");
+    CHECK(three_digits(1234.5) == "1234");
+}
