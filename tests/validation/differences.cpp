@@ -20,6 +20,11 @@ const std::vector<index_pair> none;
 const std::vector<index_pair> one = {{0, 0}};
 const triangle3f floor_triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 
+std::size_t total(const differences& all) {
+    return std::accumulate(all.missing.begin(), all.missing.end(), std::size_t{0}) +
+           std::accumulate(all.invented.begin(), all.invented.end(), std::size_t{0});
+}
+
 /// Of an engine that contradicts the exact answer on two triangles: the one class its difference is counted in.
 void require_class(difference_class expected, const triangle3f& s, const pose& pose_s, const triangle3f& t,
                    const pose& pose_t) {
@@ -28,7 +33,7 @@ void require_class(difference_class expected, const triangle3f& s, const pose& p
     const bool truth = exactly_intersect(s, relative_pose(pose_s, pose_t, bounds_of(b))(t));
     const differences all = truth ? compare_triangle_pairs(one, none, a, pose_s, b, pose_t)
                                   : compare_triangle_pairs(none, one, a, pose_s, b, pose_t);
-    REQUIRE(all.total() == 1);
+    REQUIRE(total(all) == 1);
     for (std::size_t c = 0; c < difference_class_names.size(); ++c) {
         INFO("counted as " << difference_class_names[c]);
         REQUIRE(all.missing[c] == (truth && c == static_cast<std::size_t>(expected)));
@@ -51,8 +56,8 @@ triangle3f moved(triangle3f t, vec3f by) {
 TEST_CASE("equal sets of pairs differ in nothing") {
     const mesh m = tetrahedron();
     const std::vector<index_pair> pairs = {{0, 1}, {0, 2}, {3, 3}};
-    REQUIRE(compare_triangle_pairs(pairs, pairs, m, {}, m, {}).total() == 0);
-    REQUIRE(compare_triangle_pairs(none, none, m, {}, m, {}).total() == 0);
+    REQUIRE(total(compare_triangle_pairs(pairs, pairs, m, {}, m, {})) == 0);
+    REQUIRE(total(compare_triangle_pairs(none, none, m, {}, m, {})) == 0);
 }
 
 TEST_CASE("every pair of one set alone is counted, wherever it stands") {
@@ -62,9 +67,9 @@ TEST_CASE("every pair of one set alone is counted, wherever it stands") {
     differences all = compare_triangle_pairs(exact, found, m, {}, m, {});
     REQUIRE(std::accumulate(all.missing.begin(), all.missing.end(), std::size_t{0}) == 2);
     REQUIRE(std::accumulate(all.invented.begin(), all.invented.end(), std::size_t{0}) == 3);
-    REQUIRE(all.total() == 5);
+    REQUIRE(total(all) == 5);
     all += all;
-    REQUIRE(all.total() == 10);
+    REQUIRE(total(all) == 10);
 }
 
 TEST_CASE("class names are in the order of the classes, each once") {

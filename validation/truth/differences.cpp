@@ -1,6 +1,5 @@
 module;
 #include <cstddef>
-#include <numeric>
 #include <span>
 
 module aabb.truth;
@@ -12,11 +11,6 @@ namespace aabb {
 // Defined in difference_class.cpp.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
                                      const triangle3f& t_seen_from_s, bool engine_says);
-
-std::size_t differences::total() const {
-    return std::accumulate(missing.begin(), missing.end(), std::size_t{0}) +
-           std::accumulate(invented.begin(), invented.end(), std::size_t{0});
-}
 
 differences& differences::operator+=(const differences& other) {
     for (std::size_t c = 0; c < missing.size(); ++c) {

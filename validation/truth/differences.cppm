@@ -28,7 +28,6 @@ struct differences {
     std::array<std::size_t, difference_class_names.size()> missing{};
     std::array<std::size_t, difference_class_names.size()> invented{};
 
-    [[nodiscard]] std::size_t total() const;
     differences& operator+=(const differences& other);
 };
 

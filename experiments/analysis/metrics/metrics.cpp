@@ -19,6 +19,12 @@ double frames_after_first(const row& r) {
     return r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
 }
 
+row_value a_frame(std::optional<double> row::* sum) {
+    return [sum](const row& r) -> std::optional<double> {
+        return r.*sum && r.frames > 1 ? std::optional(*(r.*sum) / frames_after_first(r)) : std::nullopt;
+    };
+}
+
 // What is no work but says how the input, or its cut, was.
 static bool describes(aabb::work counted) {
     using enum aabb::work;
