@@ -13,7 +13,7 @@
 #include "commands/commands.hpp"
 #include "commands/output.hpp"
 
-import aabb;
+import aabb.base;
 import aabblab.pair_output;
 
 namespace aabblab {
@@ -54,7 +54,7 @@ void require_standard_streams() {
 int fail(int status, const std::string& sentence) {
     try {
         flush_output();
-    } catch (const std::exception&) {
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
         // The sentence at hand is the earlier one.
     }
     note(sentence);

@@ -14,7 +14,10 @@ module;
 /// What benchmarks are run on: every strategy of a kind with the values of its parameters, and frames of a scene.
 export module aabblab.cases;
 
-import aabb;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.scenes;
 
 export namespace aabblab {

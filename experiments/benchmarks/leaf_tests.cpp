@@ -10,7 +10,8 @@
 #include "stages.hpp"
 #include "time_tests.hpp"
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
 import aabb.triangle.exact;
 import aabblab.walked_pairs;
 

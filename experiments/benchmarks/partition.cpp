@@ -8,7 +8,10 @@
 
 #include "stages.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.global_search;
+import aabb.policy;
 import aabb.strategies;
 import aabblab.cases;
 

@@ -12,7 +12,10 @@
 
 #include "stages.hpp"
 
-import aabb;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
 import aabb.strategies;
 import aabblab.cases;
 import aabblab.stopwatch;

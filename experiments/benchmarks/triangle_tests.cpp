@@ -7,7 +7,7 @@
 #include "stages.hpp"
 #include "time_tests.hpp"
 
-import aabb;
+import aabb.policy;
 import aabb.strategies;
 import aabblab.cases;
 import aabblab.walked_pairs;

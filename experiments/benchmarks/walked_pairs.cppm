@@ -9,7 +9,10 @@ module;
 /// What a walk over two meshes tests, so that each test can be made again by itself.
 export module aabblab.walked_pairs;
 
-import aabb;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
 import aabb.build.median;
 import aabb.tree.canonical;
 import aabb.triangle.exact;

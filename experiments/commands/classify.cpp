@@ -20,7 +20,10 @@
 #include "number.hpp"
 #include "output.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabblab.progress;
 

@@ -20,7 +20,11 @@
 // Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.digest;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.pair_output;

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-import aabb;
+import aabb.base;
+import aabb.policy;
 import aabb.registry;
 
 namespace aabblab {

@@ -13,7 +13,9 @@
 // Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.policy;
 import aabb.registry;
 import aabblab.files;
 import aabblab.scenes;

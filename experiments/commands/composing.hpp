@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-import aabb;
+import aabb.geometry;
 import aabb.registry;
 
 namespace aabblab {

@@ -17,7 +17,10 @@
 // Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.digest;
+import aabb.geometry;
+import aabb.pipeline;
 import aabb.registry;
 import aabb.validation;
 import aabblab.files;

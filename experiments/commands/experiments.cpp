@@ -17,7 +17,7 @@
 
 #include "experiments.hpp"
 
-import aabb;
+import aabb.policy;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.files;

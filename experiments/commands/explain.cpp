@@ -12,7 +12,7 @@
 
 #include "experiments.hpp"
 
-import aabb;
+import aabb.pipeline;
 import aabb.registry;
 import aabb.validation;
 import aabblab.configs;

@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "output.hpp"
 
-import aabb;
+import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.metrics;

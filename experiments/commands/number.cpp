@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-import aabb;
+import aabb.base;
 
 namespace aabblab {
 

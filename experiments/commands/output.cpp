@@ -19,7 +19,7 @@
 #include <string_view>
 #include <system_error>
 
-import aabb;
+import aabb.base;
 
 namespace aabblab {
 

@@ -15,7 +15,10 @@
 // Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.digest;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.files;

@@ -11,7 +11,7 @@
 
 #include "output.hpp"
 
-import aabb;
+import aabb.base;
 import aabblab.processes;
 
 namespace aabblab {

@@ -17,7 +17,7 @@
 
 #include "experiments.hpp"
 
-import aabb;
+import aabb.base;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.configs;

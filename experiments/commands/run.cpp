@@ -12,7 +12,6 @@
 
 #include "experiments.hpp"
 
-import aabb;
 import aabblab.configs;
 import aabblab.results;
 

@@ -21,7 +21,10 @@
 // Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.picture;

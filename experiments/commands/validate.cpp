@@ -12,7 +12,7 @@
 
 #include "experiments.hpp"
 
-import aabb;
+import aabb.base;
 import aabb.registry;
 import aabb.validation;
 import aabblab.configs;

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,7 +10,7 @@ module;
 module aabblab.configs;
 
 import :document;
-import aabb;
+import aabb.policy;
 import aabb.registry;
 
 namespace aabblab {

@@ -9,7 +9,6 @@ module;
 /// Experiments as config files: which scenes, which compositions and engines, what to measure.
 export module aabblab.configs;
 
-import aabb;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.results;

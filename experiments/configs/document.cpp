@@ -19,7 +19,8 @@ module;
 module aabblab.configs;
 
 import :document;
-import aabb;
+import aabb.base;
+import aabb.policy;
 
 namespace aabblab {
 

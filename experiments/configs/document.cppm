@@ -12,7 +12,8 @@ module;
 /// A TOML document as plain values that know their line, so that the rest of the config reader is free of TOML.
 module aabblab.configs:document;
 
-import aabb;
+import aabb.base;
+import aabb.policy;
 
 namespace aabblab {
 

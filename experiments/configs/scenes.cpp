@@ -17,7 +17,10 @@ module;
 module aabblab.configs;
 
 import :document;
-import aabb;
+import aabb.digest;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -79,7 +82,7 @@ std::vector<std::string> names_of(const document& doc, const node& scene, const 
 
 std::vector<std::string> meshes_of(const document& doc, const node& scene, std::vector<std::string>& notes) {
     std::vector<std::string> meshes = names_of(doc, scene, "meshes");
-    const std::vector<std::string> instead = names_of(doc, scene, "without_data");
+    std::vector<std::string> instead = names_of(doc, scene, "without_data");
     const auto missing = std::ranges::find_if_not(meshes, is_there);
     if (instead.empty() || missing == meshes.end()) return meshes;
     std::string note = *missing + " is not there (./aabblab data fetches it); instead the scene has";

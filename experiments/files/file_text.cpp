@@ -6,7 +6,7 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
 import :file_text;
 
 namespace aabblab {

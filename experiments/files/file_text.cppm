@@ -12,7 +12,7 @@ module;
 /// A whole file in memory, and how its words are quoted to the user.
 module aabblab.files:file_text;
 
-import aabb;
+import aabb.base;
 
 namespace aabblab {
 

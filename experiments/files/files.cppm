@@ -12,7 +12,8 @@ module;
 /// names the file, the line where there is one, and what was expected.
 export module aabblab.files;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
 export import :loaded_mesh;
 
 export namespace aabblab {
@@ -61,7 +62,7 @@ void write_recording(aabb::box_scene& scene, const std::string& name, const std:
 /// writing fails, on a full disk too.
 class output_file {
 public:
-    explicit output_file(std::filesystem::path file);
+    explicit output_file(const std::filesystem::path& file);
     output_file(const output_file&) = delete;
     output_file& operator=(const output_file&) = delete;
     ~output_file();

@@ -11,7 +11,8 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
 import :file_text;
 import :gltf_asset;
 import :mesh_builder;

@@ -11,7 +11,6 @@ module;
 /// is checked where they are used. (Khronos Group, "glTF 2.0 Specification", 2021.)
 module aabblab.files:gltf_asset;
 
-import aabb;
 import :file_text;
 
 namespace aabblab {

@@ -14,7 +14,7 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
 import :file_text;
 import :gltf_asset;
 

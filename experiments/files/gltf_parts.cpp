@@ -3,12 +3,13 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
 import :file_text;
 import :gltf_asset;
 

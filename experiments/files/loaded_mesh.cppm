@@ -4,7 +4,7 @@ module;
 
 export module aabblab.files:loaded_mesh;
 
-import aabb;
+import aabb.geometry;
 
 export namespace aabblab {
 

@@ -7,7 +7,7 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
 import :sizes;
 
 namespace aabblab {

@@ -10,7 +10,9 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.policy;
 import :file_text;
 import :loaded_mesh;
 import :readers;

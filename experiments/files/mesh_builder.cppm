@@ -9,7 +9,8 @@ module;
 /// A mesh as its file brings it: vertices, faces of any number of corners, and what became of them.
 module aabblab.files:mesh_builder;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
 import :loaded_mesh;
 
 namespace aabblab {

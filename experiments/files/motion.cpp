@@ -11,7 +11,9 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
 import :file_text;
 import :text_scanner;
 

@@ -10,7 +10,7 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :readers;

@@ -6,7 +6,6 @@ module;
 
 module aabblab.files;
 
-import aabb;
 import :file_text;
 import :mesh_builder;
 import :readers;

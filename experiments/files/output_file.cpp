@@ -14,7 +14,7 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
 import :file_text;
 import :sizes;
 
@@ -72,7 +72,7 @@ struct output_file::state {
     [[nodiscard]] static std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 };
 
-output_file::output_file(std::filesystem::path file) : state_(std::make_unique<state>()) {
+output_file::output_file(const std::filesystem::path& file) : state_(std::make_unique<state>()) {
     if (file.empty()) throw aabb::input_error("the file to write has no name");
     state_->target = file;
     std::error_code error;

@@ -5,7 +5,6 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -14,7 +13,8 @@ module;
 
 module aabblab.files;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :ply_header;
@@ -109,7 +109,7 @@ private:
         if (bytes_.size() < raw.size())
             throw aabb::input_error(file_ + ": ends in element " + std::to_string(index_) + " of " +
                                     std::to_string(element_->count) + " elements " + quoted(element_->name));
-        std::memcpy(raw.data(), bytes_.data(), raw.size());
+        bytes_.copy(raw.data(), raw.size());
         bytes_.remove_prefix(raw.size());
         if (big_) std::ranges::reverse(raw);
         return std::bit_cast<Value>(raw);

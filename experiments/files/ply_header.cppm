@@ -11,7 +11,6 @@ module;
 /// The header of a PLY file: which elements follow, with which properties.
 module aabblab.files:ply_header;
 
-import aabb;
 import :file_text;
 import :text_scanner;
 

@@ -13,7 +13,8 @@ module;
 /// Words of a text file, line by line; numbers in them; errors with the file and the line.
 module aabblab.files:text_scanner;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
 import :file_text;
 
 namespace aabblab {
@@ -54,9 +55,7 @@ public:
     }
 
     /// Begins to read the line at a part of it.
-    void back_to(std::string_view word) {
-        line_ = {word.data(), static_cast<std::size_t>(line_.data() + line_.size() - word.data())};
-    }
+    void back_to(std::string_view word) { line_ = std::string_view(word.begin(), line_.end()); }
 
     [[nodiscard]] std::size_t line() const noexcept { return number_; }
     /// What comes after the line.

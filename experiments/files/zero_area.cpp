@@ -1,6 +1,6 @@
 module aabblab.files;
 
-import aabb;
+import aabb.geometry;
 import :mesh_builder;
 
 namespace aabblab {

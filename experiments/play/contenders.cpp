@@ -10,7 +10,8 @@ module;
 module aabblab.play;
 
 import :player;
-import aabb;
+import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.configs;

@@ -11,7 +11,7 @@ module;
 /// Plays the scenes of an experiment through every composition and engine: validates, then times.
 export module aabblab.play;
 
-import aabb;
+import aabb.counters;
 import aabb.registry;
 import aabb.validation;
 import aabblab.configs;

@@ -14,7 +14,12 @@ module;
 module aabblab.play;
 
 import :player;
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.scenes;
 import aabblab.stopwatch;
 

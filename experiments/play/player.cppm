@@ -12,7 +12,11 @@ module;
 /// Scenes and those who play them.
 export module aabblab.play:player;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.digest;
+import aabb.geometry;
+import aabb.pipeline;
 import aabblab.results;
 import aabblab.scenes;
 

@@ -9,7 +9,6 @@ module;
 module aabblab.play;
 
 import :player;
-import aabb;
 import aabblab.configs;
 import aabblab.metrics;
 import aabblab.progress;

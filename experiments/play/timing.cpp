@@ -6,7 +6,7 @@ module;
 module aabblab.play;
 
 import :player;
-import aabb;
+import aabb.pipeline;
 import aabblab.scenes;
 import aabblab.stopwatch;
 

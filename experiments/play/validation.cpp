@@ -15,7 +15,9 @@ module;
 module aabblab.play;
 
 import :player;
-import aabb;
+import aabb.counters;
+import aabb.geometry;
+import aabb.pipeline;
 import aabb.validation;
 import aabblab.progress;
 import aabblab.results;

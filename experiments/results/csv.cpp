@@ -9,7 +9,7 @@ module;
 module aabblab.results;
 
 import :csv;
-import aabb;
+import aabb.base;
 
 namespace aabblab {
 

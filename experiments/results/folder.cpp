@@ -14,7 +14,7 @@ module;
 
 module aabblab.results;
 
-import aabb;
+import aabb.base;
 import aabblab.files;
 import aabblab.scenes;
 

@@ -9,7 +9,7 @@ module;
 
 module aabblab.results;
 
-import aabb;
+import aabb.base;
 
 namespace aabblab {
 

@@ -17,7 +17,7 @@ module;
 
 module aabblab.results;
 
-import aabb;
+import aabb.base;
 import aabblab.files;
 import aabblab.scenes;
 

@@ -16,7 +16,7 @@ module;
 /// Results of an experiment in a folder: results.csv, manifest.json, differences.csv.
 export module aabblab.results;
 
-import aabb;
+import aabb.counters;
 import aabb.registry;
 import aabblab.scenes;
 export import :csv;

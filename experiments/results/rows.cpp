@@ -13,7 +13,8 @@ module;
 module aabblab.results;
 
 import :csv;
-import aabb;
+import aabb.base;
+import aabb.counters;
 import aabb.registry;
 import aabblab.files;
 import aabblab.scenes;

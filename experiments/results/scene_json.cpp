@@ -6,7 +6,7 @@ module;
 
 module aabblab.results;
 
-import aabb;
+import aabb.policy;
 import aabblab.scenes;
 
 namespace aabblab {

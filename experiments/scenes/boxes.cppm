@@ -11,7 +11,9 @@ module;
 /// What the kinds of scenes of boxes share.
 module aabblab.scenes:boxes;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 import :drift;
 import :random;

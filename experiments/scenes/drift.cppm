@@ -7,7 +7,7 @@ module;
 /// Points that drift, and roots that are the same everywhere.
 module aabblab.scenes:drift;
 
-import aabb;
+import aabb.geometry;
 import :random;
 
 namespace aabblab {

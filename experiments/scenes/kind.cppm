@@ -15,7 +15,9 @@ module;
 /// kind that plays a file has no seed: it opens what its configuration names as `file`.
 module aabblab.scenes:kind;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 import :scene_choice;
 

@@ -13,7 +13,9 @@ module;
 
 module aabblab.scenes;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.policy;
 import aabblab.files;
 import :icosphere;
 import :kind;

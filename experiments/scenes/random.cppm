@@ -7,7 +7,7 @@ module;
 /// distributions, and of functions only the square root is rounded alike everywhere.
 module aabblab.scenes:random;
 
-import aabb;
+import aabb.geometry;
 
 namespace aabblab {
 

@@ -5,7 +5,7 @@ module;
 /// Rotations as unit quaternions in double, and what places a mesh with one.
 module aabblab.scenes:rotation;
 
-import aabb;
+import aabb.geometry;
 import :random;
 
 namespace aabblab {

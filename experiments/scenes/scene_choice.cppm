@@ -7,7 +7,7 @@ module;
 
 export module aabblab.scenes:scene_choice;
 
-import aabb;
+import aabb.policy;
 
 export namespace aabblab {
 

@@ -7,7 +7,9 @@ module;
 
 module aabblab.scenes;
 
-import aabb;
+import aabb.base;
+import aabb.pipeline;
+import aabb.policy;
 import :kind;
 
 namespace aabblab {
@@ -53,7 +55,7 @@ std::string settings_text(const scene_choice& scene) {
 }
 
 std::string parameters_text(const scene_choice& scene) {
-    const std::string settings = settings_text(scene);
+    std::string settings = settings_text(scene);
     if (!scene.seed) return settings;
     return settings + (settings.empty() ? "" : " ") + "seed=" + std::to_string(*scene.seed);
 }

@@ -10,7 +10,8 @@ module;
 /// Scenes by name: boxes or meshes that move, the same for the same seed on every machine, or as a file says.
 export module aabblab.scenes;
 
-import aabb;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 export import :scene_choice;
 export import :spacing;

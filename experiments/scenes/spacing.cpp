@@ -3,7 +3,7 @@ module;
 
 module aabblab.scenes;
 
-import aabb;
+import aabb.geometry;
 import :drift;
 
 namespace aabblab {

@@ -3,7 +3,7 @@ module;
 
 export module aabblab.scenes:spacing;
 
-import aabb;
+import aabb.geometry;
 
 export namespace aabblab {
 

@@ -13,7 +13,7 @@ module;
 
 module aabblab.claims;
 
-import aabb;
+import aabb.base;
 import aabb.registry;
 import aabblab.conditions;
 import aabblab.figures;

@@ -86,7 +86,7 @@ struct told_apart {
 
 std::string simplest_condition(std::span<const endpoint> all) {
     const told_apart found(all);
-    const auto tells_apart = [&](auto holds) { return found.right(holds) == found.decided.size(); };
+    const auto tells_apart = [&](const auto& holds) { return found.right(holds) == found.decided.size(); };
     for (const predicate& p : found.predicates)
         if (tells_apart(p.holds)) return p.text;
     // Nearly right and simple is better than right by an exception, which another run may not have.

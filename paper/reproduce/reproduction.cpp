@@ -9,7 +9,6 @@ module;
 
 module aabblab.reproduction;
 
-import aabb;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.figures;

@@ -5,7 +5,9 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.global_search;
 import :box_engine;
 
 namespace aabb {

@@ -6,7 +6,11 @@ module;
 
 module aabb.engines:box_engine;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
 
 namespace aabb {
 

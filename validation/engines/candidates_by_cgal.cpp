@@ -8,7 +8,7 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.geometry;
 import :numbered_box;
 import :pairwise;
 

@@ -6,7 +6,7 @@ module;
 /// What a file in NAME/ says of the engine NAME; seen by this module only.
 module aabb.engines:engine;
 
-import aabb;
+import aabb.pipeline;
 
 namespace aabb {
 

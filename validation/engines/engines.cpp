@@ -8,7 +8,9 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.pipeline;
+import aabb.policy;
 import :engine;
 
 namespace aabb {

@@ -8,7 +8,8 @@ module;
 /// an importer.
 export module aabb.engines;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
 
 export namespace aabb {
 

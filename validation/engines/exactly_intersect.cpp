@@ -5,7 +5,7 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.geometry;
 
 namespace aabb {
 

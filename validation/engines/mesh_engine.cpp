@@ -4,7 +4,8 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
 import :mesh_engine;
 
 namespace aabb {

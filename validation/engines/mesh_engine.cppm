@@ -6,7 +6,10 @@ module;
 
 module aabb.engines:mesh_engine;
 
-import aabb;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
 
 namespace aabb {
 

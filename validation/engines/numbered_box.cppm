@@ -3,7 +3,7 @@ module;
 
 module aabb.engines:numbered_box;
 
-import aabb;
+import aabb.geometry;
 
 namespace aabb {
 

@@ -10,7 +10,10 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
 import :mesh_engine;
 import :pairwise;
 

@@ -5,7 +5,8 @@ module;
 
 module aabb.engines:pairwise;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
 
 namespace aabb {
 

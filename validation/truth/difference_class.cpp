@@ -11,7 +11,7 @@ module;
 
 module aabb.truth;
 
-import aabb;
+import aabb.geometry;
 
 namespace aabb {
 

@@ -4,7 +4,7 @@ module;
 
 module aabb.truth;
 
-import aabb;
+import aabb.geometry;
 
 namespace aabb {
 

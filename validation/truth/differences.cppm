@@ -7,7 +7,7 @@ module;
 
 export module aabb.truth:differences;
 
-import aabb;
+import aabb.geometry;
 
 export namespace aabb {
 

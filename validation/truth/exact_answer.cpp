@@ -10,7 +10,8 @@ module;
 
 module aabb.truth;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
 import aabb.engines;
 
 namespace aabb {

@@ -8,7 +8,8 @@ module;
 
 export module aabb.truth:exact_answer;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
 
 export namespace aabb {
 

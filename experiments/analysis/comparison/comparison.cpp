@@ -8,7 +8,7 @@ module;
 
 module aabblab.comparison;
 
-import aabb;
+import aabb.base;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.statistics;

@@ -12,7 +12,7 @@ module;
 
 module aabblab.comparison;
 
-import aabb;
+import aabb.base;
 import aabblab.results;
 
 namespace aabblab {

@@ -11,7 +11,7 @@ module;
 
 module aabblab.comparison;
 
-import aabb;
+import aabb.counters;
 import aabblab.results;
 
 namespace aabblab {

@@ -15,7 +15,7 @@ module;
 
 module aabblab.conditions;
 
-import aabb;
+import aabb.policy;
 import aabb.registry;
 import aabblab.figures;
 import aabblab.metrics;

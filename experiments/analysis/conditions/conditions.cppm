@@ -14,7 +14,6 @@ module;
 /// What experiments measured, read from their results folders: condition by condition, whatever seeds and processes.
 export module aabblab.conditions;
 
-import aabb;
 import aabb.registry;
 import aabblab.figures;
 import aabblab.metrics;

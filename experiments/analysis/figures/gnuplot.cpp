@@ -11,7 +11,7 @@ module;
 
 module aabblab.figures;
 
-import aabb;
+import aabb.base;
 import aabblab.files;
 import aabblab.processes;
 

@@ -10,7 +10,9 @@ module;
 
 module aabblab.metrics;
 
-import aabb;
+import aabb.base;
+import aabb.counters;
+import aabb.policy;
 import aabblab.results;
 
 namespace aabblab {

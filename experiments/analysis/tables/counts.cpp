@@ -13,7 +13,7 @@ module;
 
 module aabblab.tables;
 
-import aabb;
+import aabb.counters;
 import aabblab.numbers;
 import aabblab.results;
 

@@ -12,7 +12,6 @@ module;
 
 module aabblab.tables;
 
-import aabb;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.results;

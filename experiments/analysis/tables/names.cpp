@@ -8,7 +8,6 @@ module;
 
 module aabblab.tables;
 
-import aabb;
 import aabb.registry;
 import aabblab.results;
 

@@ -14,7 +14,6 @@ module;
 
 module aabblab.tables;
 
-import aabb;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.results;

@@ -11,7 +11,7 @@ module;
 /// Results as tables, scene by scene.
 export module aabblab.tables;
 
-import aabb;
+import aabb.counters;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.results;

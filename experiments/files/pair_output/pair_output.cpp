@@ -13,7 +13,7 @@ module;
 
 module aabblab.pair_output;
 
-import aabb;
+import aabb.geometry;
 import aabblab.files;
 
 namespace aabblab {

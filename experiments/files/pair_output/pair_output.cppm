@@ -10,7 +10,7 @@ module;
 /// Pairs and contacts on their way out of the program.
 export module aabblab.pair_output;
 
-import aabb;
+import aabb.geometry;
 import aabblab.files;
 
 export namespace aabblab {

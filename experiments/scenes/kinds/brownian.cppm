@@ -9,7 +9,9 @@ module;
 
 module aabblab.scenes:brownian;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 import :drift;
 import :random;

@@ -9,7 +9,8 @@ module;
 
 module aabblab.scenes:clustered;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :boxes;
 import :drift;
 import :random;

@@ -9,7 +9,9 @@ module;
 
 module aabblab.scenes:deforming;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import :circle;
 import :random;
 import :rotation;

@@ -9,7 +9,8 @@ module;
 
 module aabblab.scenes:free_fall;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :boxes;
 import :random;
 

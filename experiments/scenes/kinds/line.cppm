@@ -7,7 +7,7 @@ module;
 
 module aabblab.scenes:line;
 
-import aabb;
+import aabb.geometry;
 import :boxes;
 import :drift;
 import :random;

@@ -9,7 +9,9 @@ module;
 
 module aabblab.scenes:mesh_pair;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import :random;
 import :rotation;
 

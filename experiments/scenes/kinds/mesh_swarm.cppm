@@ -12,7 +12,9 @@ module;
 
 module aabblab.scenes:mesh_swarm;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 import :drift;
 import :random;

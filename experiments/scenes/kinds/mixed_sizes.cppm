@@ -11,7 +11,8 @@ module;
 
 module aabblab.scenes:mixed_sizes;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :boxes;
 import :drift;
 import :random;

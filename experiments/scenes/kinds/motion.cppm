@@ -8,7 +8,9 @@ module;
 
 module aabblab.scenes:motion;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 
 namespace aabblab {

@@ -8,7 +8,8 @@ module;
 
 module aabblab.scenes:one_huge;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :boxes;
 import :drift;
 import :random;

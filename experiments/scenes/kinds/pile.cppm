@@ -9,7 +9,8 @@ module;
 
 module aabblab.scenes:pile;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :boxes;
 import :drift;
 import :random;

@@ -8,7 +8,8 @@ module;
 
 module aabblab.scenes:population;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :boxes;
 import :drift;
 import :random;
@@ -56,8 +57,9 @@ private:
     }
 
     [[nodiscard]] aabb::vec3d parking_place(std::size_t i) const {
-        return {gap_ * static_cast<double>(i % places_), gap_ * static_cast<double>(i / places_ % places_),
-                -1 - gap_ * static_cast<double>(i / (places_ * places_))};
+        const std::size_t row = i / places_, layer = row / places_;
+        return {gap_ * static_cast<double>(i % places_), gap_ * static_cast<double>(row % places_),
+                -1 - gap_ * static_cast<double>(layer)};
     }
 
     double turnover_;

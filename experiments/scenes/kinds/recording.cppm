@@ -6,7 +6,8 @@ module;
 
 module aabblab.scenes:recording;
 
-import aabb;
+import aabb.pipeline;
+import aabb.policy;
 import aabblab.files;
 
 namespace aabblab {

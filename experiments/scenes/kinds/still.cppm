@@ -9,7 +9,7 @@ module;
 
 module aabblab.scenes:still;
 
-import aabb;
+import aabb.geometry;
 import :boxes;
 import :random;
 

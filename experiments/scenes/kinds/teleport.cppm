@@ -7,7 +7,7 @@ module;
 
 module aabblab.scenes:teleport;
 
-import aabb;
+import aabb.geometry;
 import :boxes;
 import :random;
 

@@ -15,7 +15,7 @@ module;
 
 module aabblab.picture;
 
-import aabb;
+import aabb.geometry;
 import :panel;
 import :survey;
 

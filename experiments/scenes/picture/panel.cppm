@@ -8,7 +8,7 @@ module;
 /// The drawing of one frame, with its axes.
 module aabblab.picture:panel;
 
-import aabb;
+import aabb.geometry;
 import :survey;
 
 namespace aabblab {

@@ -14,7 +14,8 @@ module;
 
 module aabblab.picture;
 
-import aabb;
+import aabb.geometry;
+import aabb.pipeline;
 import aabb.validation;
 import :panel;
 

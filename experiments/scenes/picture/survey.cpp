@@ -11,7 +11,7 @@ module;
 
 module aabblab.picture;
 
-import aabb;
+import aabb.geometry;
 import aabblab.scenes;
 
 namespace aabblab {

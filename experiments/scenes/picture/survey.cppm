@@ -9,7 +9,7 @@ module;
 
 export module aabblab.picture:survey;
 
-import aabb;
+import aabb.geometry;
 
 export namespace aabblab {
 

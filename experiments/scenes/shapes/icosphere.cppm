@@ -10,7 +10,8 @@ module;
 
 module aabblab.scenes:icosphere;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 
 namespace aabblab {
 

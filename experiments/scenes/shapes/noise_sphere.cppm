@@ -6,7 +6,8 @@ module;
 
 module aabblab.scenes:noise_sphere;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :circle;
 import :random;
 import :rings;

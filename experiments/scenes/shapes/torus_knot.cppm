@@ -6,7 +6,8 @@ module;
 
 module aabblab.scenes:torus_knot;
 
-import aabb;
+import aabb.geometry;
+import aabb.policy;
 import :circle;
 import :rings;
 

@@ -9,7 +9,9 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
 import :box_engine;
 import :engine;
 import :pairwise;

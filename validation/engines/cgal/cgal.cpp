@@ -8,7 +8,9 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
 import :box_engine;
 import :engine;
 import :numbered_box;

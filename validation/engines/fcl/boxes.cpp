@@ -10,7 +10,9 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
 import :box_engine;
 
 namespace aabb {

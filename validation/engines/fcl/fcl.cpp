@@ -3,7 +3,7 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.pipeline;
 import :engine;
 
 namespace aabb {

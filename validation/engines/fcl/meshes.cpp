@@ -15,7 +15,9 @@ module;
 
 module aabb.engines;
 
-import aabb;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
 import :mesh_engine;
 
 namespace aabb {
