@@ -112,8 +112,8 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
     const program_result explained = run_program({"explain", config});
     CHECK(explained.status == 0);
     CHECK(explained.out.find("motion (file=" + motion) != std::string::npos);
-    const std::string manifest = bytes_of_file(folder / "out/manifest.json");
-    for (const auto& scene : nlohmann::json::parse(manifest)["scenes"]) {
+    const auto manifest = nlohmann::json::parse(bytes_of_file(folder / "out/manifest.json"));
+    for (const auto& scene : manifest["scenes"]) {
         const auto& parameters = scene["parameters"];
         const std::string of = "file=" + parameters["file"].get<std::string>();
         CHECK(scene["digest"] == digests.at(parameters.contains("meshes") ? of + " meshes=" + mesh : of));

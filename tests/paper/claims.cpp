@@ -345,7 +345,8 @@ TEST_CASE(
     CHECK(page.find("shell is wrong on brownian, frame 3") != std::string::npos);
     CHECK(page.find("<script") == std::string::npos);
     CHECK(page.find("<style>\n:root{") != std::string::npos);
-    const std::regex address(R"((src|href)="([^"]*))");
+    // Figures are long addresses, and std::regex takes stack for each character.
+    const std::regex address(R"((src|href)="([^"]{0,5}))");
     for (std::sregex_iterator i(page.begin(), page.end(), address), end; i != end; ++i) {
         const std::string to = (*i)[2];
         CHECK((to.starts_with("data:") || to.starts_with("#")));
