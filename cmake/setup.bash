@@ -23,7 +23,12 @@ needs=(
 # The same of what each engine needs, as its own line says. Where that is not to be had the engine is left out.
 mapfile -t engine_needs < <(sed -nE 's/^aabblab_engine\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\1 \2 \3/p' \
     "$root/validation/engines/CMakeLists.txt")
-[[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=('clang-format-19 - clang-format-19' 'clang-tidy-19 - clang-tidy-19')
+[[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=(
+    'clang-format-19   -  clang-format-19'
+    'clang-tidy-19     -  clang-tidy-19'
+    'llvm-19-dev       -  llvm-config-19'
+    'libclang-19-dev   -  </usr/lib/llvm-19/include/clang/Basic/Version.inc>'
+)
 # Debian 12 has versions this new in its backports only.
 declare -A least=([cmake]=3.28 [catch2]=3.0)
 backports_file=/etc/apt/sources.list.d/aabblab-backports.sources
