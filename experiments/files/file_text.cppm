@@ -22,7 +22,7 @@ struct file_text {
 };
 
 /// The word in quotes, for a sentence: at most 40 bytes of it, and no part of a character.
-[[nodiscard]] inline std::string quoted(std::string_view word) {
+[[nodiscard]] inline std::string in_quotes(std::string_view word) {
     std::size_t end = std::min<std::size_t>(word.size(), 40);
     while (end > 0 && end < word.size() && (static_cast<unsigned char>(word[end]) & 0xc0U) == 0x80) --end;
     return "'" + std::string(word.substr(0, end)) + (end < word.size() ? "…'" : "'");

@@ -73,7 +73,7 @@ std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::opti
     }
     if (buffer.uri->starts_with("data:")) return bytes_of_data(*buffer.uri);
     if (buffer.uri->find("://") != std::string::npos)
-        throw aabb::input_error("is at " + aabblab::quoted(*buffer.uri) + ", but only files and data: URIs are read");
+        throw aabb::input_error("is at " + in_quotes(*buffer.uri) + ", but only files and data: URIs are read");
     const std::filesystem::path beside = std::filesystem::path(file.name).replace_filename(unescaped(*buffer.uri));
     const std::size_t size = require_file(beside);
     require_memory(file.name + ": its buffers", static_cast<double>(loaded) + static_cast<double>(size));

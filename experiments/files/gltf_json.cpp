@@ -141,7 +141,7 @@ void require_no_extension(const object& root) {
     for (const std::string& name : root.texts("extensionsRequired")) {
         const auto is_about = [&](std::string_view looks) { return name.find(looks) != std::string::npos; };
         if (!is_about("material") && !is_about("texture") && !is_about("light"))
-            root.fail("requires the extension " + aabblab::quoted(name) + ", which is not supported");
+            root.fail("requires the extension " + in_quotes(name) + ", which is not supported");
     }
 }
 
@@ -198,8 +198,7 @@ gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
     const std::optional<object> about = root.member("asset");
     const std::string version = about ? about->text("version").value_or("") : "";
     if (!version.starts_with("2."))
-        throw aabb::input_error(file.name + ": is glTF of version " + aabblab::quoted(version) +
-                                "; only version 2 is read");
+        throw aabb::input_error(file.name + ": is glTF of version " + in_quotes(version) + "; only version 2 is read");
     require_no_extension(root);
     gltf_asset asset;
     for (const object& buffer : root.objects("buffers"))

@@ -55,7 +55,7 @@ loaded_mesh read_off(const file_text& file) {
     }
     if (in.next_line())
         in.fail("expected the end of the file after " + std::to_string(vertices) + " vertices and " +
-                std::to_string(faces) + " faces, found " + quoted(in.word()));
+                std::to_string(faces) + " faces, found " + in_quotes(in.word()));
     return mesh.finish(in.rounded(), file.name + ":", 0);
 }
 

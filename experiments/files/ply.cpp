@@ -35,7 +35,7 @@ public:
     void begin(const element& e, std::uint64_t index) {
         if (!in_.next_line())
             in_.ends("after " + std::to_string(index) + " of " + std::to_string(e.count) + " elements " +
-                     quoted(e.name));
+                     in_quotes(e.name));
     }
     [[nodiscard]] float coordinate(scalar) { return in_.coordinate(in_.word()); }
     [[nodiscard]] std::uint32_t whole(scalar) { return in_.whole<std::uint32_t>("a whole number"); }
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] std::size_t place(std::uint64_t) const { return in_.line(); }
     void end() {
         if (in_.next_line())
-            in_.fail("expected the end of the file after the last element, found " + quoted(in_.word()));
+            in_.fail("expected the end of the file after the last element, found " + in_quotes(in_.word()));
     }
     [[nodiscard]] std::size_t rounded() const { return in_.rounded(); }
     static constexpr std::string_view before_place = ":";
@@ -108,7 +108,7 @@ private:
         std::array<char, sizeof(Value)> raw{};
         if (bytes_.size() < raw.size())
             throw aabb::input_error(file_ + ": ends in element " + std::to_string(index_) + " of " +
-                                    std::to_string(element_->count) + " elements " + quoted(element_->name));
+                                    std::to_string(element_->count) + " elements " + in_quotes(element_->name));
         bytes_.copy(raw.data(), raw.size());
         bytes_.remove_prefix(raw.size());
         if (big_) std::ranges::reverse(raw);

@@ -96,7 +96,7 @@ inline void require_roles(const text_scanner& in, const element& e) {
         require(role::z, "property z");
     }
     if (e.name == "face") require(role::corners, "list property vertex_indices");
-    if (e.properties.empty()) in.fail("the element " + quoted(e.name) + " has no properties");
+    if (e.properties.empty()) in.fail("the element " + in_quotes(e.name) + " has no properties");
 }
 
 /// @throws aabb::input_error with the line.

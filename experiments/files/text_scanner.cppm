@@ -66,7 +66,7 @@ public:
         throw aabb::input_error(file_ + ":" + std::to_string(number_) + ": " + sentence);
     }
     [[noreturn]] void expected(const std::string& what, std::string_view found) const {
-        fail("expected " + what + ", found " + (found.empty() ? "the end of the line" : quoted(found)));
+        fail("expected " + what + ", found " + (found.empty() ? "the end of the line" : in_quotes(found)));
     }
     /// For a file that ends too early.
     [[noreturn]] void ends(const std::string& where) const { throw aabb::input_error(file_ + ": ends " + where); }
@@ -90,7 +90,7 @@ public:
         if (end != text.data() + text.size() || error == std::errc::invalid_argument) expected(what, text);
         // Too small for a double is a rounded zero, too large is refused.
         if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
-        if (!std::isfinite(value)) fail(quoted(text) + " is not a finite number");
+        if (!std::isfinite(value)) fail(in_quotes(text) + " is not a finite number");
         return value;
     }
 
@@ -114,11 +114,11 @@ public:
             // Too small for a float is a rounded zero, too large is refused; only strtof tells which it was.
             value = std::strtof(std::string(text).c_str(), nullptr);
             fine = std::numeric_limits<double>::quiet_NaN();
-            if (std::isinf(value)) fail("the coordinate " + quoted(text) + " is too large for a float");
+            if (std::isinf(value)) fail("the coordinate " + in_quotes(text) + " is too large for a float");
         } else {
             std::from_chars(begin, end, fine);
         }
-        if (!std::isfinite(value)) fail("the coordinate " + quoted(text) + " is not finite");
+        if (!std::isfinite(value)) fail("the coordinate " + in_quotes(text) + " is not finite");
         rounded_ += fine != value;
         return value;
     }

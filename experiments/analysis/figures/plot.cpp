@@ -77,10 +77,10 @@ namespace {
 
 [[nodiscard]] std::string title(const std::vector<std::string>& lines) {
     if (lines.empty()) return " notitle";
-    std::string text = " title " + quoted(lines.front()) + " noenhanced";
+    std::string text = " title " + in_double_quotes(lines.front()) + " noenhanced";
     // In gnuplot's legend the lines of one title lie upon each other.
     for (std::size_t i = 1; i < lines.size(); ++i)
-        text += ", \\\n     NaN with lines linetype nodraw title " + quoted(lines[i]) + " noenhanced";
+        text += ", \\\n     NaN with lines linetype nodraw title " + in_double_quotes(lines[i]) + " noenhanced";
     return text;
 }
 
@@ -103,7 +103,7 @@ std::string plot_command(const drawing& d) {
     std::string text;
     const auto add = [&](const std::string& part) {
         if (part.empty()) return;
-        text += text.empty() ? quoted(d.f.name + ".csv") : ", \\\n     ''";
+        text += text.empty() ? in_double_quotes(d.f.name + ".csv") : ", \\\n     ''";
         text += " using " + part;
     };
     for (const shown_series& s : d.lines) add(band(d, s));

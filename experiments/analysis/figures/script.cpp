@@ -37,7 +37,8 @@ namespace {
     std::string list;
     for (const tick& t : s.ticks) {
         if (!list.empty()) list += ", ";
-        const std::string label = s.named ? quoted(lines_of(without_format(t.label), name_length)) : quoted(t.label);
+        const std::string label =
+            s.named ? in_double_quotes(lines_of(without_format(t.label), name_length)) : in_double_quotes(t.label);
         list += fmt::format("{} {:.12g}{}", label, t.at, t.label.empty() && !s.named ? " 1" : "");
     }
     return "(" + list + ")";
@@ -63,11 +64,11 @@ namespace {
 [[nodiscard]] std::string axis_labels(const layout& r) {
     std::string text;
     for (const layout::label_line& line : r.x_label)
-        text += fmt::format("set label {} at graph 0.5, screen {:.4f} center noenhanced\n", quoted(line.text),
+        text += fmt::format("set label {} at graph 0.5, screen {:.4f} center noenhanced\n", in_double_quotes(line.text),
                             line.at / r.height);
     for (const layout::label_line& line : r.y_label)
-        text += fmt::format("set label {} at screen {:.4f}, graph 0.5 center rotate noenhanced\n", quoted(line.text),
-                            line.at / r.width);
+        text += fmt::format("set label {} at screen {:.4f}, graph 0.5 center rotate noenhanced\n",
+                            in_double_quotes(line.text), line.at / r.width);
     return text;
 }
 
@@ -86,7 +87,7 @@ namespace {
         text += fmt::format(
             "set arrow from first {0}, graph 0 to first {0}, screen {1:.4f} nohead back linecolor rgb '#404040' "
             "dashtype (2,3)\nset label {2} at first {0}, screen {3:.4f} {4} noenhanced\n",
-            d.marks[i].x, middle + 0.4 / r.height, quoted(d.marks[i].label), middle,
+            d.marks[i].x, middle + 0.4 / r.height, in_double_quotes(d.marks[i].label), middle,
             r.marks[i].right_of_line ? "left offset character 0.5,0" : "right offset character -0.5,0");
     }
     if (d.lines.empty()) text += "set label 'no data' at graph 0.5, graph 0.5 center\n";
@@ -122,12 +123,12 @@ namespace {
                "\nset terminal svg size {:.0f},{:.0f} fixed enhanced background 'white' font 'sans-serif,{}' "
                "linewidth 1.5\n",
                r.width * em_in_pixels, r.height * em_in_pixels, em_in_pixels) +
-           heights(r, 1.5) + "set output " + quoted(d.f.name + ".svg") + "\n" + plot_command(d) +
+           heights(r, 1.5) + "set output " + in_double_quotes(d.f.name + ".svg") + "\n" + plot_command(d) +
            fmt::format(
                "\nset terminal pdfcairo size {:.2f}cm,{:.2f}cm enhanced font 'Helvetica,{}' fontscale 0.75 "
                "linewidth 1.3 dashlength 1.5\n",
                r.width * em_in_points * point_in_cm, r.height * em_in_points * point_in_cm, em_in_points) +
-           heights(r, 1.15) + "set output " + quoted(d.f.name + ".pdf") + "\nreplot\nunset output\n";
+           heights(r, 1.15) + "set output " + in_double_quotes(d.f.name + ".pdf") + "\nreplot\nunset output\n";
 }
 
 }  // namespace

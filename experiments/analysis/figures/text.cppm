@@ -20,16 +20,17 @@ namespace aabblab {
 
 /// In single quotes, within which gnuplot leaves backslashes and `commands` alone. It also has a way to write a quote
 /// there, which fails for two of them and at the beginning; so each is a string of its own.
-[[nodiscard]] inline std::string quoted(std::string_view text) {
+[[nodiscard]] inline std::string in_double_quotes(std::string_view text) {
     std::string in_quotes = "'";
     for (const char c : one_line(text)) in_quotes += c == '\'' ? "' . \"'\" . '" : std::string(1, c);
     return in_quotes + "'";
 }
 
 /// Several lines of text in one string.
-[[nodiscard]] inline std::string quoted(const std::vector<std::string>& lines) {
+[[nodiscard]] inline std::string in_double_quotes(const std::vector<std::string>& lines) {
     std::string together;
-    for (const std::string& line : lines) together += (together.empty() ? "" : " . \"\\n\" . ") + quoted(line);
+    for (const std::string& line : lines)
+        together += (together.empty() ? "" : " . \"\\n\" . ") + in_double_quotes(line);
     return lines.empty() ? "''" : together;
 }
 

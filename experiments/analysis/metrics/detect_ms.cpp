@@ -1,3 +1,6 @@
+module;
+#include <functional>
+
 module aabblab.metrics;
 
 import aabblab.results;
