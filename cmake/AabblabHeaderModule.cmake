@@ -1,7 +1,8 @@
 # The standard headers are compiled once, into one module file that stands in for them wherever a file includes them.
 # Otherwise every module file carries a copy of all that its source includes, and who imports ten of them merges ten: a
 # full build takes three times as long. Tried with clang 19 and libstdc++ 12; elsewhere, and by who installs the library,
-# files are compiled as they stand. <random> is left out: the intrinsics in it could be included no more.
+# files are compiled as they stand. Left out are <random>, whose
+# intrinsics could be included no more, and <iostream>, which would give every module something to initialise.
 set(aabblab_headers
     algorithm
     array
@@ -22,7 +23,6 @@ set(aabblab_headers
     fstream
     functional
     initializer_list
-    iostream
     iterator
     limits
     map

@@ -141,7 +141,7 @@ TEST_CASE("The outcome is where the interval lies against the band") {
 }
 
 TEST_CASE("Several outcomes at once are decided step by step, the surest first") {
-    const auto together = [](std::vector<double> chances) {
+    const auto together = [](const std::vector<double>& chances) {
         std::vector<evidence> all;
         for (const double p : chances) all.push_back({outcome::less, p});
         std::vector<bool> decided;

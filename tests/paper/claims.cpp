@@ -47,7 +47,7 @@ std::vector<std::string> each(const std::string& verdict) {
 
 /// Written down here again, so that none is changed unseen.
 aabblab::factors primary_of(const std::string& id, bool quick) {
-    const aabblab::factors drifting{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}};
+    aabblab::factors drifting{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}};
     const auto with = [](aabblab::factors all, const aabblab::factors& more) {
         all.insert(all.end(), more.begin(), more.end());
         return all;

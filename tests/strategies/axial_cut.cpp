@@ -145,8 +145,9 @@ TEST_CASE("auto cuts a large scene finer than a small one, and says how much it 
     const auto segments = [](int side) {
         std::vector<box> boxes;
         for (int i = 0; i < side * side; ++i) {
+            const int row = i / side;
             const auto x = static_cast<float>(2 * (i % side));
-            const auto y = static_cast<float>(2 * (i / side));
+            const auto y = static_cast<float>(2 * row);
             boxes.push_back({{x, y, 0}, {x + 1, y + 1, 1}});
         }
         return fitted(boxes, {}).partition.segments();

@@ -89,7 +89,8 @@ TEST_CASE("the epsilon of Möller's test is absolute, absent, or of the pair's o
     for (int i = 0; i < 4000; ++i) {
         const float a = 1 + static_cast<float>(i % 200) / 7;
         vec3f tip = on;
-        tip[2] += static_cast<float>(i / 200 - 10) * 0x1p-22F;
+        const int step = i / 200 - 10;
+        tip[2] += static_cast<float>(step) * 0x1p-22F;
         const float down = i % 2 == 0 ? 9 : -9;
         const triangle3f other{{tip, {tip[0] + a, tip[1] - 2, tip[2] - down}, {tip[0] + 3, tip[1] - a, tip[2] - down}}};
         if (!exact_triangle::intersects(slanted, other)) continue;

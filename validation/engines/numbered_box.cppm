@@ -11,8 +11,8 @@ namespace aabb {
 /// Coordinates are handed over in double: the algorithm takes the greatest value of their type for infinity, and boxes
 /// may end at the greatest float.
 struct numbered_box {
-    using NT = double;
-    using ID = std::uint64_t;
+    using NT = double;         // NOLINT(readability-identifier-naming)
+    using ID = std::uint64_t;  // NOLINT(readability-identifier-naming)
 
     box bounds;
     ID number;
