@@ -1,8 +1,8 @@
 # The standard headers are compiled once, into one module file that stands in for them wherever a file includes them.
 # Otherwise every module file carries a copy of all that its source includes, and who imports ten of them merges ten: a
-# full build takes three times as long. Tried with clang 19 and libstdc++ 12; elsewhere, and by who installs the library,
-# files are compiled as they stand. Left out are <random>, whose
-# intrinsics could be included no more, and <iostream>, which would give every module something to initialise.
+# full build takes three times as long. Left out are <random>, whose intrinsics could be included no more, and <iostream>,
+# which would give every module something to initialise. Tried with clang 19 and libstdc++ 12; elsewhere, and by who
+# installs the library, files are compiled as they stand.
 set(aabblab_headers
     algorithm
     array
@@ -71,7 +71,8 @@ add_custom_command(
     COMMENT "Compiling the standard headers"
     VERBATIM)
 add_custom_target(aabblab_header_module DEPENDS ${module})
-add_compile_options("$<BUILD_INTERFACE:${use};-fmodule-file=std=${module}>")
+# Objects are as old as the module file that they are made with: it stands among what they depend on.
+add_compile_options("$<BUILD_INTERFACE:${use};-fmodule-file=std=${module};SHELL:-Xclang -module-file-deps>")
 
 # Every target of a folder and the folders in it waits for the module file.
 function(aabblab_wait_for_headers folder)
