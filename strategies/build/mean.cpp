@@ -18,7 +18,7 @@ namespace aabb {
 
 namespace {
 
-split_choice mean_split(std::span<const build_element> range, const box& bounds) noexcept {
+split_choice mean_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     double sum = 0;
     for (const build_element& e : range) sum += e.centroid[axis];

@@ -1,8 +1,4 @@
 module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <vector>
 
 module aabb.build.median;

@@ -73,7 +73,7 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
     }
 }
 
-split_choice sah_split(std::span<const build_element> range, const box& bounds) noexcept {
+split_choice sah_split(std::span<const build_element> range, const box& bounds) {
     box centroids = empty_box();
     for (const build_element& e : range) centroids = merged(centroids, bounds_of(e.centroid));
     split_choice best = median_split(range, bounds);
