@@ -3,14 +3,12 @@ module;
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -65,12 +63,6 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
     if (quick) doc.require_keys(*quick, " of scene " + info.name, known);
 }
 
-bool is_there(const std::string& mesh) {
-    std::error_code ignored;
-    return std::ranges::find(shapes(), mesh.substr(0, mesh.find(':')), &shape_info::name) != shapes().end() ||
-           std::filesystem::exists(mesh, ignored) || std::filesystem::exists(data_folder() / mesh, ignored);
-}
-
 std::vector<std::string> names_of(const document& doc, const node& scene, const std::string& key) {
     std::vector<std::string> names;
     const node* value = scene.find(key);
@@ -83,22 +75,13 @@ std::vector<std::string> names_of(const document& doc, const node& scene, const 
 std::vector<std::string> meshes_of(const document& doc, const node& scene, std::vector<std::string>& notes) {
     std::vector<std::string> meshes = names_of(doc, scene, "meshes");
     std::vector<std::string> instead = names_of(doc, scene, "without_data");
-    const auto missing = std::ranges::find_if_not(meshes, is_there);
+    const auto missing =
+        std::ranges::find_if_not(meshes, [&](const auto& mesh) { return is_mesh(mesh, doc.folder()); });
     if (instead.empty() || missing == meshes.end()) return meshes;
     std::string note = *missing + " is not there (./aabblab data fetches it); instead the scene has";
     for (const std::string& mesh : instead) note += (&mesh == instead.data() ? " " : ", ") + mesh;
     notes.push_back(note);
     return instead;
-}
-
-/// A relative path is looked for as given, then from the folder of the config.
-std::string found_file(const document& doc, const located_text& name) {
-    std::error_code ignored;
-    const std::filesystem::path beside = doc.folder() / name.text;
-    const bool is_elsewhere = beside != name.text;
-    if (name.text.empty() || std::filesystem::exists(name.text, ignored)) return name.text;
-    if (is_elsewhere && std::filesystem::exists(beside, ignored)) return beside.string();
-    doc.fail(name.line, name.text + ": no such file" + (is_elsewhere ? ", here or in " + doc.folder().string() : ""));
 }
 
 /// The settings that a scene is made with, each with its alternatives.
@@ -108,7 +91,8 @@ std::vector<alternatives> settings_of(const document& doc, const node& scene, bo
         if (std::ranges::find(own_keys, entry.key) != std::end(own_keys)) continue;
         settings.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
         if (plays_file && entry.key == "file")
-            for (located_text& name : settings.back().second) name.text = found_file(doc, name);
+            for (const located_text& name : settings.back().second)
+                doc.at(name.line, [&] { static_cast<void>(found_file(name.text, doc.folder())); });
     }
     return settings;
 }
@@ -187,7 +171,7 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         doc.require_few(written.line, "scenes", factors, scenes.all().size());
         for (const std::vector<aabb::setting>& settings : multiplied(keys))
             for (const std::optional<std::uint64_t> one : seeds) {
-                const scene_choice choice{kind.text, settings, meshes, one};
+                const scene_choice choice{kind.text, settings, meshes, one, doc.folder()};
                 const std::string text = choice.kind + " " + parameters_text(choice);
                 if (!scenes.add({choice, &info, written.line}, text))
                     doc.fail(written.line, "this scene is listed twice: " + text);

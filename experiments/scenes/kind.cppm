@@ -60,8 +60,16 @@ struct scene_kind {
 [[nodiscard]] std::span<const scene_kind> kinds();
 
 /// The meshes of these names. @throws aabb::input_error on no name, or more than `most`.
-[[nodiscard]] std::vector<aabb::mesh> meshes_named(std::string_view kind, std::span<const std::string> names,
+[[nodiscard]] std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names,
                                                    std::size_t most);
+
+/// With the file where it was found.
+template <PlaysFile S>
+[[nodiscard]] aabb::config_of<S> with_file(const scene_choice& choice) {
+    aabb::config_of<S> config = aabb::configured<S>(choice.settings);
+    config.file = found_file(config.file, choice.folder).string();
+    return config;
+}
 
 template <class S>
 [[nodiscard]] scene_kind kind_of() {
@@ -72,12 +80,11 @@ template <class S>
             return std::make_unique<S>(aabb::configured<S>(choice.settings), *choice.seed);
         };
     } else if constexpr (BoxFileScene<S>) {
-        kind.make_boxes = [](const scene_choice& choice) { return S::open(aabb::configured<S>(choice.settings)); };
+        kind.make_boxes = [](const scene_choice& choice) { return S::open(with_file<S>(choice)); };
     } else if constexpr (MeshFileScene<S>) {
         kind.make_meshes = [](const scene_choice& choice) {
             constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-            const aabb::config_of<S> config = aabb::configured<S>(choice.settings);
-            return S::open(config, meshes_named(S::name, choice.meshes, most));
+            return S::open(with_file<S>(choice), meshes_named(choice, choice.meshes, most));
         };
     } else {
         static_assert(MeshScene<S>, "a scene has boxes or meshes");
@@ -85,7 +92,7 @@ template <class S>
             const aabb::config_of<S> config = aabb::configured<S>(choice.settings);
             std::vector<std::string> names = choice.meshes;
             if (names.empty()) names.assign(S::default_meshes.begin(), S::default_meshes.end());
-            return std::make_unique<S>(config, meshes_named(S::name, names, S::most_meshes), *choice.seed);
+            return std::make_unique<S>(config, meshes_named(choice, names, S::most_meshes), *choice.seed);
         };
     }
     return kind;

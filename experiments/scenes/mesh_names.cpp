@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -51,6 +52,11 @@ aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& c
     return made;
 }
 
+/// Where a mesh of that name may be, in the order in which it is looked for.
+std::array<std::filesystem::path, 3> places(std::string_view name, const std::filesystem::path& folder) {
+    return {name, folder / name, data_folder() / name};
+}
+
 /// Names of what could have been meant: shapes and the meshes of the data folder.
 std::vector<std::string> known_names() {
     std::vector<std::string> names;
@@ -79,24 +85,41 @@ std::filesystem::path data_folder() {
     return set != nullptr && *set != '\0' ? set : AABBLAB_DATA_FOLDER;
 }
 
-loaded_mesh make_mesh(std::string_view name) {
+std::filesystem::path found_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
     std::error_code ignored;
-    for (const std::filesystem::path& file : {std::filesystem::path(name), data_folder() / name})
+    const std::filesystem::path beside = folder / name;
+    if (name.empty() || std::filesystem::exists(name, ignored)) return name;
+    if (std::filesystem::exists(beside, ignored)) return beside;
+    throw aabb::input_error(name.string() + ": no such file" +
+                            (beside != name ? ", here or in " + folder.string() : ""));
+}
+
+bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return is_shape(name.substr(0, name.find(':'))) || std::ranges::any_of(places(name, folder), [&](const auto& p) {
+               return std::filesystem::exists(p, ignored);
+           });
+}
+
+loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
+    std::error_code ignored;
+    for (const std::filesystem::path& file : places(name, folder))
         if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
     if (is_shape(name.substr(0, name.find(':')))) return {make_shape(shape_types{}, aabb::parse_strategy(name)), {}};
     if (std::filesystem::status(name, ignored).type() != std::filesystem::file_type::not_found)
         return read_mesh(name);  // says what it is instead of a file
-    throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here or in " +
-                            data_folder().string() + ", or a shape)");
+    throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here" +
+                            (folder.empty() ? "" : ", in " + folder.string()) + " or in " + data_folder().string() +
+                            ", or a shape)");
 }
 
-std::vector<aabb::mesh> meshes_named(std::string_view kind, std::span<const std::string> names, std::size_t most) {
-    if (names.empty()) throw aabb::input_error(std::string(kind) + " needs at least one mesh");
+std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names, std::size_t most) {
+    if (names.empty()) throw aabb::input_error(choice.kind + " needs at least one mesh");
     if (names.size() > most)
-        throw aabb::input_error(std::string(kind) + " takes at most " + std::to_string(most) + " meshes, not " +
+        throw aabb::input_error(choice.kind + " takes at most " + std::to_string(most) + " meshes, not " +
                                 std::to_string(names.size()));
     std::vector<aabb::mesh> meshes;
-    for (const std::string& name : names) meshes.push_back(make_mesh(name).mesh);
+    for (const std::string& name : names) meshes.push_back(make_mesh(name, choice.folder).mesh);
     return meshes;
 }
 

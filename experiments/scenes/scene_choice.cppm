@@ -1,8 +1,10 @@
 module;
 #include <compare>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 export module aabblab.scenes:scene_choice;
@@ -20,17 +22,28 @@ struct scene_info {
     std::vector<aabb::parameter_info> parameters;
 };
 
-/// A scene wanted: its kind, settings that differ from the defaults, a seed where it has one. Meshes are files, looked
-/// for as given, then in `experiments/data/`, or generated shapes: "icosphere", "torus_knot:triangles=20000",
-/// "noise_sphere".
+/// A scene wanted: its kind, settings that differ from the defaults, a seed where it has one. Meshes are files or
+/// generated shapes: "icosphere", "torus_knot:triangles=20000", "noise_sphere".
 struct scene_choice {
     std::string kind;
     std::vector<aabb::setting> settings;  ///< "objects", "frames", "displacement", … as text
     std::vector<std::string> meshes;
     std::optional<std::uint64_t> seed = 1;  ///< empty where the kind plays a file
+    /// Where files are looked for that are not found as they are named: the folder of the config. What the scene is
+    /// does not depend on from where the config was read, so it is neither compared nor stored.
+    std::filesystem::path folder = {};
 
-    friend auto operator<=>(const scene_choice&, const scene_choice&) = default;
+private:
+    [[nodiscard]] auto identity() const { return std::tie(kind, settings, meshes, seed); }
+
+public:
+    friend auto operator<=>(const scene_choice& s, const scene_choice& t) { return s.identity() <=> t.identity(); }
+    friend bool operator==(const scene_choice& s, const scene_choice& t) { return s.identity() == t.identity(); }
 };
+
+/// The file of that name: as given, else in `folder`.
+/// @throws aabb::input_error where it is in neither.
+[[nodiscard]] std::filesystem::path found_file(const std::filesystem::path& name, const std::filesystem::path& folder);
 
 /// The same for all scenes that differ in their seed only.
 [[nodiscard]] inline scene_choice whatever_seed(scene_choice scene) {

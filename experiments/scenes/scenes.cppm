@@ -26,9 +26,11 @@ export namespace aabblab {
 [[nodiscard]] std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice);
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice);
 
-/// A mesh by the name it has in a scene.
+/// Whether a mesh has this name: a file, as given, in `folder` or in the data folder, or a shape.
+[[nodiscard]] bool is_mesh(std::string_view name, const std::filesystem::path& folder);
+/// The mesh of that name, looked for in this order.
 /// @throws aabb::input_error on a name that is neither a file nor a shape, with the nearest one.
-[[nodiscard]] loaded_mesh make_mesh(std::string_view name);
+[[nodiscard]] loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder = {});
 
 /// A generated mesh as `aabblab list` shows it.
 struct shape_info {

@@ -207,12 +207,36 @@ TEST_CASE("A relative path is taken as given, else from the folder of the config
     record(folder / "sub/a.aabbs", "1");
     const auto e = aabblab::parse_experiment(recording_config("file = \"a.aabbs\"\n"), folder / "sub/c.toml",
                                              experiment_size::full);
-    CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + (folder / "sub/a.aabbs").string());
+    CHECK(aabblab::parameters_text(e.scenes[0]) == "file=a.aabbs");
     const auto here = std::filesystem::relative(folder / "sub/a.aabbs");
     const auto as_given = aabblab::parse_experiment(recording_config("file = " + in_toml(here) + "\n"),
                                                     folder / "c.toml", experiment_size::full);
     CHECK(aabblab::parameters_text(as_given.scenes[0]) == "file=" + here.string());
     CHECK(e.content_digest == as_given.content_digest);
+    REQUIRE_FALSE(std::filesystem::exists("a.aabbs"));
+    CHECK(aabblab::make_box_scene(e.scenes[0])->objects() == 60);
+}
+
+TEST_CASE("A mesh in the folder of the config comes before one of the data folder, and results say only its name") {
+    const temporary_folder folder;
+    std::filesystem::create_directory(folder / "sub");
+    const std::string triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    folder.write("sub/elephant.off", triangle);  // of the name of a mesh that is in the data folder, or may be
+    const std::string config =
+        folder.write("sub/c.toml",
+                     "name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nframes = 1\nmeshes = \"elephant.off\"\n"
+                     "without_data = \"icosphere\"\n[measure]\nrepeats = 1\n");
+    const std::filesystem::path near = std::filesystem::relative(config);
+    REQUIRE(run_program({"run", config, "--out", folder / "out"}).status == 0);
+    const auto rows = aabblab::read_rows(folder / "out/results.csv");
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].scene.meshes == std::vector<std::string>{"elephant.off"});
+    CHECK(rows[0].triangles == 1);
+    const program_result again = run_program({"run", near, "--out", folder / "out", "--resume"});
+    CHECK(again.status == 0);
+    CHECK(aabblab::read_rows(folder / "out/results.csv").size() == 1);
+    CHECK(refusal_of("name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"absent.off\"\n", "some/test.toml")
+              .find("(a mesh is a file, here, in some or in ") != std::string::npos);
 }
 
 TEST_CASE("scene draws a recording, and makes one of a motion") {
