@@ -87,7 +87,7 @@ std::filesystem::path data_folder() {
 
 std::filesystem::path found_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
     std::error_code ignored;
-    const std::filesystem::path beside = folder / name;
+    std::filesystem::path beside = folder / name;
     if (name.empty() || std::filesystem::exists(name, ignored)) return name;
     if (std::filesystem::exists(beside, ignored)) return beside;
     throw aabb::input_error(name.string() + ": no such file" +

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -49,7 +50,7 @@ constexpr std::uint32_t no_parent = 0xffffffff;
 
 }  // namespace
 
-std::vector<build_node> build_top_down(const mesh& m, leaf_pairing pairing, split_rule& split) {
+std::vector<build_node> build_top_down(const mesh& m, leaf_pairing pairing, const split_rule& split) {
     std::vector<build_element> elements;
     elements.reserve(m.triangles.size());
     for (std::uint32_t t = 0; t < m.triangle_count(); ++t) elements.push_back(element_of(m, t));
