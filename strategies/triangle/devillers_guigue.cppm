@@ -3,11 +3,13 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <string_view>
+#include <tuple>
 
 export module aabb.triangle.devillers_guigue;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.triangle.precision;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -15,26 +17,39 @@ import aabb.local_detection;
 export namespace aabb {
 
 /// Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with orientations in plain
-/// double, as it is commonly used. Inexact: signs near zero are those of rounding, and triangles of zero area are not
-/// told from others. When to use: as the fastest well-known test, to hold `exact` against.
-struct devillers_guigue_triangle {
+/// double, as it is commonly used, or float. Inexact: signs near zero are those of rounding, and triangles of zero area
+/// are not told from others. When to use: as the fastest well-known test, to hold `exact` against.
+class devillers_guigue_triangle {
+public:
     static constexpr std::string_view name = "devillers_guigue";
     static constexpr std::string_view summary =
-        "Devillers and Guigue's orientation signs in plain double: inexact, the fast baseline";
+        "Devillers and Guigue's orientation signs in plain arithmetic: inexact, the fast baseline";
     static constexpr bool exact = false;
 
-    [[nodiscard]] static inline bool intersects(const triangle3f& s, const triangle3f& t) noexcept {
-        return intersects(in_double(s), in_double(t));
+    struct config {
+        precision_choice precision = precision_choice::float64;
+    };
+    static constexpr std::tuple parameters{precision_parameter(&config::precision)};
+
+    devillers_guigue_triangle() = default;
+    explicit devillers_guigue_triangle(const config& c) : precision_(c.precision) {}
+
+    template <class Real>
+    [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
+        return in_precision(precision_, s, t,
+                            [](const auto& first, const auto& second) { return meet(first, second); });
     }
 
-    [[nodiscard]] static inline bool intersects(const triangle3d& s, const triangle3d& t) noexcept {
-        const std::array<double, 3> s_to_t = heights(s, t);
+private:
+    template <class Real>
+    [[nodiscard]] static inline bool meet(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
+        const std::array<Real, 3> s_to_t = heights(s, t);
         if (on_one_side(s_to_t)) return false;
-        const std::array<double, 3> t_to_s = heights(t, s);
+        const std::array<Real, 3> t_to_s = heights(t, s);
         if (on_one_side(t_to_s)) return false;
-        if (s_to_t == std::array<double, 3>{}) return coplanar_intersects(s, t);
-        triangle3d u = s;
-        triangle3d v = t;
+        if (s_to_t == std::array<Real, 3>{}) return coplanar_intersects(s, t);
+        triangle3<Real> u = s;
+        triangle3<Real> v = t;
         const bool t_turns = turn_to_apex(u, s_to_t);
         const bool s_turns = turn_to_apex(v, t_to_s);
         // Each apex lies above the other triangle, so that the intervals in which they cut the common line begin at the
@@ -44,33 +59,38 @@ struct devillers_guigue_triangle {
         return side(u[0], u[1], v[0], v[1]) <= 0 && side(u[0], u[2], v[2], v[0]) <= 0;
     }
 
-private:
-    [[nodiscard]] static inline double side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+    template <class Real>
+    [[nodiscard]] static inline Real side(const vec3<Real>& a, const vec3<Real>& b, const vec3<Real>& c,
+                                          const vec3<Real>& d) noexcept {
         return dot(cross(b - a, c - a), d - a);
     }
 
     /// Of the corners of `s` over the plane of `t`, times the length of its normal.
-    [[nodiscard]] static inline std::array<double, 3> heights(const triangle3d& s, const triangle3d& t) noexcept {
-        const vec3d normal = cross(t[0] - t[2], t[1] - t[2]);
+    template <class Real>
+    [[nodiscard]] static inline std::array<Real, 3> heights(const triangle3<Real>& s,
+                                                            const triangle3<Real>& t) noexcept {
+        const vec3<Real> normal = cross(t[0] - t[2], t[1] - t[2]);
         return {dot(normal, s[0] - t[2]), dot(normal, s[1] - t[2]), dot(normal, s[2] - t[2])};
     }
 
-    [[nodiscard]] static inline bool on_one_side(const std::array<double, 3>& d) noexcept {
+    template <class Real>
+    [[nodiscard]] static inline bool on_one_side(const std::array<Real, 3>& d) noexcept {
         return d[0] * d[1] > 0 && d[0] * d[2] > 0;
     }
 
     /// Rotates the triangle until corner 0 is alone on its side of the other plane, or on the plane with both others
     /// off it on one side.
     /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be turned
-    static inline bool turn_to_apex(triangle3d& s, const std::array<double, 3>& d) noexcept {
-        const auto apex = [&](int i, double up) {
-            const double own = up * d[static_cast<std::size_t>(i)];
-            const double p = up * d[static_cast<std::size_t>((i + 1) % 3)];
-            const double q = up * d[static_cast<std::size_t>((i + 2) % 3)];
+    template <class Real>
+    static inline bool turn_to_apex(triangle3<Real>& s, const std::array<Real, 3>& d) noexcept {
+        const auto apex = [&](int i, Real up) {
+            const Real own = up * d[static_cast<std::size_t>(i)];
+            const Real p = up * d[static_cast<std::size_t>((i + 1) % 3)];
+            const Real q = up * d[static_cast<std::size_t>((i + 2) % 3)];
             return (own > 0 && p <= 0 && q <= 0) || (own == 0 && p < 0 && q < 0);
         };
         for (int i = 0; i < 3; ++i)
-            for (const double up : {1.0, -1.0})
+            for (const Real up : {Real{1}, Real{-1}})
                 if (apex(i, up)) {
                     s = {s[i], s[(i + 1) % 3], s[(i + 2) % 3]};
                     return up < 0;
@@ -80,29 +100,34 @@ private:
 
     /// On the axis plane in which the area of `s` is largest: apart when the line of an edge has the other triangle
     /// strictly beyond it.
-    [[nodiscard]] static inline bool coplanar_intersects(const triangle3d& s, const triangle3d& t) noexcept {
-        const vec3d normal = cross(s[1] - s[0], s[2] - s[0]);
+    template <class Real>
+    [[nodiscard]] static inline bool coplanar_intersects(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
+        const vec3<Real> normal = cross(s[1] - s[0], s[2] - s[0]);
         int dropped = std::abs(normal[1]) > std::abs(normal[0]) ? 1 : 0;
         if (std::abs(normal[2]) > std::abs(normal[dropped])) dropped = 2;
         return !an_edge_separates(s, t, dropped) && !an_edge_separates(t, s, dropped);
     }
 
-    [[nodiscard]] static inline bool an_edge_separates(const triangle3d& s, const triangle3d& t, int dropped) noexcept {
+    template <class Real>
+    [[nodiscard]] static inline bool an_edge_separates(const triangle3<Real>& s, const triangle3<Real>& t,
+                                                       int dropped) noexcept {
         const int x = (dropped + 1) % 3;
         const int y = (dropped + 2) % 3;
-        const auto turn = [&](const vec3d& a, const vec3d& b, const vec3d& c) {
+        const auto turn = [&](const vec3<Real>& a, const vec3<Real>& b, const vec3<Real>& c) {
             return (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
         };
-        const double inside = turn(s[0], s[1], s[2]);
+        const Real inside = turn(s[0], s[1], s[2]);
         for (int i = 0; i < 3; ++i) {
-            const vec3d& from = s[i];
-            const vec3d& to = s[(i + 1) % 3];
+            const vec3<Real>& from = s[i];
+            const vec3<Real>& to = s[(i + 1) % 3];
             if (turn(from, to, t[0]) * inside < 0 && turn(from, to, t[1]) * inside < 0 &&
                 turn(from, to, t[2]) * inside < 0)
                 return true;
         }
         return false;
     }
+
+    precision_choice precision_ = precision_choice::float64;
 };
 
 static_assert(DoubleTrianglePolicy<devillers_guigue_triangle>);

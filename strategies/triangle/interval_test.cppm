@@ -32,13 +32,27 @@ template <class Config>
                             "pair's extent"};
 }
 
+/// How the ends of two intervals are compared.
+enum class division_choice : std::uint8_t {
+    yes,  ///< by quotients, as in the paper
+    no    ///< by products with all denominators, as in the author's later code; they leave the range of Real sooner
+};
+
+/// The parameter `division` of Möller's test.
+template <class Config>
+[[nodiscard]] constexpr auto division_parameter(division_choice Config::* field) {
+    return choice_parameter{
+        "division", field, std::array<std::string_view, 2>{"yes", "no"},
+        "whether ends of intervals are quotients, or are compared as products with all denominators"};
+}
+
 /// Möller's interval test ("A fast triangle-triangle intersection test", 1997) in the arithmetic of Real. Sums keep the
 /// original's order, ties its choice of axis, and products that underflow or overflow its answers.
 template <class Real>
 class interval_test {
 public:
     interval_test() = default;
-    explicit interval_test(epsilon_choice epsilon) : epsilon_(epsilon) {}
+    interval_test(epsilon_choice epsilon, division_choice division) : epsilon_(epsilon), division_(division) {}
 
     [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
         const vec3<Real> normal_t = cross(t[1] - t[0], t[2] - t[0]);
@@ -52,8 +66,12 @@ public:
         // Both triangles cut the line of the two planes; the test compares their intervals on the axis along which the
         // line runs furthest.
         const int axis = largest(cross(normal_s, normal_t));
-        const auto [s_low, s_high] = interval(s, s_to_t, axis);
-        const auto [t_low, t_high] = interval(t, t_to_s, axis);
+        const cut_edges of_s(s, s_to_t, axis);
+        const cut_edges of_t(t, t_to_s, axis);
+        const auto [s_low, s_high] =
+            division_ == division_choice::yes ? of_s.quotients() : of_s.products(of_t.denominators());
+        const auto [t_low, t_high] =
+            division_ == division_choice::yes ? of_t.quotients() : of_t.products(of_s.denominators());
         return !(s_high < t_low || t_high < s_low);  // not `>=`: after an overflow to NaN the original says yes
     }
 
@@ -96,29 +114,59 @@ private:
         return std::abs(v[2]) > std::abs(v[k]) ? 2 : k;
     }
 
-    /// Where the triangle cuts the line of the planes, in the coordinate `axis`. `d` are the distances of the corners
-    /// from the other plane: not all zero, not all of one sign.
-    [[nodiscard]] static std::pair<Real, Real> interval(const triangle3<Real>& s, const std::array<Real, 3>& d,
-                                                        int axis) noexcept {
-        // The corner that the plane cuts off from the other two.
-        int alone = 0;
-        if (d[0] * d[1] > 0)
-            alone = 2;
-        else if (d[0] * d[2] > 0)
-            alone = 1;
-        else if (d[1] * d[2] > 0 || d[0] != 0)
-            alone = 0;
-        else
-            alone = d[1] != 0 ? 1 : 2;
-        const auto at = [&](int i) { return s[i][axis]; };
-        const auto distance = [&](int i) { return d[static_cast<std::size_t>(i)]; };
-        const auto cut = [&](int other) {
-            return at(alone) + (at(other) - at(alone)) * distance(alone) / (distance(alone) - distance(other));
+    /// The two edges of a triangle that the line of the planes cuts, in the coordinate `axis`.
+    class cut_edges {
+    public:
+        /// @param d the distances of the corners from the other plane: not all zero, not all of one sign
+        cut_edges(const triangle3<Real>& s, const std::array<Real, 3>& d, int axis) noexcept {
+            // The corner that the plane cuts off from the other two.
+            int alone = 0;
+            if (d[0] * d[1] > 0)
+                alone = 2;
+            else if (d[0] * d[2] > 0)
+                alone = 1;
+            else if (d[1] * d[2] > 0 || d[0] != 0)
+                alone = 0;
+            else
+                alone = d[1] != 0 ? 1 : 2;
+            from_ = s[alone][axis];
+            const auto edge_to = [&](int other) {
+                const Real distance = d[static_cast<std::size_t>(alone)];
+                return edge{(s[other][axis] - from_) * distance, distance - d[static_cast<std::size_t>(other)]};
+            };
+            first_ = edge_to(alone == 0 ? 1 : 0);
+            second_ = edge_to(alone == 2 ? 1 : 2);
+        }
+
+        /// Where they are cut, the lower end first.
+        [[nodiscard]] std::pair<Real, Real> quotients() const noexcept {
+            return ordered(from_ + first_.numerator / first_.denominator,
+                           from_ + second_.numerator / second_.denominator);
+        }
+
+        [[nodiscard]] Real denominators() const noexcept { return first_.denominator * second_.denominator; }
+
+        /// The same times both own denominators and `factor`, the other triangle's.
+        [[nodiscard]] std::pair<Real, Real> products(Real factor) const noexcept {
+            const Real shared = from_ * (denominators() * factor);
+            return ordered(shared + first_.numerator * second_.denominator * factor,
+                           shared + second_.numerator * first_.denominator * factor);
+        }
+
+    private:
+        struct edge {
+            Real numerator;
+            Real denominator;
         };
-        const Real p = cut(alone == 0 ? 1 : 0);
-        const Real q = cut(alone == 2 ? 1 : 2);
-        return p > q ? std::pair{q, p} : std::pair{p, q};
-    }
+
+        [[nodiscard]] static std::pair<Real, Real> ordered(Real p, Real q) noexcept {
+            return p > q ? std::pair{q, p} : std::pair{p, q};
+        }
+
+        Real from_{};
+        edge first_{};
+        edge second_{};
+    };
 
     /// Both triangles in the plane of the normal: edges against edges, then each triangle's corner in the other, on the
     /// axis plane in which their area is largest.
@@ -166,6 +214,7 @@ private:
     }
 
     epsilon_choice epsilon_ = epsilon_choice::absolute;
+    division_choice division_ = division_choice::yes;
 };
 
 }  // namespace aabb

@@ -20,11 +20,12 @@ public:
 
     struct config {
         epsilon_choice epsilon = epsilon_choice::absolute;
+        division_choice division = division_choice::yes;
     };
-    static constexpr std::tuple parameters{epsilon_parameter(&config::epsilon)};
+    static constexpr std::tuple parameters{epsilon_parameter(&config::epsilon), division_parameter(&config::division)};
 
     moller_triangle() = default;
-    explicit moller_triangle(const config& c) : test_(c.epsilon) {}
+    explicit moller_triangle(const config& c) : test_(c.epsilon, c.division) {}
 
     [[nodiscard]] inline bool intersects(const triangle3f& s, const triangle3f& t) const noexcept {
         return test_.intersects(s, t);

@@ -10,9 +10,12 @@ import aabb;
 import aabb.registry;
 import aabb.triangle.exact;
 import aabb.triangle.devillers_guigue;
+import aabb.triangle.interval_arithmetic;
 import aabb.triangle.interval_test;
 import aabb.triangle.moller;
 import aabb.triangle.moller_double;
+import aabb.triangle.precision;
+import aabb.triangle.separating_axes;
 
 using namespace aabb;
 
@@ -95,8 +98,9 @@ TEST_CASE("the epsilon of Möller's test is absolute, absent, or of the pair's o
         const triangle3f other{{tip, {tip[0] + a, tip[1] - 2, tip[2] - down}, {tip[0] + 3, tip[1] - a, tip[2] - down}}};
         if (!exact_triangle::intersects(slanted, other)) continue;
         ++tried;
-        lost += !moller_triangle(moller_triangle::config{epsilon_choice::none}).intersects(slanted, other);
-        lost_scaled += !moller_triangle(moller_triangle::config{epsilon_choice::scaled}).intersects(slanted, other);
+        lost += !moller_triangle(moller_triangle::config{.epsilon = epsilon_choice::none}).intersects(slanted, other);
+        lost_scaled +=
+            !moller_triangle(moller_triangle::config{.epsilon = epsilon_choice::scaled}).intersects(slanted, other);
     }
     CHECK(tried > 100);
     CHECK(lost > 0);
@@ -124,9 +128,100 @@ TEST_CASE("plain double errs where exact does not") {
     for (int i = 0; i < 3000; ++i) {
         // A corner in the plane of a face, at tenths that double cannot hold.
         const auto [s, t] = triangle_pairs::placed<double>(random, triangle_pairs::patterned(random, 3), 1);
-        wrong += devillers_guigue_triangle::intersects(in_double(s), in_double(t)) !=
+        wrong += devillers_guigue_triangle{}.intersects(in_double(s), in_double(t)) !=
                  exact_triangle::intersects(in_double(s), in_double(t));
     }
     CHECK(wrong > 0);
     CHECK(wrong < 1500);
+}
+
+namespace {
+
+/// Pairs of every pattern and placement, and of coordinates of every size.
+template <class Real, class Check>
+void for_all_pairs(int count, Check check) {
+    triangle_pairs::generator random(7);
+    const auto take = [&](const triangle_pairs::pair& made) {
+        triangle3<Real> s{};
+        triangle3<Real> t{};
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const auto corner = static_cast<std::size_t>(i);
+                const auto axis = static_cast<std::size_t>(k);
+                s[i][k] = static_cast<Real>(made[0][corner][axis]);
+                t[i][k] = static_cast<Real>(made[1][corner][axis]);
+            }
+        check(s, t);
+    };
+    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement)
+            for (int i = 0; i < count; ++i)
+                take(triangle_pairs::placed<Real>(random, triangle_pairs::patterned(random, pattern), placement));
+    for (int i = 0; i < 20 * count; ++i) take(triangle_pairs::spread<Real>(random));
+}
+
+template <class Real>
+void check_intervals() {
+    const interval_arithmetic_triangle sure;
+    const interval_arithmetic_triangle unsure({.fallback = fallback_choice::intersects});
+    int wrong = 0;
+    int missed = 0;
+    int invented = 0;
+    for_all_pairs<Real>(400, [&](const triangle3<Real>& s, const triangle3<Real>& t) {
+        const bool truth = exact_triangle::intersects(s, t);
+        wrong += sure.intersects(s, t) != truth;
+        const bool found = unsure.intersects(s, t);
+        missed += truth && !found;
+        invented += found && !truth;
+    });
+    CHECK(wrong == 0);
+    CHECK(missed == 0);
+    CHECK(invented > 0);
+}
+
+}  // namespace
+
+TEST_CASE("intervals decide exactly with their fallback, and without it never miss a pair") {
+    check_intervals<float>();
+    check_intervals<double>();
+}
+
+TEST_CASE("tests that may err do so where they must tell apart what touches, less in double") {
+    const devillers_guigue_triangle guigue_float({.precision = precision_choice::float32});
+    const separating_axes_triangle axes_float;
+    const separating_axes_triangle axes_double({.precision = precision_choice::float64});
+    int by_guigue = 0;
+    int by_axes = 0;
+    int by_axes_double = 0;
+    triangle_pairs::generator random(3);
+    for (int i = 0; i < 3000; ++i) {
+        // A corner in the plane of a face, turned to where floats only come near it.
+        const auto [a, b] = triangle_pairs::placed<float>(random, triangle_pairs::patterned(random, 3), 5);
+        const triangle3f s = in_float(in_double(a));
+        const triangle3f t = in_float(in_double(b));
+        const bool truth = exact_triangle::intersects(s, t);
+        by_guigue += guigue_float.intersects(s, t) != truth;
+        by_axes += axes_float.intersects(s, t) != truth;
+        by_axes_double += axes_double.intersects(s, t) != truth;
+    }
+    CHECK(by_guigue > 0);
+    CHECK(by_axes > 0);
+    CHECK(by_axes_double < by_axes);
+}
+
+TEST_CASE("without divisions Möller's test leaves the range of float sooner") {
+    const moller_triangle divided({.epsilon = epsilon_choice::none});
+    const moller_triangle free({.epsilon = epsilon_choice::none, .division = division_choice::no});
+    // Apart along the line of the two planes.
+    const triangle3f s{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    const triangle3f t{{{0.5F, 2, -1}, {0.5F, 2, 1}, {0.5F, 3, 0}}};
+    const auto scaled = [](triangle3f of, float by) {
+        for (vec3f& corner : of.corner)
+            for (float& x : corner.at) x *= by;
+        return of;
+    };
+    CHECK_FALSE(divided.intersects(s, t));
+    CHECK_FALSE(free.intersects(s, t));
+    CHECK_FALSE(divided.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
+    CHECK(free.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
 }

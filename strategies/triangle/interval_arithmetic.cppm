@@ -1,0 +1,161 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <tuple>
+
+export module aabb.triangle.interval_arithmetic;
+
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.policy;
+import aabb.triangle.orientation_test;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+namespace aabb::detail {
+
+/// Holds the value that exact arithmetic would give. Rounding stays to nearest: each end moves outward by at least what
+/// an operation can be off.
+struct bracket {
+    double low;
+    double high;
+
+    /// p - q of two numbers.
+    [[nodiscard]] static inline bracket difference(double p, double q) noexcept { return widened(p - q, p - q, 0); }
+
+    friend inline bracket operator+(const bracket& p, const bracket& q) noexcept {
+        return widened(p.low + q.low, p.high + q.high, 0);
+    }
+    friend inline bracket operator-(const bracket& p, const bracket& q) noexcept {
+        return widened(p.low - q.high, p.high - q.low, 0);
+    }
+    friend inline bracket operator*(const bracket& p, const bracket& q) noexcept {
+        if (p.is_zero() || q.is_zero()) return {0, 0};
+        const double a = p.low * q.low;
+        const double b = p.low * q.high;
+        const double c = p.high * q.low;
+        const double d = p.high * q.high;
+        // After an overflow a product may be NaN, which `min` and `max` would hide.
+        if (const double all = a + b + c + d; std::isnan(all)) return {all, all};
+        return widened(std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d)),
+                       std::numeric_limits<double>::denorm_min());
+    }
+    [[nodiscard]] inline bool is_zero() const noexcept { return low == 0 && high == 0; }
+
+private:
+    /// Half a unit in the last place is at most half an epsilon of the result. A sum below the normal numbers is exact;
+    /// a product there may be off by half the smallest denormal.
+    [[nodiscard]] static inline bracket widened(double low, double high, double least) noexcept {
+        const auto beyond = [&](double x) { return std::abs(x) * std::numeric_limits<double>::epsilon() + least; };
+        return {low - beyond(low), high + beyond(high)};
+    }
+};
+
+using bracket3 = std::array<bracket, 3>;
+
+[[nodiscard]] inline bracket3 difference(const vec3d& p, const vec3d& q) noexcept {
+    return {bracket::difference(p[0], q[0]), bracket::difference(p[1], q[1]), bracket::difference(p[2], q[2])};
+}
+[[nodiscard]] inline bracket3 cross(const bracket3& p, const bracket3& q) noexcept {
+    return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+[[nodiscard]] inline bracket dot(const bracket3& p, const bracket3& q) noexcept {
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+/// Signs by intervals.
+/// @tparam Exact whether a sign that they leave open is computed exactly
+template <bool Exact>
+class interval_signs {
+public:
+    interval_signs(const vec3d&, const vec3d&) noexcept {}
+
+    [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+        return sign(dot(cross(difference(b, a), difference(c, a)), difference(d, a)),
+                    [&] { return exact_side(a, b, c, d); });
+    }
+    [[nodiscard]] inline std::array<int, 3> sides(const triangle3d& s, const triangle3d& t) noexcept {
+        const bracket3 normal = cross(difference(t[1], t[0]), difference(t[2], t[0]));
+        const auto of = [&](const vec3d& p) {
+            return sign(dot(normal, difference(p, t[0])), [&] { return exact_side(t[0], t[1], t[2], p); });
+        };
+        // Braces are evaluated from left to right.
+        return {of(s[0]), of(s[1]), of(s[2])};
+    }
+    [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+        const int x = (axis + 1) % 3;
+        const int y = (axis + 2) % 3;
+        const auto across = [](const vec3d& p, const vec3d& q, int k) { return bracket::difference(p[k], q[k]); };
+        return sign(across(b, a, x) * across(c, a, y) - across(b, a, y) * across(c, a, x),
+                    [&] { return exact_turn(a, b, c, axis); });
+    }
+
+    [[nodiscard]] inline bool unsure() const noexcept { return unsure_; }
+
+private:
+    template <class Compute>
+    [[nodiscard]] inline int sign(const bracket& of, Compute compute) noexcept {
+        if (of.low > 0) return 1;
+        if (of.high < 0) return -1;
+        if (of.is_zero()) return 0;
+        if constexpr (Exact)
+            return compute();
+        else
+            unsure_ = true;
+        return 0;
+    }
+
+    bool unsure_ = false;
+};
+
+}  // namespace aabb::detail
+
+export namespace aabb {
+
+/// What happens where an interval holds zero, so that it leaves a sign open.
+enum class fallback_choice : std::uint8_t {
+    exact,      ///< it is computed exactly
+    intersects  ///< the triangles count as intersecting
+};
+
+/// `orientation_test` by signs of interval arithmetic, without a bound derived by hand. With `fallback=exact` exact
+/// like `exact_triangle`; with `fallback=intersects` it never misses a pair, but takes for hits what it cannot rule
+/// out, which is all that touches and comes within rounding of it. When to use: to see what a dynamic filter costs
+/// beside the semi-static one, and as a test that can only err one way.
+class interval_arithmetic_triangle {
+public:
+    static constexpr std::string_view name = "interval_arithmetic";
+    static constexpr std::string_view summary =
+        "orientation signs by interval arithmetic: exact, or without its fallback never missing a pair";
+
+    struct config {
+        fallback_choice fallback = fallback_choice::exact;
+
+        [[nodiscard]] constexpr bool is_exact() const noexcept { return fallback == fallback_choice::exact; }
+    };
+    static constexpr std::tuple parameters{choice_parameter{
+        "fallback", &config::fallback, std::array<std::string_view, 2>{"exact", "intersects"},
+        "what an interval that holds zero leads to: the exact sign, or the answer that they intersect"}};
+
+    interval_arithmetic_triangle() = default;
+    explicit interval_arithmetic_triangle(const config& c) : fallback_(c.fallback) {}
+
+    template <class Real>
+    [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
+        if (fallback_ == fallback_choice::exact)
+            return orientation_test<detail::interval_signs<true>>::intersects(s, t);
+        return orientation_test<detail::interval_signs<false>>::intersects(s, t);
+    }
+
+private:
+    fallback_choice fallback_ = fallback_choice::exact;
+};
+
+static_assert(DoubleTrianglePolicy<interval_arithmetic_triangle>);
+
+}  // namespace aabb
