@@ -94,6 +94,29 @@ public:
         return zero && carry == 0 ? 0 : 1;
     }
 
+    [[nodiscard]] scaled_double rounded() const noexcept {
+        // Digits of the magnitude, the lowest first.
+        std::array<std::uint32_t, words + 2> digits{};
+        const bool negative = sign() < 0;
+        std::int64_t carry = 0;
+        int count = first_;
+        for (; count < last_ || carry > 0; ++count) {
+            const std::int64_t word = count < last_ ? words_[static_cast<std::size_t>(count)] : 0;
+            const std::int64_t sum = (negative ? -word : word) + carry;
+            digits[static_cast<std::size_t>(count)] = static_cast<std::uint32_t>(sum);
+            carry = sum >> 32;
+        }
+        while (count > first_ && digits[static_cast<std::size_t>(count) - 1] == 0) --count;
+        if (count <= first_) return {0, 0};
+        // The leading digit and three more have 97 bits that count, which rounds once, in effect, to 53.
+        wide leading = 0;
+        for (int k = 1; k <= 4; ++k)
+            leading = leading << 32 | (count - k >= 0 ? digits[static_cast<std::size_t>(count - k)] : 0);
+        int exponent = 0;
+        const double mantissa = std::frexp(static_cast<double>(leading), &exponent);
+        return {negative ? -mantissa : mantissa, exponent + 32 * (count - 4) - 3 * 1074};
+    }
+
 private:
     static constexpr int words = 3 * 2045 / 32 + 6;  // the greatest place of a mantissa is 2045
 
@@ -117,7 +140,9 @@ bool exact_difference(const vec3d& p, const vec3d& q, vec3d& difference) noexcep
 
 }  // namespace
 
-int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+namespace {
+
+product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
     vec3d ab;
     vec3d ac;
@@ -130,10 +155,10 @@ int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) n
         sum.add_determinant(a, b, d);
         sum.add_determinant(b, a, c);
     }
-    return sum.sign();
+    return sum;
 }
 
-int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
     product_sum sum;
     const int x = (axis + 1) % 3;
     const int y = (axis + 2) % 3;
@@ -146,7 +171,25 @@ int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcep
         sum.add_cross(b, c, x, y);
         sum.add_cross(c, a, x, y);
     }
-    return sum.sign();
+    return sum;
+}
+
+}  // namespace
+
+int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+    return volume_of(a, b, c, d).sign();
+}
+
+int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+    return area_of(a, b, c, axis).sign();
+}
+
+scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+    return volume_of(a, b, c, d).rounded();
+}
+
+scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+    return area_of(a, b, c, axis).rounded();
 }
 
 }  // namespace aabb

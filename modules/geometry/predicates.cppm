@@ -21,6 +21,16 @@ export namespace aabb {
 /// Sign of the component `axis` of (b - a) × (c - a): the way that a, b, c turn when seen along that axis.
 [[nodiscard]] int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
 
+/// A number whose exponent may lie beyond that of a double: mantissa 2^exponent, |mantissa| in [1/2, 1), or both 0.
+struct scaled_double {
+    double mantissa;
+    int exponent;
+};
+
+/// The determinant of `exact_side`, and the component of `exact_turn`, within 1.001 · 2^-53 of their value.
+[[nodiscard]] scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;
+[[nodiscard]] scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
+
 /// The same signs, fast, for points that lie in one box: computed in double, and again exactly where the result lies
 /// within its own rounding error. The bound of that error is one number for the whole box (a semi-static filter, Meyer
 /// and Pion, "FPG: a code generator for fast and certified geometric predicates", 2008).
