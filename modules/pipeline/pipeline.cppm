@@ -10,6 +10,7 @@ export import :posed_boxes;
 export import :prepare_policy;
 export import :scene;
 export import :stage;
+export import :tested_by;
 
 import aabb.base;
 import aabb.geometry;

@@ -10,7 +10,7 @@ module;
 #include <utility>
 #include <vector>
 
-/// A local detection composed statically, behind the interface of a stage; and a triangle test alone.
+/// A local detection composed statically, behind the interface of a stage.
 export module aabb.composed.local_detection;
 
 import aabb.base;
@@ -111,27 +111,5 @@ template <class... Lists>
     for_each_combination(add, lists...);
     return rows;
 }
-
-template <TrianglePolicy Triangle>
-class composed_triangle_test final : public triangle_test {
-public:
-    explicit composed_triangle_test(Triangle triangle) : triangle_(std::move(triangle)) {}
-
-    [[nodiscard]] bool intersects(const triangle3f& s, const triangle3f& t) const override {
-        require_ieee_arithmetic();
-        return triangle_.intersects(s, t);
-    }
-    [[nodiscard]] bool intersects(const triangle3d& s, const triangle3d& t) const override {
-        require_ieee_arithmetic();
-        if constexpr (DoubleTrianglePolicy<Triangle>)
-            return triangle_.intersects(s, t);
-        else
-            throw input_error(std::string(Triangle::name) + " tests triangles of floats only");
-    }
-    [[nodiscard]] bool takes_double() const override { return DoubleTrianglePolicy<Triangle>; }
-
-private:
-    [[no_unique_address]] Triangle triangle_;
-};
 
 }  // namespace aabb::composed

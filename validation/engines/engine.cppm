@@ -7,6 +7,7 @@ module;
 module aabb.engines:engine;
 
 import aabb.pipeline;
+import :library_test;
 
 namespace aabb {
 
@@ -17,6 +18,7 @@ struct engine {
     bool exact = false;                                  ///< its pair sets equal the exact ones on every input
     std::unique_ptr<global_stage> (*boxes)() = nullptr;  ///< null where it cannot stand in for global search
     std::unique_ptr<local_stage> (*meshes)() = nullptr;  ///< null where it cannot stand in for local detection
+    std::vector<library_test> triangles = {};            ///< tests that its library has
 };
 
 /// Those that this build has, in the order of their lines in CMakeLists.txt. Defined in a generated unit.

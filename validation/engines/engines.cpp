@@ -12,6 +12,7 @@ import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
 import :engine;
+import :library_test;
 
 namespace aabb {
 
@@ -39,6 +40,26 @@ std::span<const engine_info> engines() {
         return all;
     }();
     return infos;
+}
+
+std::span<const library_test_info> library_tests() {
+    static const std::vector<library_test_info> infos = [] {
+        std::vector<library_test_info> all;
+        for (const engine& e : all_engines())
+            for (const library_test& t : e.triangles) all.push_back({t.name, t.summary, e.name, t.exact, t.parameters});
+        return all;
+    }();
+    return infos;
+}
+
+std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice) {
+    std::vector<std::string> names;
+    for (const engine& e : all_engines())
+        for (const library_test& t : e.triangles) {
+            if (t.name == choice.name) return t.make(choice.settings);
+            names.push_back(t.name);
+        }
+    throw input_error(unknown_name("triangle test", choice.name, names));
 }
 
 std::string refusal_of_engine(std::string_view name, std::span<const engine_info> built,

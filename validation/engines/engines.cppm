@@ -3,6 +3,7 @@ module;
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// Reference systems in place of our pipeline. Behind plain types: no header of CGAL or of any engine's library reaches
 /// an importer.
@@ -10,6 +11,7 @@ export module aabb.engines;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.policy;
 
 export namespace aabb {
 
@@ -48,6 +50,22 @@ struct left_out_engine {
 /// The engine in place of a local detection.
 /// @throws input_error where there is none of this name, or it has no narrow phase.
 [[nodiscard]] std::unique_ptr<local_stage> make_mesh_engine(std::string_view name);
+
+/// A triangle test of an engine's library. It is chosen and configured like a strategy of the kind triangle, but is no
+/// part of a composition.
+struct library_test_info {
+    std::string name;
+    std::string summary;
+    std::string engine;
+    bool exact;
+    std::vector<parameter_info> parameters;
+};
+
+/// Those of this build's engines.
+[[nodiscard]] std::span<const library_test_info> library_tests();
+
+/// @throws input_error where there is none of this name, and on settings that it has not.
+[[nodiscard]] std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice);
 
 /// Do two closed triangles share a point? By CGAL's exact kernel; zero-area triangles as the segments or points they
 /// are.

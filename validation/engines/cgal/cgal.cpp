@@ -13,10 +13,14 @@ import aabb.geometry;
 import aabb.pipeline;
 import :box_engine;
 import :engine;
+import :library_test;
 import :numbered_box;
 import :pairwise;
 
 namespace aabb {
+
+// Defined in triangles.cpp.
+std::vector<library_test> cgal_tests();
 
 namespace {
 
@@ -46,7 +50,8 @@ engine cgal_engine() {
             .summary = "CGAL's intersection of box sequences, and its exact kernel for triangles",
             .exact = true,
             .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<cgal_boxes>(); },
-            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); }};
+            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); },
+            .triangles = cgal_tests()};
 }
 
 }  // namespace aabb

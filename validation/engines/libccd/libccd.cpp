@@ -1,12 +1,17 @@
 module;
 #include <ccd/ccd.h>
 
+#include <cstdint>
 #include <memory>
+#include <string_view>
+#include <tuple>
 
 module aabb.engines;
 
 import aabb.geometry;
+import aabb.policy;
 import :engine;
+import :library_test;
 import :pairwise;
 
 namespace aabb {
@@ -15,8 +20,11 @@ namespace {
 
 struct ccd_triangle {
     ccd_vec3_t corners[3];
+    mutable std::uint32_t questions_left;
 
-    explicit ccd_triangle(const triangle3f& t) : corners{} {
+    template <class Real>
+    explicit ccd_triangle(const triangle3<Real>& t, std::uint32_t questions = 0xffffffff)
+        : corners{}, questions_left(questions) {
         for (int i = 0; i < 3; ++i) ccdVec3Set(&corners[i], t[i][0], t[i][1], t[i][2]);
     }
 
@@ -28,18 +36,106 @@ struct ccd_triangle {
             if (ccdVec3Dot(&corner, direction) > ccdVec3Dot(best, direction)) best = &corner;
         ccdVec3Copy(furthest, best);
     }
+
+    /// The same until it has been asked too often; then a point so far behind that nothing can meet. Without it MPR
+    /// looks for its first portal for ever where both lie in one plane.
+    static void limited_support(const void* triangle, const ccd_vec3_t* direction, ccd_vec3_t* furthest) {
+        support(triangle, direction, furthest);
+        std::uint32_t& left = static_cast<const ccd_triangle*>(triangle)->questions_left;
+        if (left > 0) {
+            --left;
+            return;
+        }
+        constexpr double far = -1e150;
+        ccdVec3Copy(furthest, direction);
+        ccdVec3Scale(furthest, far);
+    }
+
+    static void centre(const void* triangle, ccd_vec3_t* middle) {
+        const auto& corners = static_cast<const ccd_triangle*>(triangle)->corners;
+        ccdVec3Copy(middle, &corners[0]);
+        ccdVec3Add(middle, &corners[1]);
+        ccdVec3Add(middle, &corners[2]);
+        ccdVec3Scale(middle, 1.0 / 3);
+    }
 };
 
-bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
-    const ccd_triangle first(s);
-    const ccd_triangle second(t);
+/// Without a limit both may cycle on flat differences of triangles; a decision takes about ten iterations.
+constexpr std::uint32_t enough_iterations = 1000;
+
+[[nodiscard]] ccd_t questions(std::uint32_t iterations) {
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = &ccd_triangle::support;
     ccd.support2 = &ccd_triangle::support;
-    // Without a limit it cycles on flat differences of triangles; a decision takes about ten.
-    ccd.max_iterations = 1000;
-    return ccdGJKIntersect(&first, &second, &ccd) != 0;
+    ccd.center1 = &ccd_triangle::centre;
+    ccd.center2 = &ccd_triangle::centre;
+    ccd.max_iterations = iterations;
+    return ccd;
+}
+
+class gjk_test {
+public:
+    static constexpr std::string_view name = "gjk";
+    static constexpr std::string_view summary =
+        "libccd's GJK in double: inexact, its tolerance is absolute, so small scales go wrong";
+    static constexpr bool exact = false;
+
+    struct config {
+        std::uint32_t iterations = enough_iterations;
+    };
+    static constexpr std::tuple parameters{integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
+                                                             "after which it says that they do not meet"}};
+
+    explicit gjk_test(const config& c) : ccd_(questions(c.iterations)) {}
+
+    template <class Real>
+    [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const {
+        const ccd_triangle first(s);
+        const ccd_triangle second(t);
+        return ccdGJKIntersect(&first, &second, &ccd_) != 0;
+    }
+
+private:
+    ccd_t ccd_;
+};
+
+class mpr_test {
+public:
+    static constexpr std::string_view name = "mpr";
+    static constexpr std::string_view summary =
+        "libccd's Minkowski portal refinement in double: inexact, its tolerance is absolute too";
+    static constexpr bool exact = false;
+
+    struct config {
+        double tolerance = 1e-4;  ///< libccd's own
+        std::uint32_t iterations = enough_iterations;
+    };
+    static constexpr std::tuple parameters{
+        number_parameter{"tolerance", &config::tolerance, 0.0, 1e6, "by which a portal must still move to be refined"},
+        integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
+                          "after which it says that they do not meet"}};
+
+    explicit mpr_test(const config& c) : ccd_(questions(c.iterations)), iterations_(c.iterations) {
+        ccd_.mpr_tolerance = c.tolerance;
+        ccd_.support1 = &ccd_triangle::limited_support;
+    }
+
+    template <class Real>
+    [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const {
+        const ccd_triangle first(s, iterations_);
+        const ccd_triangle second(t);
+        return ccdMPRIntersect(&first, &second, &ccd_) != 0;
+    }
+
+private:
+    ccd_t ccd_;
+    std::uint32_t iterations_;
+};
+
+bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
+    static const gjk_test test({});
+    return test.intersects(s, t);
 }
 
 }  // namespace
@@ -50,7 +146,8 @@ engine libccd_engine() {
                 "libccd's GJK in double on triangles whose boxes overlap; its tolerances are absolute, so small scales "
                 "go wrong",
             .exact = false,
-            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, gjk_intersect); }};
+            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, gjk_intersect); },
+            .triangles = {library_test_of<gjk_test>(), library_test_of<mpr_test>()}};
 }
 
 }  // namespace aabb

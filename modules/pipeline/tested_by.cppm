@@ -1,0 +1,63 @@
+module;
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+export module aabb.pipeline:tested_by;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.local_detection;
+import :stage;
+
+export namespace aabb {
+
+/// A triangle test whose type is known, as one alone.
+template <TrianglePolicy Triangle>
+class tested_by final : public triangle_test {
+public:
+    explicit tested_by(Triangle triangle = {}) : triangle_(std::move(triangle)) {}
+
+    [[nodiscard]] bool intersects(const triangle3f& s, const triangle3f& t) const override {
+        require_ieee_arithmetic();
+        return triangle_.intersects(s, t);
+    }
+    [[nodiscard]] bool intersects(const triangle3d& s, const triangle3d& t) const override {
+        require_ieee_arithmetic();
+        if constexpr (DoubleTrianglePolicy<Triangle>)
+            return triangle_.intersects(s, t);
+        else
+            refuse_doubles();
+    }
+    [[nodiscard]] bool takes_double() const override { return DoubleTrianglePolicy<Triangle>; }
+
+    void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> answers) const override {
+        answer(pairs, answers);
+    }
+    void intersect(std::span<const triangle_pair<double>> pairs, std::span<std::uint8_t> answers) const override {
+        if constexpr (DoubleTrianglePolicy<Triangle>)
+            answer(pairs, answers);
+        else
+            refuse_doubles();
+    }
+
+private:
+    template <class Real>
+    void answer(std::span<const triangle_pair<Real>> pairs, std::span<std::uint8_t> answers) const {
+        assert(pairs.size() == answers.size());
+        require_ieee_arithmetic();
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            answers[i] = static_cast<std::uint8_t>(triangle_.intersects(pairs[i].a, pairs[i].b));
+    }
+
+    [[noreturn]] static void refuse_doubles() {
+        throw input_error(std::string(Triangle::name) + " tests triangles of floats only");
+    }
+
+    [[no_unique_address]] Triangle triangle_;
+};
+
+}  // namespace aabb

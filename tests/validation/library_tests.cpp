@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "../triangle_pairs.hpp"
+
+import aabb;
+import aabb.triangle.exact;
+import aabb.validation;
+
+using namespace aabb;
+using Catch::Matchers::Message;
+
+namespace {
+
+template <class Real>
+std::vector<triangle_pair<Real>> all_pairs(int count) {
+    std::vector<triangle_pair<Real>> pairs;
+    triangle_pairs::generator random(9);
+    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement)
+            for (int n = 0; n < count; ++n) {
+                const auto made =
+                    triangle_pairs::placed<Real>(random, triangle_pairs::patterned(random, pattern), placement);
+                triangle_pair<Real>& p = pairs.emplace_back();
+                for (int i = 0; i < 3; ++i)
+                    for (int k = 0; k < 3; ++k) {
+                        const auto corner = static_cast<std::size_t>(i);
+                        const auto axis = static_cast<std::size_t>(k);
+                        p.a[i][k] = static_cast<Real>(made[0][corner][axis]);
+                        p.b[i][k] = static_cast<Real>(made[1][corner][axis]);
+                    }
+            }
+    return pairs;
+}
+
+template <class Real>
+void check_against_exact(const triangle_test& test) {
+    const std::vector<triangle_pair<Real>> pairs = all_pairs<Real>(40);
+    std::vector<std::uint8_t> answers(pairs.size());
+    test.intersect(pairs, answers);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        wrong += (answers[i] == 1) != exact_triangle::intersects(pairs[i].a, pairs[i].b);
+        if ((answers[i] == 1) != test.intersects(pairs[i].a, pairs[i].b)) FAIL("pair " << i << " alone and in a batch");
+    }
+    CHECK(wrong == 0);
+}
+
+}  // namespace
+
+TEST_CASE("libraries' exact triangle tests equal ours, alone and in batches") {
+    std::size_t tried = 0;
+    for (const library_test_info& info : library_tests()) {
+        if (!info.exact) continue;
+        INFO(info.name);
+        ++tried;
+        const auto test = make_library_test({info.name, {}});
+        check_against_exact<float>(*test);
+        check_against_exact<double>(*test);
+    }
+    CHECK(tried >= 2);
+}
+
+TEST_CASE("every triangle test of a library decides clear pairs") {
+    const triangle3f face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+    for (const library_test_info& info : library_tests()) {
+        INFO(info.name);
+        CHECK_FALSE(info.summary.empty());
+        const auto test = make_library_test({info.name, {}});
+        CHECK(test->intersects(face, {{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}));
+        CHECK_FALSE(test->intersects(face, {{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}));
+        CHECK_FALSE(test->intersects(face, {{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}));
+        CHECK(test->takes_double());
+    }
+}
+
+TEST_CASE("every triangle test of a library comes to an end, whatever the pair") {
+    const auto floats = all_pairs<float>(30);
+    const auto doubles = all_pairs<double>(30);
+    std::vector<std::uint8_t> answers(floats.size());
+    for (const library_test_info& info : library_tests()) {
+        INFO(info.name);
+        const auto test = make_library_test({info.name, {}});
+        test->intersect(floats, answers);
+        test->intersect(doubles, answers);
+        CHECK(std::ranges::any_of(answers, [](std::uint8_t hit) { return hit == 1; }));
+    }
+}
+
+TEST_CASE("a library's triangle test is refused by the nearest name, and by settings that it has not") {
+    CHECK_THROWS_MATCHES(make_library_test({"epik", {}}), input_error,
+                         Message("unknown triangle test 'epik'; did you mean 'epick'?"));
+    CHECK_THROWS_MATCHES(make_library_test({"epick", {{"epsilon", "none"}}}), input_error,
+                         Message("epick takes no parameters, so not 'epsilon' either"));
+    const auto& all = library_tests();
+    if (std::ranges::find(all, "gjk", &library_test_info::name) == all.end()) SKIP("libccd was left out of the build");
+    CHECK_THROWS_AS(make_library_test({"gjk", {{"iterations", "0"}}}), input_error);
+    CHECK_NOTHROW(make_library_test({"mpr", {{"tolerance", "1e-9"}}}));
+}

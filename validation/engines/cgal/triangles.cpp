@@ -1,0 +1,49 @@
+module;
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+
+#include <string_view>
+#include <vector>
+
+#include "../exact_decision.hpp"
+
+module aabb.engines;
+
+import aabb.geometry;
+import :library_test;
+
+namespace aabb {
+
+namespace {
+
+struct epick_test {
+    static constexpr std::string_view name = "epick";
+    static constexpr std::string_view summary =
+        "CGAL's kernel with exact predicates and inexact constructions: exact, signs filtered by intervals";
+
+    template <class Real>
+    [[nodiscard]] static bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) {
+        return exactly_intersect(s, t);
+    }
+};
+
+struct epeck_test {
+    static constexpr std::string_view name = "epeck";
+    static constexpr std::string_view summary =
+        "CGAL's kernel with exact predicates and exact constructions: exact, numbers kept as intervals until asked";
+
+    template <class Real>
+    [[nodiscard]] static bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) {
+        using kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+        const auto point = [](const vec3<Real>& p) { return kernel::Point_3(p[0], p[1], p[2]); };
+        return hulls_intersect<kernel>({point(s[0]), point(s[1]), point(s[2])},
+                                       {point(t[0]), point(t[1]), point(t[2])});
+    }
+};
+
+}  // namespace
+
+std::vector<library_test> cgal_tests() {
+    return {library_test_of<epick_test>(), library_test_of<epeck_test>()};
+}
+
+}  // namespace aabb
