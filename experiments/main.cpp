@@ -75,6 +75,7 @@ int main_of(int argc, char** argv) {
         add_run(program, status);
         add_validate(program, status);
         add_compare(program, status);
+        add_errors(program, status);
         add_explain(program, status);
         add_list(program, status);
         add_pairs(program, status);

@@ -25,6 +25,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabblab.configs;
 import aabblab.progress;
 
 namespace aabblab {
@@ -76,7 +77,7 @@ void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t
 
 void classify(const classify_request& request) {
     const aabb::strategy_choice choice = aabb::parse_strategy(request.triangle);
-    const auto test = aabb::make_triangle_test(choice);
+    const auto test = triangle_test_named(choice);
     if (request.keep_doubles && !test->takes_double())
         throw aabb::input_error("--double: " + choice.name + " tests triangles of floats only");
     if (request.file == "-") return classify_lines(std::cin, "standard input", 0, *test, request.keep_doubles);
@@ -103,7 +104,10 @@ void add_classify(CLI::App& program, int&) {
                      "standard input; # begins a comment")
         ->required()
         ->type_name("");
-    command->add_option("--triangle", request->triangle, "Triangle test (default exact)")->type_name("R");
+    command
+        ->add_option("--triangle", request->triangle,
+                     "Triangle test (default exact), or one of a library that `list` shows")
+        ->type_name("R");
     command->add_flag("--double", request->keep_doubles, "Keep the numbers as doubles instead of rounding to float");
     command->callback([request] { classify(*request); });
 }

@@ -12,6 +12,7 @@ void add_classify(CLI::App& program, int& status);
 void add_collide(CLI::App& program, int& status);
 void add_compare(CLI::App& program, int& status);
 void add_contacts(CLI::App& program, int& status);
+void add_errors(CLI::App& program, int& status);
 void add_explain(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_pairs(CLI::App& program, int& status);

@@ -53,6 +53,12 @@ nlohmann::ordered_json everything() {
     all["engines_left_out"] = nlohmann::ordered_json::array();
     for (const auto& e : aabb::left_out_engines())
         all["engines_left_out"].push_back({{"name", e.name}, {"not_found", e.library}});
+    for (const auto& t : aabb::library_tests())
+        all["library_tests"].push_back({{"name", t.name},
+                                        {"summary", t.summary},
+                                        {"engine", t.engine},
+                                        {"exact", t.exact},
+                                        {"parameters", to_json(t.parameters)}});
     for (const auto& s : scene_kinds())
         all["scenes"].push_back({{"name", s.name},
                                  {"summary", s.summary},
@@ -61,6 +67,7 @@ nlohmann::ordered_json everything() {
                                  {"parameters", to_json(s.parameters)}});
     for (const auto& s : shapes())
         all["shapes"].push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
+    for (const auto& c : pair_classes()) all["pairs"].push_back({{"name", c.name}, {"summary", c.summary}});
     for (const metric_group_info& group : metric_groups)
         all["recorded"].push_back({{"name", group.name}, {"summary", group.summary}});
     for (const metric& m : metrics())
@@ -120,6 +127,11 @@ void print_text() {
     for (const auto& e : aabb::engines()) all.entry(e.name, e.summary + " (" + scope_of(e) + ")");
     for (const auto& e : aabb::left_out_engines())
         all.entry(e.name, "left out: " + e.library + " was not found when this was built");
+    all.heading("triangle tests of engines' libraries, for classify and errors");
+    for (const auto& t : aabb::library_tests()) {
+        all.entry(t.name, t.summary);
+        all.parameters(t.parameters);
+    }
     all.heading("scenes");
     for (const auto& s : scene_kinds()) {
         all.entry(s.name, s.summary);
@@ -130,6 +142,8 @@ void print_text() {
         all.entry(s.name, s.summary);
         all.parameters(s.parameters);
     }
+    all.heading("pairs of triangles, for errors");
+    for (const auto& c : pair_classes()) all.entry(c.name, c.summary);
     all.heading("recorded, for metrics of each");
     for (const metric_group_info& group : metric_groups) all.entry(group.name, group.summary);
     all.heading("metrics");

@@ -2,6 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -9,6 +10,8 @@ module;
 /// Experiments as config files: which scenes, which compositions and engines, what to measure.
 export module aabblab.configs;
 
+import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabblab.metrics;
 import aabblab.results;
@@ -47,6 +50,41 @@ enum class experiment_size { full, quick };
 
 /// The same from text. `file` is for messages.
 [[nodiscard]] experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size);
+
+/// A triangle test by the name and the settings that configs and options give it: a strategy, or one of a library.
+/// @throws aabb::input_error on an unknown name, with the nearest one, and on settings that it has not.
+[[nodiscard]] std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice);
+
+/// Generated pairs of triangles of one class.
+struct pair_set {
+    std::string pair_class;
+    bool in_double = false;
+    std::uint64_t count = 0;
+    std::uint64_t seed = 1;
+};
+
+/// A method over its knob: a triangle test with every value of the parameters that have several.
+struct error_curve {
+    std::string label;
+    std::vector<aabb::strategy_choice> points;
+};
+
+/// A config of `errors`: what triangle tests get wrong, against the time they take, on generated pairs and on the
+/// triangles of meshes whose boxes overlap.
+struct error_study {
+    std::string name;
+    std::string file;
+    std::string text;
+    bool quick = false;
+    std::vector<pair_set> pairs;
+    std::vector<scene_choice> scenes;  ///< of meshes
+    std::vector<error_curve> curves;
+    std::vector<std::string> notes;
+};
+
+/// @throws aabb::input_error as `read_experiment`.
+[[nodiscard]] error_study read_error_study(const std::filesystem::path& file, experiment_size size);
+[[nodiscard]] error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size);
 
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
 /// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.

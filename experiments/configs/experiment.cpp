@@ -33,11 +33,6 @@ namespace aabblab {
 std::vector<aabb::composition> compositions_of(const document& doc, const node* compose);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
 
-namespace {
-
-constexpr std::size_t quick_repeats = 3;
-constexpr std::size_t most_repeats = 1'000'000;
-
 /// Results stand in a folder of this name.
 std::string name_of(const document& doc) {
     const node* name = doc.root().find("name");
@@ -48,6 +43,11 @@ std::string name_of(const document& doc) {
         doc.fail(name->line, "the name '" + text + "' must consist of letters, digits, - and _");
     return text;
 }
+
+namespace {
+
+constexpr std::size_t quick_repeats = 3;
+constexpr std::size_t most_repeats = 1'000'000;
 
 std::vector<std::string> engines_of(const document& doc) {
     std::vector<std::string> names;
@@ -136,7 +136,8 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     return e;
 }
 
-experiment read_experiment(const std::filesystem::path& file, experiment_size size) {
+/// What stands in a config.
+std::string text_of_config(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) {
         const std::filesystem::path of_project = std::filesystem::path(AABBLAB_CONFIGS) / file.filename();
         throw aabb::input_error(
@@ -149,7 +150,11 @@ experiment read_experiment(const std::filesystem::path& file, experiment_size si
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));
     if (!in.good() && !in.eof()) throw aabb::input_error(file.string() + " cannot be read");
-    return parse_experiment(text, file.string(), size);
+    return text;
+}
+
+experiment read_experiment(const std::filesystem::path& file, experiment_size size) {
+    return parse_experiment(text_of_config(file), file.string(), size);
 }
 
 std::string hash_of(const experiment& e) {

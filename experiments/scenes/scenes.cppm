@@ -13,6 +13,7 @@ export module aabblab.scenes;
 import aabb.pipeline;
 import aabb.policy;
 import aabblab.files;
+export import :pair_classes;
 export import :scene_choice;
 export import :spacing;
 

@@ -45,6 +45,7 @@ const std::vector<std::string> rooms = {
     "experiments/analysis/comparison",
     "experiments/analysis/conditions",
     "experiments/configs",
+    "experiments/errors",
     "experiments/play",
     "experiments/benchmarks",
     "paper/claims",

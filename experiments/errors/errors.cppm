@@ -1,0 +1,58 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Error against run time: what methods get wrong on pairs of triangles, and the time that they take for it.
+export module aabblab.errors;
+
+import aabb.geometry;
+import aabb.policy;
+import aabblab.configs;
+import aabblab.figures;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.tables;
+
+export namespace aabblab {
+
+/// What one method got wrong on one set of pairs.
+struct error_point {
+    std::string pairs;  ///< of which kind: "random", "mesh_pair meshes=elephant.off"
+    bool in_double = false;
+    std::string curve;  ///< its label
+    aabb::strategy_choice triangle;
+    bool skipped = false;  ///< it takes no doubles, so it has no numbers here
+    std::uint64_t count = 0;
+    std::uint64_t intersecting = 0;     ///< of them, by CGAL's exact predicates
+    std::uint64_t false_negatives = 0;  ///< intersecting, but it said no
+    std::uint64_t false_positives = 0;  ///< apart, but it said yes
+    quartiles ns_a_pair;                ///< over batches, in which all methods take turns
+
+    [[nodiscard]] std::uint64_t wrong() const { return false_negatives + false_positives; }
+};
+
+/// Plays every method on every set of pairs. Sets are made batch by batch, so their size costs no memory.
+[[nodiscard]] std::vector<error_point> measure_errors(const error_study& study);
+
+/// The pairs of triangles whose boxes overlap, of objects whose boxes do, over all frames: the second triangle carried
+/// into the frame of the first one's mesh, as a tree's leaves are.
+[[nodiscard]] std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& scene);
+
+/// A row for each method and set of pairs, every number in full.
+[[nodiscard]] table error_rows(std::span<const error_point> points);
+
+/// Each method over all sets of one precision: shares of false answers, and the time a pair as the mean over the sets.
+[[nodiscard]] table error_summary(std::span<const error_point> points, bool in_double);
+
+/// What each method gets wrong in each set of one precision, a column a method: false negatives + false positives.
+[[nodiscard]] table errors_by_set(std::span<const error_point> points, bool in_double);
+
+/// One for all sets of a precision, and one for each set: error over run time, a curve a method over its knob, both
+/// logarithmic. What nothing else is both faster and more exact than is joined by a line; no error stands on the level
+/// 1/N.
+[[nodiscard]] std::vector<figure> error_figures(std::span<const error_point> points);
+
+}  // namespace aabblab

@@ -1,0 +1,145 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.errors;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
+import aabb.validation;
+import aabblab.configs;
+import aabblab.progress;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.stopwatch;
+
+namespace aabblab {
+
+namespace {
+
+/// As many pairs as stay in the processor's cache with their answers.
+constexpr std::size_t batch_size = 4096;
+
+/// A method on its way through one set of pairs.
+struct method {
+    error_point point;
+    std::unique_ptr<aabb::triangle_test> test;
+    std::vector<double> ns;  ///< a pair, of each batch
+};
+
+class one_set {
+public:
+    one_set(const error_study& study, const std::string& name, bool in_double) {
+        for (const error_curve& curve : study.curves)
+            for (const aabb::strategy_choice& choice : curve.points) {
+                method& m = methods_.emplace_back();
+                m.point.pairs = name;
+                m.point.in_double = in_double;
+                m.point.curve = curve.label;
+                m.point.triangle = choice;
+                m.test = triangle_test_named(choice);
+                m.point.skipped = in_double && !m.test->takes_double();
+            }
+    }
+
+    /// Each batch begins with another method, so that none always finds the cache as the same one left it.
+    template <class Real>
+    void play(std::span<const aabb::triangle_pair<Real>> batch) {
+        truth_.resize(batch.size());
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            truth_[i] = static_cast<std::uint8_t>(aabb::exactly_intersect(batch[i].a, batch[i].b));
+        answers_.resize(batch.size());
+        for (std::size_t i = 0; i < methods_.size(); ++i) {
+            method& m = methods_[(i + batches_) % methods_.size()];
+            if (m.point.skipped) continue;
+            const double ms = milliseconds_of([&] { m.test->intersect(batch, answers_); });
+            m.ns.push_back(ms * 1e6 / static_cast<double>(batch.size()));
+            count(m.point);
+        }
+        ++batches_;
+    }
+
+    [[nodiscard]] std::vector<error_point> points() {
+        std::vector<error_point> all;
+        for (method& m : methods_) {
+            if (!m.point.skipped) m.point.ns_a_pair = quartiles_of(m.ns);
+            all.push_back(std::move(m.point));
+        }
+        return all;
+    }
+
+private:
+    void count(error_point& point) const {
+        point.count += answers_.size();
+        for (std::size_t i = 0; i < answers_.size(); ++i) {
+            point.intersecting += truth_[i];
+            point.false_negatives += static_cast<std::uint64_t>(truth_[i] > answers_[i]);
+            point.false_positives += static_cast<std::uint64_t>(truth_[i] < answers_[i]);
+        }
+    }
+
+    std::vector<method> methods_;
+    std::vector<std::uint8_t> truth_;
+    std::vector<std::uint8_t> answers_;
+    std::size_t batches_ = 0;
+};
+
+template <class Real>
+std::vector<error_point> points_of(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
+    one_set all(study, set.pair_class, set.in_double);
+    pair_source<Real> source(set.pair_class, set.seed);
+    std::vector<aabb::triangle_pair<Real>> batch;
+    for (std::uint64_t left = set.count; left > 0; left -= batch.size()) {
+        batch.resize(std::min<std::uint64_t>(left, batch_size));
+        source.next(batch);
+        all.play(std::span<const aabb::triangle_pair<Real>>(batch));
+        shown.at(done += batch.size());
+    }
+    return all.points();
+}
+
+std::vector<error_point> points_of(const error_study& study, const scene_choice& scene) {
+    one_set all(study, scene.kind + " " + settings_text(scene), false);
+    std::vector<aabb::triangle_pair<float>> pairs = candidate_triangles(scene);
+    if (pairs.empty())
+        throw aabb::input_error(scene.kind + " " + settings_text(scene) + " has no triangles whose boxes overlap");
+    // A walk meets them in an order that no processor can guess; a search finds them row by row.
+    std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
+    const std::span<const aabb::triangle_pair<float>> rest(pairs);
+    for (std::size_t at = 0; at < pairs.size(); at += batch_size)
+        all.play(rest.subspan(at, std::min(batch_size, pairs.size() - at)));
+    return all.points();
+}
+
+}  // namespace
+
+std::vector<error_point> measure_errors(const error_study& study) {
+    std::vector<error_point> points;
+    const auto add = [&](std::vector<error_point> more) { std::ranges::move(more, std::back_inserter(points)); };
+    std::uint64_t all = 0;
+    for (const pair_set& set : study.pairs) all += set.count;
+    {
+        progress shown("pairs of triangles", all);
+        std::size_t done = 0;
+        for (const pair_set& set : study.pairs)
+            add(set.in_double ? points_of<double>(study, set, shown, done) : points_of<float>(study, set, shown, done));
+    }
+    progress shown("scenes", study.scenes.size());
+    for (std::size_t i = 0; i < study.scenes.size(); ++i) {
+        add(points_of(study, study.scenes[i]));
+        shown.at(i + 1);
+    }
+    return points;
+}
+
+}  // namespace aabblab

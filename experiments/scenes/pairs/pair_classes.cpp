@@ -1,0 +1,267 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.scenes;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.policy;
+import :pair_classes;
+import :random;
+
+namespace aabblab {
+
+namespace {
+
+using aabb::triangle3d;
+using aabb::vec3d;
+using pair = aabb::triangle_pair<double>;
+
+/// The numbers that a pair is rounded to.
+struct format {
+    double smallest;  ///< denormal
+    double largest;
+    double step;  ///< from 1 to the next greater number
+};
+template <class Real>
+constexpr format format_of{double{std::numeric_limits<Real>::denorm_min()}, double{std::numeric_limits<Real>::max()},
+                           double{std::numeric_limits<Real>::epsilon()}};
+
+vec3d scaled(const vec3d& p, double by) {
+    return {p[0] * by, p[1] * by, p[2] * by};
+}
+
+template <class Change>
+pair changed(pair p, Change change) {
+    for (triangle3d* t : {&p.a, &p.b})
+        for (vec3d& corner : t->corner) corner = change(corner);
+    return p;
+}
+
+triangle3d any_triangle(random_source& random) {
+    return {{random.point(1), random.point(1), random.point(1)}};
+}
+
+pair any_pair(random_source& random) {
+    const triangle3d a = any_triangle(random);
+    return {a, any_triangle(random)};
+}
+
+/// In the plane of a triangle, in it or near it.
+vec3d near_triangle(random_source& random, const triangle3d& t) {
+    const double u = 2 * random.unit() - 0.5;
+    const double v = 2 * random.unit() - 0.5;
+    return t[0] + scaled(t[1] - t[0], u) + scaled(t[2] - t[0], v);
+}
+
+/// Whole numbers from 0 to `most`.
+vec3d lattice_point(random_source& random, std::uint32_t most) {
+    const auto coordinate = [&] { return static_cast<double>(random.below(most + 1)); };
+    // Braces are evaluated from left to right.
+    return vec3d{coordinate(), coordinate(), coordinate()};
+}
+triangle3d lattice_triangle(random_source& random, std::uint32_t most) {
+    return triangle3d{{lattice_point(random, most), lattice_point(random, most), lattice_point(random, most)}};
+}
+pair lattice_pair(random_source& random, std::uint32_t most) {
+    const triangle3d a = lattice_triangle(random, most);
+    return {a, lattice_triangle(random, most)};
+}
+
+/// The other triangle lies in the plane of the first, off it by what rounding and a step of the last place do.
+pair near_coplanar(random_source& random, const format& f) {
+    pair p = any_pair(random);
+    for (vec3d& corner : p.b.corner) {
+        corner = near_triangle(random, p.a);
+        for (int k = 0; k < 3; ++k) corner[k] *= 1 + (static_cast<double>(random.below(3)) - 1) * f.step;
+    }
+    return p;
+}
+
+pair vertex_on_plane(random_source& random, const format&) {
+    pair p = any_pair(random);
+    p.b[0] = near_triangle(random, p.a);
+    return p;
+}
+
+/// An edge passes through a point of an edge of the other.
+pair edge_on_edge(random_source& random, const format&) {
+    pair p = any_pair(random);
+    const vec3d meeting = p.a[0] + scaled(p.a[1] - p.a[0], 1.5 * random.unit() - 0.25);
+    p.b[1] = meeting + scaled(meeting - p.b[0], random.unit());
+    return p;
+}
+
+pair shared_vertex(random_source& random, const format&) {
+    pair p = any_pair(random);
+    p.b[0] = p.a[1];
+    return p;
+}
+
+pair shared_edge(random_source& random, const format&) {
+    pair p = any_pair(random);
+    p.b[0] = p.a[2];
+    p.b[1] = p.a[1];
+    return p;
+}
+
+/// In one plane z = m x + n y of whole numbers, which nothing rounds.
+pair skew_coplanar(random_source& random, const format&) {
+    const double m = static_cast<double>(random.below(7)) - 3;
+    const double n = static_cast<double>(random.below(7)) - 3;
+    return changed(lattice_pair(random, 1000), [&](vec3d p) {
+        p[2] = m * p[0] + n * p[1];
+        return p;
+    });
+}
+
+pair coplanar(random_source& random, const format&) {
+    const double height = random.unit();
+    return changed(any_pair(random), [&](vec3d p) {
+        p[2] = height;
+        return p;
+    });
+}
+
+/// A millionth as high as long, and near each other.
+pair sliver(random_source& random, const format&) {
+    pair p = any_pair(random);
+    const vec3d meeting = random.point(1);
+    for (triangle3d* t : {&p.a, &p.b}) {
+        const vec3d along = random.direction();
+        const vec3d off = random.direction();
+        const vec3d start = meeting - scaled(along, random.unit()) + scaled(off, 1e-6 * random.within());
+        *t = {{start, start + along, start + scaled(along, random.unit()) + scaled(off, 1e-6)}};
+    }
+    return p;
+}
+
+/// One triangle or both are segments or points.
+pair zero_area(random_source& random, const format&) {
+    pair p = lattice_pair(random, 4);
+    const auto flatten = [&](triangle3d& t) {
+        const double further = static_cast<double>(random.below(4)) - 1;
+        t[2] = t[0] + scaled(t[1] - t[0], further);
+        if (random.below(4) == 0) t[1] = t[0];
+        std::swap(t[0], t[static_cast<int>(random.below(3))]);
+    };
+    flatten(p.b);
+    if (random.below(2) == 0) flatten(p.a);
+    return p;
+}
+
+/// Multiples of the smallest number.
+pair denormal(random_source& random, const format& f) {
+    return changed(lattice_pair(random, 64), [&](const vec3d& p) { return scaled(p, f.smallest); });
+}
+
+pair huge(random_source& random, const format& f) {
+    return changed(any_pair(random), [&](const vec3d& p) { return scaled(p, f.largest); });
+}
+
+/// A hundred in size, a million away: floats there are a sixteenth apart.
+pair far(random_source& random, const format&) {
+    return changed(any_pair(random), [](const vec3d& p) { return scaled(p, 100) + vec3d{1e6, 1e6, 1e6}; });
+}
+
+/// The other triangle is up to a million times as large, or as small, about a point of the first.
+pair mixed_magnitudes(random_source& random, const format&) {
+    pair p = any_pair(random);
+    const vec3d meeting = near_triangle(random, p.a);
+    const double size = std::ldexp(1, static_cast<int>(random.below(41)) - 20);
+    for (vec3d& corner : p.b.corner)
+        corner = meeting + scaled({corner[0] - 0.5, corner[1] - 0.5, corner[2] - 0.5}, size);
+    return p;
+}
+
+struct pair_class {
+    pair_class_info info;
+    pair (*make)(random_source&, const format&);
+};
+
+constexpr std::array<pair_class, 16> classes{{
+    {{"random", "corners anywhere in a unit cube"},
+     [](random_source& random, const format&) { return any_pair(random); }},
+    {{"small", "the same, a thousandth in size"},
+     [](random_source& random, const format&) {
+         return changed(any_pair(random), [](const vec3d& p) { return scaled(p, 1e-3); });
+     }},
+    {{"near_coplanar", "in one plane but for a step of the last place"}, near_coplanar},
+    {{"vertex_on_plane", "a corner in the other's plane, as near as it can be written"}, vertex_on_plane},
+    {{"edge_on_edge", "an edge through a point of an edge, as near as it can be written"}, edge_on_edge},
+    {{"shared_vertex", "a corner in common"}, shared_vertex},
+    {{"shared_edge", "two corners in common"}, shared_edge},
+    {{"skew_coplanar", "in one tilted plane, of whole numbers"}, skew_coplanar},
+    {{"coplanar", "at one height"}, coplanar},
+    {{"sliver", "a millionth as high as long"}, sliver},
+    {{"lattice", "corners on a lattice of 4 x 4 x 4 points, full of ties"},
+     [](random_source& random, const format&) { return lattice_pair(random, 3); }},
+    {{"zero_area", "one or both are segments or points"}, zero_area},
+    {{"denormal", "multiples of the smallest number"}, denormal},
+    {{"huge", "up to the greatest number"}, huge},
+    {{"far", "a hundred in size, a million from the origin"}, far},
+    {{"mixed_magnitudes", "one up to a million times as large as the other"}, mixed_magnitudes},
+}};
+
+template <class Real>
+aabb::triangle3<Real> rounded(const triangle3d& t) {
+    aabb::triangle3<Real> made{};
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) made[i][k] = static_cast<Real>(t[i][k]);
+    return made;
+}
+
+}  // namespace
+
+std::span<const pair_class_info> pair_classes() {
+    static const std::vector<pair_class_info> infos = [] {
+        std::vector<pair_class_info> all;
+        for (const pair_class& c : classes) all.push_back(c.info);
+        return all;
+    }();
+    return infos;
+}
+
+template <class Real>
+struct pair_source<Real>::state {
+    const pair_class* of;
+    random_source random;
+};
+
+template <class Real>
+pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
+    const auto found = std::ranges::find(classes, name, [](const pair_class& c) { return c.info.name; });
+    if (found == classes.end()) {
+        std::vector<std::string> names;
+        for (const pair_class& c : classes) names.emplace_back(c.info.name);
+        throw aabb::input_error(aabb::unknown_name("class of pairs", name, names));
+    }
+    state_ = std::make_unique<state>(&*found, random_source(seed));
+}
+
+template <class Real>
+pair_source<Real>::~pair_source() = default;
+
+template <class Real>
+void pair_source<Real>::next(std::span<aabb::triangle_pair<Real>> pairs) {
+    for (aabb::triangle_pair<Real>& p : pairs) {
+        const pair made = state_->of->make(state_->random, format_of<Real>);
+        p = {rounded<Real>(made.a), rounded<Real>(made.b)};
+    }
+}
+
+template class pair_source<float>;
+template class pair_source<double>;
+
+}  // namespace aabblab

@@ -1,0 +1,41 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Generated pairs of triangles, class by class: how the two lie to each other, and where and how large they are.
+export module aabblab.scenes:pair_classes;
+
+import aabb.geometry;
+
+export namespace aabblab {
+
+/// As `aabblab list` shows it.
+struct pair_class_info {
+    std::string_view name;  ///< "random", "near_coplanar", …
+    std::string_view summary;
+};
+[[nodiscard]] std::span<const pair_class_info> pair_classes();
+
+/// Pairs of a class, the same for the same seed on every machine.
+/// @tparam Real float or double
+template <class Real>
+class pair_source {
+public:
+    /// @throws aabb::input_error on an unknown class, with the nearest one.
+    pair_source(std::string_view pair_class, std::uint64_t seed);
+    ~pair_source();
+
+    /// Fills all of it with the next pairs.
+    void next(std::span<aabb::triangle_pair<Real>> pairs);
+
+private:
+    struct state;
+    std::unique_ptr<state> state_;
+};
+
+}  // namespace aabblab

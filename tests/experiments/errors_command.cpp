@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabb.triangle.exact;
+import aabblab.configs;
+import aabblab.errors;
+import aabblab.results;
+import aabblab.scenes;
+
+using aabblab::experiment_size;
+
+namespace {
+
+std::string refusal_of(const std::string& text) {
+    try {
+        static_cast<void>(aabblab::parse_error_study(text, "e.toml", experiment_size::full));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+const std::string one_curve = "[[curve]]\ntriangle = \"exact\"\n";
+const std::string some_pairs = "[[pairs]]\nclass = \"random\"\n";
+
+template <class Real>
+std::string digest_of(std::string_view pair_class) {
+    std::vector<aabb::triangle_pair<Real>> pairs(500);
+    aabblab::pair_source<Real>(pair_class, 1).next(pairs);
+    aabb::digest digest;
+    for (const aabb::triangle_pair<Real>& p : pairs)
+        for (const aabb::triangle3<Real>* t : {&p.a, &p.b})
+            for (const aabb::vec3<Real>& corner : t->corner)
+                for (const Real x : corner.at) {
+                    const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(x));
+                    digest.add(std::array{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)});
+                }
+    return digest.text();
+}
+
+}  // namespace
+
+TEST_CASE("every class of pairs has what it says, and both answers where it can") {
+    std::set<std::string> digests;
+    for (const aabblab::pair_class_info& info : aabblab::pair_classes()) {
+        INFO(info.name);
+        std::vector<aabb::triangle_pair<float>> pairs(2000);
+        aabblab::pair_source<float> source(info.name, 1);
+        source.next(pairs);
+        const auto hits =
+            std::ranges::count_if(pairs, [](const auto& p) { return aabb::exact_triangle::intersects(p.a, p.b); });
+        CHECK(hits > 20);
+        if (info.name == "shared_vertex" || info.name == "shared_edge")
+            CHECK(hits == 2000);
+        else
+            CHECK(hits < 1980);
+        CHECK(std::ranges::all_of(pairs, [](const auto& p) {
+            return std::ranges::all_of(p.a.corner, [](const auto& c) { return is_finite(c); }) &&
+                   std::ranges::all_of(p.b.corner, [](const auto& c) { return is_finite(c); });
+        }));
+        CHECK(digests.insert(digest_of<float>(info.name)).second);
+        CHECK(digest_of<double>(info.name) == digest_of<double>(info.name));
+    }
+    CHECK(aabblab::pair_classes().size() == 16);
+}
+
+TEST_CASE("errors counts what each method gets wrong, the same every time, and draws it") {
+    const temporary_folder folder;
+    const std::string config = folder.write(
+        "e.toml",
+        "name = \"e\"\n[[pairs]]\nclass = [\"random\", \"lattice\", \"small\"]\nprecision = [\"float\", \"double\"]\n"
+        "count = 5000\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"icosphere:triangles=320\"\nframes = 2\n"
+        "[[curve]]\ntriangle = [\"exact\", \"epick\"]\n[[curve]]\nlabel = \"classic\"\n"
+        "triangle = { name = \"moller\", epsilon = [\"absolute\", \"none\"] }\n");
+    std::map<std::string, std::string> counts[2];
+    for (auto& found : counts) {
+        const program_result ran = run_program({"errors", config, "--out", folder / "out"});
+        INFO(ran.err << ran.out);
+        REQUIRE(ran.status == 0);
+        CHECK(ran.out.find("moller:epsilon=none") != std::string::npos);
+        const std::string file = folder / "out/errors.csv";
+        const auto records = aabblab::read_csv(bytes_of_file(file), file).records;
+        const std::vector<std::string>& columns = records[0].fields;
+        for (const auto& r : std::span(records).subspan(1)) {
+            const auto at = [&](const char* column) {
+                return r.fields[static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin())];
+            };
+            found[at("pairs") + " " + at("precision") + " " + at("triangle")] =
+                at("count") + " " + at("intersecting") + " " + at("false_negatives") + " " + at("false_positives");
+        }
+    }
+    CHECK(counts[0] == counts[1]);
+    // moller takes no doubles.
+    CHECK(counts[0].size() == 3 * 4 + 3 * 2 + 4);
+    for (const auto& [name, numbers] : counts[0]) {
+        INFO(name << ": " << numbers);
+        if (name.find("moller") == std::string::npos) CHECK(numbers.ends_with(" 0 0"));
+    }
+    // Heights of a thousandth of a unit count as zero.
+    CHECK_FALSE(counts[0].at("small float moller:epsilon=absolute").ends_with(" 0"));
+    for (const char* name : {"errors_float", "errors_double", "errors_float_lattice"})
+        for (const char* ending : {".svg", ".csv", ".gp", ".pdf"}) {
+            INFO(name << ending);
+            CHECK(std::filesystem::exists(folder / "out/figures" / (std::string(name) + ending)));
+        }
+}
+
+TEST_CASE("a config of errors that is wrong is refused with its line and the nearest name") {
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs + one_curve) == "accepted");
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs) ==
+          "e.toml:1: this config has no curve; expected at least one [[curve]]");
+    CHECK(refusal_of("name = \"e\"\n" + one_curve) ==
+          "e.toml:1: this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
+    CHECK(refusal_of("name = \"e\"\n[[pairs]]\nclass = \"randon\"\n" + one_curve) ==
+          "e.toml:3: unknown class of pairs 'randon'; did you mean 'random'?");
+    CHECK(refusal_of("name = \"e\"\n[[pairs]]\nprecision = \"flaot\"\n" + one_curve) ==
+          "e.toml:3: unknown precision 'flaot'; did you mean 'float'?");
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs + "[[curve]]\ntriangle = \"exat\"\n") ==
+          "e.toml:5: unknown triangle 'exat'; did you mean 'exact'?");
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs + "[[curve]]\ntriangle = { name = \"moller\", epsilon = \"non\" }\n")
+              .starts_with("e.toml:5: moller: epsilon must be one of absolute, none, scaled"));
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs + some_pairs + one_curve) ==
+          "e.toml:5: these pairs are listed twice: random in float");
+    CHECK(refusal_of("name = \"e\"\n[[scene]]\nkind = \"brownian\"\n" + one_curve) ==
+          "e.toml:2: brownian is a scene of boxes, which has no triangles");
+    CHECK(refusal_of("name = \"e\"\n[[pairs]]\ncount = 0\n" + one_curve) ==
+          "e.toml:3: count must be a whole number, at least 1, not 0");
+    const program_result missing = run_program({"errors", "nowhere.toml"});
+    CHECK(missing.status == 2);
+    CHECK(is_one_sentence(missing.err));
+}
+
+TEST_CASE("the config that errors runs by default reads, and classify takes the tests of libraries") {
+    const auto study = aabblab::read_error_study(std::filesystem::path(AABBLAB_CONFIGS) / "errors/triangle_tests.toml",
+                                                 experiment_size::quick);
+    CHECK(study.pairs.size() == 2 * aabblab::pair_classes().size());
+    CHECK(study.curves.size() >= 8);
+    const std::string crossing = "0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 5 5 1\n";
+    CHECK(run_program({"classify", "-", "--triangle", "epeck"}, crossing).out == "1\n");
+    CHECK(run_program({"classify", "-", "--triangle", "interval_arithmetic:fallback=intersects"}, crossing).out ==
+          "1\n");
+    CHECK(run_program({"classify", "-", "--triangle", "epek"}, crossing).err.find("did you mean 'epeck'?") !=
+          std::string::npos);
+}
