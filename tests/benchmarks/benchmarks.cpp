@@ -77,7 +77,7 @@ TEST_CASE("Every test of local detection has a benchmark, with and without what 
         return strategy_of(benchmark.substr(std::string("test/").size()));
     };
     std::vector<std::string> expected = {"test/box", "test/triangle_box", "test/triangle_aabb",
-                                         triangle + "moller:epsilon=scaled"};
+                                         triangle + "moller:epsilon=scaled,division=yes"};
     for (const std::string& name : strategy_names(aabb::strategy_kind::triangle)) {
         const auto of_it = [&](const std::string& benchmark) {
             return benchmark.starts_with(triangle) && triangle_test_of(benchmark).name == name;
