@@ -142,6 +142,53 @@ bool exact_difference(const vec3d& p, const vec3d& q, vec3d& difference) noexcep
 
 namespace {
 
+/// The values as whole numbers of one unit, where each is less than 2^bits of them: so are the differences of floats
+/// that are not too different in size, of points of a lattice, and of all that was measured in one unit.
+/// @returns whether they are
+template <std::size_t N>
+bool as_integers(const std::array<double, N>& values, int bits, std::array<std::int64_t, N>& integers) noexcept {
+    double largest = 0;
+    for (const double v : values) largest = std::max(largest, std::abs(v));
+    integers = {};
+    if (largest == 0) return true;
+    if (!(largest >= 0x1p-900 && largest <= 0x1p900)) return false;
+    const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52) - 1023;
+    const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + bits - 1 - exponent) << 52);
+    bool whole = true;
+    for (std::size_t i = 0; i < N; ++i) {
+        const double scaled = values[i] * scale;
+        integers[i] = static_cast<std::int64_t>(scaled);
+        whole &= static_cast<double>(integers[i]) == scaled && (integers[i] != 0 || values[i] == 0);
+    }
+    return whole;
+}
+
+__extension__ using wide_signed = __int128;
+
+int sign_of(wide_signed x) noexcept {
+    return (x > 0) - (x < 0);
+}
+
+/// The sign of det(p, q, r); false where the numbers have too many digits.
+bool whole_volume_sign(const vec3d& p, const vec3d& q, const vec3d& r, int& sign) noexcept {
+    std::array<std::int64_t, 9> n;
+    // Six products of three numbers below 2^41 add up to less than 2^126.
+    if (!as_integers(std::array{p[0], p[1], p[2], q[0], q[1], q[2], r[0], r[1], r[2]}, 41, n)) return false;
+    const auto cross = [&](std::size_t i, std::size_t j) {
+        return wide_signed{n[3 + i]} * n[6 + j] - wide_signed{n[3 + j]} * n[6 + i];
+    };
+    sign = sign_of(n[0] * cross(1, 2) + n[1] * cross(2, 0) + n[2] * cross(0, 1));
+    return true;
+}
+
+/// The sign of p[x] q[y] - p[y] q[x], likewise.
+bool whole_area_sign(const vec3d& p, const vec3d& q, int x, int y, int& sign) noexcept {
+    std::array<std::int64_t, 4> n;
+    if (!as_integers(std::array{p[x], p[y], q[x], q[y]}, 62, n)) return false;
+    sign = sign_of(wide_signed{n[0]} * n[3] - wide_signed{n[1]} * n[2]);
+    return true;
+}
+
 product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
     vec3d ab;
@@ -177,10 +224,23 @@ product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int axis) no
 }  // namespace
 
 int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+    vec3d ab;
+    vec3d ac;
+    vec3d ad;
+    int sign = 0;
+    if (exact_difference(b, a, ab) && exact_difference(c, a, ac) && exact_difference(d, a, ad) &&
+        whole_volume_sign(ab, ac, ad, sign))
+        return sign;
     return volume_of(a, b, c, d).sign();
 }
 
 int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+    vec3d ab;
+    vec3d ac;
+    int sign = 0;
+    if (exact_difference(b, a, ab) && exact_difference(c, a, ac) &&
+        whole_area_sign(ab, ac, (axis + 1) % 3, (axis + 2) % 3, sign))
+        return sign;
     return area_of(a, b, c, axis).sign();
 }
 
