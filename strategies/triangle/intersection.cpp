@@ -10,6 +10,7 @@ module;
 
 module aabb.triangle.intersection;
 
+import aabb.base;
 import aabb.geometry;
 import aabb.triangle.orientation_test;
 
@@ -52,7 +53,7 @@ public:
     }
 
     [[nodiscard]] std::uint32_t size() const { return made_.size; }
-    void reorder(const std::array<std::uint8_t, 6>& order) {
+    void reorder(const std::array<std::uint32_t, 6>& order) {
         const std::array<vec3d, 6> before = made_.corners;
         for (std::size_t i = 0; i < made_.size; ++i) made_.corners[i] = before[order[i]];
     }
@@ -93,7 +94,7 @@ hull hull_of(const triangle3d& t) {
 // In one plane, seen along an axis in which it is not edge-on. What lies on a line is named by bits, one an edge: those
 // of the first hull from bit 0 on, those of the other from bit 3 on.
 
-/// What is known of a hull's corners, and of where its edges run, seen from the other.
+/// Where points and hulls lie, seen along an axis.
 struct view {
     int axis;
 
@@ -158,10 +159,10 @@ triangle_intersection flat_intersection(const hull& g, const hull& h, const view
         }
     if (made.size() > 3) {
         // Neighbours around the polygon, and no others, lie on the line of one edge.
-        std::array<std::uint8_t, 6> order{};
+        std::array<std::uint32_t, 6> order{};
         unsigned placed = 1;
         for (std::size_t i = 1; i < made.size(); ++i)
-            for (std::uint8_t next = 1; next < made.size(); ++next)
+            for (std::uint32_t next = 1; next < made.size(); ++next)
                 if ((placed >> next & 1) == 0 && (lines[order[i - 1]] & lines[next]) != 0) {
                     order[i] = next;
                     placed |= 1U << next;
@@ -205,16 +206,18 @@ triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
 /// A segment meets a triangle whose plane it crosses in one point.
 triangle_intersection pierced(const hull& segment, const triangle3d& t) {
     result made;
+    for (const vec3d& corner : t.corner) {
+        const auto is_straight = [&](int axis) {
+            return exact_turn(segment.corner[0], segment.corner[1], corner, axis) == 0;
+        };
+        if (!is_straight(0) || !is_straight(1) || !is_straight(2)) continue;
+        made.add_corner(corner);
+        return made.as(intersection_kind::point);
+    }
     const auto height = [&](const vec3d& p) { return exact_volume(t[0], t[1], t[2], p); };
     made.add_crossing(segment.corner[0], segment.corner[1], height(segment.corner[0]), height(segment.corner[1]));
     return made.as(intersection_kind::point);
 }
-
-/// One of the two edges of `of` between the apex and a corner, and how far their ends lie from the other plane.
-struct cut_edge {
-    vec3d from, to;
-    scaled_double from_height, to_height;
-};
 
 /// Corner 0 is what the other plane cuts off, at least one other corner being on the other side or on the plane; or it
 /// lies on the plane alone.
@@ -241,10 +244,22 @@ triangle_intersection crossing_intersection(const triangle3d& given_s, const sig
     triangle3d t = turned_to_apex(given_t, t_to_s, t_up);
     if (t_up < 0) std::swap(s[1], s[2]);
     if (s_up < 0) std::swap(t[1], t[2]);
+    const auto heights_over = [](const triangle3d& plane, const triangle3d& of) {
+        const auto height = [&](int i) { return exact_volume(plane[0], plane[1], plane[2], of[i]); };
+        return std::array{height(0), height(1), height(2)};
+    };
+    const auto s_heights = heights_over(t, s);
+    const auto t_heights = heights_over(s, t);
+    // The cut on edge 0i is a corner, so nothing rounds it.
+    const auto is_corner = [](const std::array<scaled_double, 3>& heights, std::size_t i) {
+        return heights[0].mantissa == 0 || heights[i].mantissa == 0;
+    };
     // Of where edge 0i of s lies to where edge 0j of t does.
     const auto order = [&](int i, int j) { return exact_side(s[0], s[i], t[0], t[j]); };
-    const bool low_is_of_s = order(1, 2) >= 0;
-    const bool high_is_of_s = order(2, 1) <= 0;
+    const int low = order(1, 2);
+    const int high = order(2, 1);
+    const bool low_is_of_s = low > 0 || (low == 0 && is_corner(s_heights, 1));
+    const bool high_is_of_s = high < 0 || (high == 0 && is_corner(s_heights, 2));
     const auto on_plane = [](const signs_of_corners& d) { return std::ranges::count(d, 0); };
     // One corner on the plane, the others on one side.
     const auto is_point = [&](const signs_of_corners& d) { return on_plane(d) == 1 && d[0] + d[1] + d[2] != 0; };
@@ -252,13 +267,12 @@ triangle_intersection crossing_intersection(const triangle3d& given_s, const sig
                            : low_is_of_s               ? order(1, 1) == 0
                                                        : order(2, 2) == 0;
     result made;
-    const auto add = [&](const triangle3d& of, int end, const triangle3d& plane) {
-        made.add_crossing(of[0], of[end], exact_volume(plane[0], plane[1], plane[2], of[0]),
-                          exact_volume(plane[0], plane[1], plane[2], of[end]));
+    const auto add = [&](const triangle3d& of, const std::array<scaled_double, 3>& heights, int end) {
+        made.add_crossing(of[0], of[end], heights[0], heights[static_cast<std::size_t>(end)]);
     };
-    low_is_of_s ? add(s, 1, t) : add(t, 2, s);
+    low_is_of_s ? add(s, s_heights, 1) : add(t, t_heights, 2);
     if (is_single) return made.as(intersection_kind::point);
-    high_is_of_s ? add(s, 2, t) : add(t, 1, s);
+    high_is_of_s ? add(s, s_heights, 2) : add(t, t_heights, 1);
     const bool an_edge_touches = on_plane(s_to_t) == 2 || on_plane(t_to_s) == 2;
     return made.as(an_edge_touches ? intersection_kind::segment : intersection_kind::transversal);
 }
@@ -271,6 +285,7 @@ std::string_view name_of(intersection_kind kind) {
 }
 
 triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t) {
+    require_ieee_arithmetic();
     // A corner in common is a hit, but what else is common must still be found.
     if (!orientation_test<orientations>::intersects(s, t)) return {};
     const hull g = hull_of(s);

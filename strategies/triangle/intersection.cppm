@@ -27,7 +27,7 @@ struct triangle_intersection {
     std::uint32_t size = 0;             ///< corners: 1 of a point, 2 of a segment, 3 to 6 of a polygon
     std::array<vec3d, 6> corners = {};  ///< those of a polygon in their order around it
     /// No coordinate of a corner is off by more than this on its axis; 0 where all corners are corners of the
-    /// triangles.
+    /// triangles, which are given as they are.
     vec3d error = {};
 };
 
@@ -39,7 +39,8 @@ struct triangle_intersection {
 /// rounded once, p (1 + δ) with |δ| <= 1.001 u, u = 2^-53. Then a + (b - a) t with t = p / (p - q), a the nearer end:
 /// p - q adds what has one sign, so t carries less than 4.1 u, the difference b - a one u and the product another: 6.2
 /// u of |b - a| t, where t <= 1/2; the last sum rounds once more. On each axis the error is at most 4 u |b - a| + u
-/// |corner|, and half the smallest denormal where the result is one.
+/// |corner|, and the smallest denormal for what underflows.
+/// @throws input_error as `require_ieee_arithmetic`.
 [[nodiscard]] triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t);
 [[nodiscard]] inline triangle_intersection intersection_of(const triangle3f& s, const triangle3f& t) {
     return intersection_of(in_double(s), in_double(t));

@@ -125,7 +125,7 @@ enum class fallback_choice : std::uint8_t {
 
 /// `orientation_test` by signs of interval arithmetic, without a bound derived by hand. With `fallback=exact` exact
 /// like `exact_triangle`; with `fallback=intersects` it never misses a pair, but takes for hits what it cannot rule
-/// out, which is all that touches and comes within rounding of it. When to use: to see what a dynamic filter costs
+/// out, near misses within rounding. When to use: to see what a dynamic filter costs
 /// beside the semi-static one, and as a test that can only err one way.
 class interval_arithmetic_triangle {
 public:
