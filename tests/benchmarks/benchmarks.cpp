@@ -138,7 +138,7 @@ TEST_CASE("Tests of local detection report a time and the share of hits, which i
 
 TEST_CASE("Benchmarks report their counters") {
     const program_result result =
-        run_program({"--benchmark_filter=(insertion|axial_cut:axes=2,limit=on|incremental|one_axis:axis=x)"
+        run_program({"--benchmark_filter=/(insertion|axial_cut:axes=2,limit=on|incremental|one_axis:axis=x)"
                      "/n:1000(/displacement:0.1)?(/manual_time)?$",
                      "--benchmark_min_time=0.001", "--benchmark_format=json"});
     REQUIRE(result.status == 0);
