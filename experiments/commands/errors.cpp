@@ -50,6 +50,7 @@ void run(const errors_request& request) {
     std::filesystem::create_directories(folder);
     const std::vector<error_point> points = measure_errors(study);
     write_file(folder / "errors.csv", to_csv(error_rows(points)));
+    write_file(folder / "config.toml", study.text);
     print_tables(points);
     draw(folder / "figures", error_figures(points));
     print("Every number is in " + visible((folder / "errors.csv").string()) + ", a plot for each set in " +

@@ -73,9 +73,7 @@ struct error_curve {
 /// triangles of meshes whose boxes overlap.
 struct error_study {
     std::string name;
-    std::string file;
-    std::string text;
-    bool quick = false;
+    std::string text;  ///< what stands in the config
     std::vector<pair_set> pairs;
     std::vector<scene_choice> scenes;  ///< of meshes
     std::vector<error_curve> curves;

@@ -20,6 +20,7 @@ namespace aabblab {
 std::string name_of(const document& doc);
 std::string text_of_config(const std::filesystem::path& file);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
+const node* seed_of(const document& doc, experiment_size size);
 
 namespace {
 
@@ -103,6 +104,30 @@ void add_pairs(const document& doc, const node& written, experiment_size size, s
     }
 }
 
+/// Some tests take floats only.
+void require_doubles_taken(const document& doc, error_study& study) {
+    if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
+    std::size_t taking = 0;
+    for (const error_curve& curve : study.curves)
+        for (const aabb::strategy_choice& choice : curve.points) {
+            if (triangle_test_named(choice)->takes_double())
+                ++taking;
+            else
+                study.notes.push_back(to_text(choice) + " takes triangles of floats only, and has no part in doubles");
+        }
+    if (taking == 0) doc.fail(doc.root().find("pairs")->line, "no curve takes triangles of doubles");
+}
+
+void require_meshes(const document& doc, const node& scene) {
+    const node* kinds = scene.find("kind");
+    if (!kinds) return;
+    for (const located_text& kind : doc.alternatives_of("kind", *kinds)) {
+        const auto info = std::ranges::find(scene_kinds(), kind.text, &scene_info::name);
+        if (info != scene_kinds().end() && !info->has_meshes)
+            doc.fail(kind.line, kind.text + " is a scene of boxes, which has no triangles");
+    }
+}
+
 }  // namespace
 
 error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
@@ -110,10 +135,8 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "quick"});
     error_study study;
     study.name = name_of(doc);
-    study.file = file;
     study.text = text;
-    study.quick = size == experiment_size::quick;
-    const node* seed = doc.root().find("seed");
+    const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
     const auto tables = [&](const char* key) -> std::vector<node> {
         const node* list = doc.root().find(key);
@@ -122,21 +145,28 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
             doc.fail(list->line, std::string(key) + " must stand in double brackets: [[" + key + "]]");
         return list->items;
     };
-    for (const node& one : tables("curve")) study.curves.push_back(curve_of(doc, one));
+    each_once<aabb::strategy_choice> methods;
+    for (const node& one : tables("curve")) {
+        study.curves.push_back(curve_of(doc, one));
+        const error_curve& curve = study.curves.back();
+        if (curve.label.empty()) doc.fail(one.line, "the label of this curve is empty");
+        if (std::ranges::count(study.curves, curve.label, &error_curve::label) > 1)
+            doc.fail(one.line, "two curves have the label '" + curve.label + "'");
+        for (const aabb::strategy_choice& choice : curve.points)
+            if (!methods.add(choice, to_text(choice)))
+                doc.fail(one.line, "'" + to_text(choice) + "' is a point of two curves");
+    }
     if (study.curves.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]]");
     each_once<pair_set> sets;
     for (const node& one : tables("pairs")) add_pairs(doc, one, size, number, sets);
     study.pairs = sets.all();
+    require_doubles_taken(doc, study);
+    for (const node& one : tables("scene")) require_meshes(doc, one);
     if (doc.root().find("scene")) {
         experiment played;
         read_scenes(doc, size, played);
         study.scenes = played.scenes;
-        study.notes = played.notes;
-        for (const scene_choice& scene : study.scenes) {
-            const auto info = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
-            if (!info->has_meshes)
-                doc.fail(doc.root().find("scene")->line, scene.kind + " is a scene of boxes, which has no triangles");
-        }
+        study.notes.insert(study.notes.end(), played.notes.begin(), played.notes.end());
     }
     if (study.pairs.empty() && study.scenes.empty())
         doc.fail(1, "this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");

@@ -179,6 +179,8 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
     }
 }
 
+}  // namespace
+
 /// The seeds of scenes that have none of their own, for this size of the experiment.
 const node* seed_of(const document& doc, experiment_size size) {
     const node* quick = doc.root().find("quick");
@@ -189,8 +191,6 @@ const node* seed_of(const document& doc, experiment_size size) {
     }
     return doc.root().find("seed");
 }
-
-}  // namespace
 
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node* scenes = doc.root().find("scene");

@@ -18,7 +18,9 @@ namespace {
 /// Appends the pairs of two objects.
 void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
                     std::vector<aabb::triangle_pair<float>>& candidates) {
-    const aabb::relative_pose to_a(pose_a, pose_b, aabb::bounds_of(b));
+    const aabb::box bounds_b = aabb::bounds_of(b);
+    const aabb::relative_pose to_a(pose_a, pose_b, bounds_b);
+    if (!aabb::overlaps(aabb::bounds_of(a), to_a(bounds_b))) return;
     std::vector<aabb::box> boxes;
     std::vector<aabb::triangle3f> carried;
     for (std::uint32_t t = 0; t < a.triangle_count(); ++t) boxes.push_back(aabb::bounds_of(a.triangle(t)));

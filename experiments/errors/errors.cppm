@@ -24,7 +24,6 @@ struct error_point {
     bool in_double = false;
     std::string curve;  ///< its label
     aabb::strategy_choice triangle;
-    bool skipped = false;  ///< it takes no doubles, so it has no numbers here
     std::uint64_t count = 0;
     std::uint64_t intersecting = 0;     ///< of them, by CGAL's exact predicates
     std::uint64_t false_negatives = 0;  ///< intersecting, but it said no
@@ -34,7 +33,8 @@ struct error_point {
     [[nodiscard]] std::uint64_t wrong() const { return false_negatives + false_positives; }
 };
 
-/// Plays every method on every set of pairs. Sets are made batch by batch, so their size costs no memory.
+/// Plays every method on every set of pairs that it takes. Generated pairs are made batch by batch, so that their
+/// number costs no memory.
 [[nodiscard]] std::vector<error_point> measure_errors(const error_study& study);
 
 /// The pairs of triangles whose boxes overlap, of objects whose boxes do, over all frames: the second triangle carried
@@ -47,7 +47,7 @@ struct error_point {
 /// Each method over all sets of one precision: shares of false answers, and the time a pair as the mean over the sets.
 [[nodiscard]] table error_summary(std::span<const error_point> points, bool in_double);
 
-/// What each method gets wrong in each set of one precision, a column a method: false negatives + false positives.
+/// What each method gets wrong in each set of one precision, a column a set: false negatives + false positives.
 [[nodiscard]] table errors_by_set(std::span<const error_point> points, bool in_double);
 
 /// One for all sets of a precision, and one for each set: error over run time, a curve a method over its knob, both

@@ -33,6 +33,7 @@ constexpr std::size_t batch_size = 4096;
 /// A method on its way through one set of pairs.
 struct method {
     error_point point;
+    bool takes_part = true;
     std::unique_ptr<aabb::triangle_test> test;
     std::vector<double> ns;  ///< a pair, of each batch
 };
@@ -48,7 +49,7 @@ public:
                 m.point.curve = curve.label;
                 m.point.triangle = choice;
                 m.test = triangle_test_named(choice);
-                m.point.skipped = in_double && !m.test->takes_double();
+                m.takes_part = !in_double || m.test->takes_double();
             }
     }
 
@@ -61,7 +62,7 @@ public:
         answers_.resize(batch.size());
         for (std::size_t i = 0; i < methods_.size(); ++i) {
             method& m = methods_[(i + batches_) % methods_.size()];
-            if (m.point.skipped) continue;
+            if (!m.takes_part) continue;
             const double ms = milliseconds_of([&] { m.test->intersect(batch, answers_); });
             m.ns.push_back(ms * 1e6 / static_cast<double>(batch.size()));
             count(m.point);
@@ -72,7 +73,8 @@ public:
     [[nodiscard]] std::vector<error_point> points() {
         std::vector<error_point> all;
         for (method& m : methods_) {
-            if (!m.point.skipped) m.point.ns_a_pair = quartiles_of(m.ns);
+            if (!m.takes_part) continue;
+            m.point.ns_a_pair = quartiles_of(m.ns);
             all.push_back(std::move(m.point));
         }
         return all;
@@ -109,10 +111,10 @@ std::vector<error_point> points_of(const error_study& study, const pair_set& set
 }
 
 std::vector<error_point> points_of(const error_study& study, const scene_choice& scene) {
-    one_set all(study, scene.kind + " " + settings_text(scene), false);
+    one_set all(study, scene.kind + " " + parameters_text(scene), false);
     std::vector<aabb::triangle_pair<float>> pairs = candidate_triangles(scene);
     if (pairs.empty())
-        throw aabb::input_error(scene.kind + " " + settings_text(scene) + " has no triangles whose boxes overlap");
+        throw aabb::input_error(scene.kind + " " + parameters_text(scene) + " has no triangles whose boxes overlap");
     // A walk meets them in an order that no processor can guess; a search finds them row by row.
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
     const std::span<const aabb::triangle_pair<float>> rest(pairs);

@@ -2,12 +2,12 @@ module;
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <iterator>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -44,11 +44,10 @@ struct pooled {
     [[nodiscard]] double ns() const { return ns_of_sets / static_cast<double>(sets); }
 };
 
-/// In the order of the methods; a method that takes part in no set is left out.
+/// In the order of the methods.
 std::vector<pooled> pooled_over(std::span<const error_point> points) {
     std::vector<pooled> all;
     for (const error_point& p : points) {
-        if (p.skipped) continue;
         auto found =
             std::ranges::find_if(all, [&](const pooled& m) { return m.curve == p.curve && m.triangle == p.triangle; });
         if (found == all.end()) found = all.insert(all.end(), {.curve = p.curve, .triangle = p.triangle});
@@ -84,11 +83,11 @@ std::vector<std::string> sets_in(std::span<const error_point> points) {
 }
 
 /// What nothing else is both faster than and at least as exact as, from the fastest to the most exact.
-std::vector<figure_point> front_of(std::vector<figure_point> points) {
-    std::ranges::sort(points, {}, [](const figure_point& p) { return std::pair(p.x, p.y); });
-    std::vector<figure_point> front;
-    for (const figure_point& p : points)
-        if (front.empty() || p.y < front.back().y) front.push_back(p);
+std::vector<pooled> front_of(std::vector<pooled> methods) {
+    std::ranges::sort(methods, {}, [](const pooled& m) { return std::pair(m.ns(), m.error()); });
+    std::vector<pooled> front;
+    for (const pooled& m : methods)
+        if (front.empty() || m.error() < front.back().error()) front.push_back(m);
     return front;
 }
 
@@ -104,15 +103,19 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
              .lines = {},
              .marks = {}};
     const double floor = 1 / static_cast<double>(methods.front().count);
-    std::vector<figure_point> all;
+    const auto point_of = [&](const pooled& m) {
+        const double share = std::max(floor, m.error());
+        return figure_point{m.ns(), share, share, share};
+    };
     for (const pooled& m : methods) {
         auto line = std::ranges::find(f.lines, m.curve, &series::label);
         if (line == f.lines.end()) line = f.lines.insert(f.lines.end(), {m.curve, series_style::line, {}});
-        const double share = std::max(floor, m.error());
-        line->points.push_back({m.ns(), share, share, share});
-        all.push_back(line->points.back());
+        line->points.push_back(point_of(m));
     }
-    f.lines.push_back({"not dominated", series_style::line, front_of(all)});
+    series front{"not dominated", series_style::line, {}};
+    for (const pooled& m : front_of(methods)) front.points.push_back(point_of(m));
+    // Below the curves.
+    f.lines.insert(f.lines.begin(), front);
     f.lines.push_back({"nothing wrong (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
     return f;
 }
@@ -139,7 +142,6 @@ table error_rows(std::span<const error_point> points) {
              {"ns_high"}},
             {}};
     for (const error_point& p : points) {
-        if (p.skipped) continue;
         t.rows.push_back({p.pairs, std::string(precision_of(p.in_double)), p.curve, to_text(p.triangle),
                           std::to_string(p.count), std::to_string(p.intersecting), std::to_string(p.false_negatives),
                           std::to_string(p.false_positives), aabb::shortest(p.ns_a_pair.median),
@@ -192,7 +194,9 @@ std::vector<figure> error_figures(std::span<const error_point> points) {
         for (const std::string& set : sets) {
             std::vector<error_point> own;
             std::ranges::copy_if(some, std::back_inserter(own), [&](const error_point& p) { return p.pairs == set; });
-            figures.push_back(figure_of("errors_" + precision + "_" + file_name(set), set + " in " + precision, own));
+            std::string name = "errors_" + precision + "_" + file_name(set);
+            while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
+            figures.push_back(figure_of(name, set + " in " + precision, own));
         }
     }
     return figures;

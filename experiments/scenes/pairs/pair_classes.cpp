@@ -247,7 +247,9 @@ pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
         for (const pair_class& c : classes) names.emplace_back(c.info.name);
         throw aabb::input_error(aabb::unknown_name("class of pairs", name, names));
     }
-    state_ = std::make_unique<state>(&*found, random_source(seed));
+    // Classes draw apart, or the same corners would stand in several of them.
+    const auto number = static_cast<std::uint64_t>(found - classes.begin());
+    state_ = std::make_unique<state>(&*found, random_source(seed * classes.size() + number));
 }
 
 template <class Real>

@@ -1,11 +1,8 @@
 module;
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 /// Generated pairs of triangles, class by class: how the two lie to each other, and where and how large they are.
 export module aabblab.scenes:pair_classes;
