@@ -1,7 +1,6 @@
 module;
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,7 +43,6 @@ public:
             return;
         }
         const table& gaps = config_.gaps == gap_sequence::ciura ? ciura : tokuda;
-        assert(list.size() / 2 <= gaps.back());
         for (std::size_t i = gaps.size(); i-- > 0;)
             if (gaps[i] < list.size()) pass(list, gaps[i], counters);
     }
@@ -70,6 +68,7 @@ private:
         return gaps;
     }();
     static_assert(tokuda[1] == 4 && tokuda[2] == 9 && tokuda[3] == 20 && tokuda[4] == 46 && tokuda[8] == 1182);
+    static_assert(ciura.back() >= std::size_t{1} << 31 && tokuda.back() >= std::size_t{1} << 31);
 
     template <CounterPolicy Counters>
     static constexpr void pass(std::span<projection> list, std::size_t gap, Counters& counters) {
