@@ -55,7 +55,9 @@ error_curve curve_of(const document& doc, const node& written) {
     error_curve curve;
     const node* label = written.find("label");
     curve.label = label ? doc.text_of("label", *label) : label_of(names, parameters);
-    doc.require_few(triangle->line, "points of a curve", sizes_of(parameters), names.size());
+    std::vector<std::size_t> factors = sizes_of(parameters);
+    factors.push_back(names.size());
+    doc.require_few(triangle->line, "points of a curve", factors, 0);
     for (const located_text& name : names)
         for (std::vector<aabb::setting>& settings : multiplied(parameters)) {
             aabb::strategy_choice choice{name.text, std::move(settings)};

@@ -138,10 +138,6 @@ bool exact_difference(const vec3d& p, const vec3d& q, vec3d& difference) noexcep
     return exact;
 }
 
-}  // namespace
-
-namespace {
-
 /// The values as whole numbers of one unit, where each is less than 2^bits of them: so are the differences of floats
 /// that are not too different in size, of points of a lattice, and of all that was measured in one unit.
 /// @returns whether they are
@@ -170,7 +166,8 @@ int sign_of(wide_signed x) noexcept {
 }
 
 /// The sign of det(p, q, r); false where the numbers have too many digits.
-bool whole_volume_sign(const vec3d& p, const vec3d& q, const vec3d& r, int& sign) noexcept {
+bool whole_volume_sign(const std::array<vec3d, 3>& rows, int& sign) noexcept {
+    const auto& [p, q, r] = rows;
     std::array<std::int64_t, 9> n;
     // Six products of three numbers below 2^41 add up to less than 2^126.
     if (!as_integers(std::array{p[0], p[1], p[2], q[0], q[1], q[2], r[0], r[1], r[2]}, 41, n)) return false;
@@ -182,74 +179,81 @@ bool whole_volume_sign(const vec3d& p, const vec3d& q, const vec3d& r, int& sign
 }
 
 /// The sign of p[x] q[y] - p[y] q[x], likewise.
-bool whole_area_sign(const vec3d& p, const vec3d& q, int x, int y, int& sign) noexcept {
+bool whole_area_sign(const std::array<vec3d, 2>& rows, int x, int y, int& sign) noexcept {
+    const auto& [p, q] = rows;
     std::array<std::int64_t, 4> n;
     if (!as_integers(std::array{p[x], p[y], q[x], q[y]}, 62, n)) return false;
     sign = sign_of(wide_signed{n[0]} * n[3] - wide_signed{n[1]} * n[2]);
     return true;
 }
 
-product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+/// b, c and d from a, if no coordinate needs rounding.
+bool exact_rows(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d, std::array<vec3d, 3>& rows) noexcept {
+    return exact_difference(b, a, rows[0]) && exact_difference(c, a, rows[1]) && exact_difference(d, a, rows[2]);
+}
+bool exact_rows(const vec3d& a, const vec3d& b, const vec3d& c, std::array<vec3d, 2>& rows) noexcept {
+    return exact_difference(b, a, rows[0]) && exact_difference(c, a, rows[1]);
+}
+
+product_sum volume_of(const std::array<vec3d, 3>& rows) noexcept {
     product_sum sum;
-    vec3d ab;
-    vec3d ac;
-    vec3d ad;
-    if (exact_difference(b, a, ab) && exact_difference(c, a, ac) && exact_difference(d, a, ad)) {
-        sum.add_determinant(ab, ac, ad);
-    } else {
-        sum.add_determinant(b, c, d);
-        sum.add_determinant(c, a, d);
-        sum.add_determinant(a, b, d);
-        sum.add_determinant(b, a, c);
-    }
+    sum.add_determinant(rows[0], rows[1], rows[2]);
     return sum;
 }
 
-product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+/// Of points whose differences would be rounded.
+product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
-    const int x = (axis + 1) % 3;
-    const int y = (axis + 2) % 3;
-    vec3d ab;
-    vec3d ac;
-    if (exact_difference(b, a, ab) && exact_difference(c, a, ac)) {
-        sum.add_cross(ab, ac, x, y);
-    } else {
-        sum.add_cross(a, b, x, y);
-        sum.add_cross(b, c, x, y);
-        sum.add_cross(c, a, x, y);
-    }
+    sum.add_determinant(b, c, d);
+    sum.add_determinant(c, a, d);
+    sum.add_determinant(a, b, d);
+    sum.add_determinant(b, a, c);
+    return sum;
+}
+
+product_sum area_of(const std::array<vec3d, 2>& rows, int x, int y) noexcept {
+    product_sum sum;
+    sum.add_cross(rows[0], rows[1], x, y);
+    return sum;
+}
+
+/// Of points whose differences would be rounded.
+product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y) noexcept {
+    product_sum sum;
+    sum.add_cross(a, b, x, y);
+    sum.add_cross(b, c, x, y);
+    sum.add_cross(c, a, x, y);
     return sum;
 }
 
 }  // namespace
 
 int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
-    vec3d ab;
-    vec3d ac;
-    vec3d ad;
+    std::array<vec3d, 3> rows;
+    if (!exact_rows(a, b, c, d, rows)) return volume_of(a, b, c, d).sign();
     int sign = 0;
-    if (exact_difference(b, a, ab) && exact_difference(c, a, ac) && exact_difference(d, a, ad) &&
-        whole_volume_sign(ab, ac, ad, sign))
-        return sign;
-    return volume_of(a, b, c, d).sign();
+    return whole_volume_sign(rows, sign) ? sign : volume_of(rows).sign();
 }
 
 int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-    vec3d ab;
-    vec3d ac;
+    const int x = (axis + 1) % 3;
+    const int y = (axis + 2) % 3;
+    std::array<vec3d, 2> rows;
+    if (!exact_rows(a, b, c, rows)) return area_of(a, b, c, x, y).sign();
     int sign = 0;
-    if (exact_difference(b, a, ab) && exact_difference(c, a, ac) &&
-        whole_area_sign(ab, ac, (axis + 1) % 3, (axis + 2) % 3, sign))
-        return sign;
-    return area_of(a, b, c, axis).sign();
+    return whole_area_sign(rows, x, y, sign) ? sign : area_of(rows, x, y).sign();
 }
 
 scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
-    return volume_of(a, b, c, d).rounded();
+    std::array<vec3d, 3> rows;
+    return (exact_rows(a, b, c, d, rows) ? volume_of(rows) : volume_of(a, b, c, d)).rounded();
 }
 
 scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-    return area_of(a, b, c, axis).rounded();
+    const int x = (axis + 1) % 3;
+    const int y = (axis + 2) % 3;
+    std::array<vec3d, 2> rows;
+    return (exact_rows(a, b, c, rows) ? area_of(rows, x, y) : area_of(a, b, c, x, y)).rounded();
 }
 
 }  // namespace aabb
