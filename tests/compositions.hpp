@@ -49,7 +49,7 @@ inline std::vector<aabb::strategy_choice> all_choices(aabb::strategy_kind kind) 
     return all;
 }
 
-/// Every combination of a stage's strategies that makes sense.
+/// Every combination of a stage's strategies that makes sense, exact or not.
 inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     std::vector<aabb::composition> all(1);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -62,8 +62,11 @@ inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     std::erase_if(all, [&](const aabb::composition& c) { return !refusal_of(c, stage).empty(); });
     return all;
 }
+/// The exact ones.
 inline std::vector<aabb::composition> all_global_compositions() {
-    return all_compositions(aabb::stage::global_search);
+    std::vector<aabb::composition> all = all_compositions(aabb::stage::global_search);
+    std::erase_if(all, [](const aabb::composition& c) { return !is_exact(c, aabb::stage::global_search); });
+    return all;
 }
 inline std::vector<aabb::composition> all_local_compositions() {
     return all_compositions(aabb::stage::local_detection);

@@ -15,12 +15,13 @@
 #include "output.hpp"
 #include "process.hpp"
 
-#include "experiments.hpp"
+#include "error_studies.hpp"
 
 import aabb.base;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.configs;
+import aabblab.errors;
 import aabblab.files;
 import aabblab.tables;
 import aabblab.reproduction;
@@ -89,11 +90,22 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     return failures;
 }
 
+/// Where the studies of error against run time stand.
+std::filesystem::path folder_of_study(const std::filesystem::path& folder, const std::filesystem::path& config) {
+    return folder / "errors" / config.stem();
+}
+
+experiment_size size_of(bool quick) {
+    return quick ? experiment_size::quick : experiment_size::full;
+}
+
 /// Plays every experiment of the paper, and keeps what is wrong as soon as it is found.
 void measure(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs())
         experiments.push_back(open_experiment(config.string(), quick));
+    const std::vector<std::filesystem::path> studies = error_configs();
+    const std::size_t all = experiments.size() + 1 + studies.size();
     std::vector<std::string> failures;
     const auto add = [&](const std::vector<std::string>& found) {
         failures.insert(failures.end(), found.begin(), found.end());
@@ -101,11 +113,52 @@ void measure(const std::filesystem::path& folder, bool quick) {
     };
     std::filesystem::remove(file_of_failures(folder));
     for (const experiment& e : experiments) {
-        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, experiments.size() + 1, e.name));
+        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, all, e.name));
         add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
     }
-    note(fmt::format("experiment {0} of {0}: c6, the elementary tests", experiments.size() + 1));
+    note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, all));
     add(time_tests(folder / "c6", quick));
+    for (const std::filesystem::path& config : studies) {
+        note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&config - studies.data()), all,
+                         config.stem().string()));
+        add(measure_study(read_error_study(config, size_of(quick)), folder_of_study(folder, config), printed::nothing));
+    }
+}
+
+/// Error against run time, from the results of the studies that are there.
+report_section errors_section(const std::filesystem::path& folder, bool quick) {
+    report_section section{
+        .id = "errors",
+        .title = "Error against run time",
+        .paragraphs = {"Beyond the paper: what methods get wrong, and what that saves. Every answer is held against "
+                       "the exact one; a method that gets nothing wrong stands at one wrong answer in all."},
+        .figures = {},
+        .tables = {}};
+    for (const std::filesystem::path& config : error_configs()) {
+        const std::filesystem::path results = folder_of_study(folder, config);
+        if (std::filesystem::exists(results / "errors.csv")) {
+            const std::vector<error_point> points = read_error_rows(results / "errors.csv");
+            for (const pair_group group : groups_in(points)) {
+                section.paragraphs.push_back(group_statement(points, group));
+                section.figures.push_back(group_figure(points, group));
+                section.tables.push_back(
+                    {section.figures.back().name,
+                     fmt::format("In {}: shares of pairs with a wrong answer, of intersecting ones that were missed, "
+                                 "of others that were invented.",
+                                 title_of(group)),
+                     error_summary(points, group)});
+            }
+        } else if (std::filesystem::exists(results / "results.csv")) {
+            const error_study study = read_error_study(config, size_of(quick));
+            const std::vector<scene_summary> scenes = summarise(read_rows(results / "results.csv"));
+            std::ranges::copy(metric_statements(study, scenes), std::back_inserter(section.paragraphs));
+            std::ranges::copy(metric_figures(study, scenes), std::back_inserter(section.figures));
+            for (const scene_summary& scene : scenes)
+                section.tables.push_back({fmt::format("{}_{}", study.name, &scene - scenes.data() + 1),
+                                          heading_of(scene), table_of(scene, study.whole->shown)});
+        }
+    }
+    return section;
 }
 
 /// The verdicts as a terminal shows them.
@@ -129,7 +182,8 @@ int reproduce(const reproduce_request& request) {
     if (!request.judge) measure(folder, request.quick);
     const std::vector<std::string> failures = kept_failures(folder);
     const reproduction all = judged(measurements(folder));
-    write_reproduction(folder, all, failures);
+    const std::vector<report_section> sections{errors_section(folder, request.quick)};
+    write_reproduction(folder, all, sections, failures);
     print(verdict_text(all));
     if (!failures.empty()) print(fmt::format("\n{} compositions were wrong; they have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");

@@ -3,6 +3,7 @@ module;
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -63,21 +64,30 @@ struct pair_set {
     std::uint64_t seed = 1;
 };
 
-/// A method over its knob: a triangle test with every value of the parameters that have several.
+/// A method over its knob, with every value of the parameters that have several; one of the lists is empty.
 struct error_curve {
     std::string label;
-    std::vector<aabb::strategy_choice> points;
+    std::vector<aabb::strategy_choice> triangles;  ///< tests that are held against pairs of triangles
+    std::vector<aabb::composition> compositions;   ///< that play scenes whole
 };
 
-/// A config of `errors`: what triangle tests get wrong, against the time they take, on generated pairs and on the
-/// triangles of meshes whose boxes overlap.
+/// One metric of compositions over another, by their names.
+struct metric_plot {
+    std::string x;
+    std::string y;
+};
+
+/// A config of `errors`. Either what triangle tests get wrong, against the time they take, on generated pairs and on
+/// the triangles of meshes whose boxes overlap; or, with `whole`, metrics of compositions that play scenes.
 struct error_study {
     std::string name;
     std::string text;  ///< what stands in the config
-    std::vector<pair_set> pairs;
-    std::vector<scene_choice> scenes;  ///< of meshes
     std::vector<error_curve> curves;
     std::vector<std::string> notes;
+    std::vector<pair_set> pairs;
+    std::vector<scene_choice> scenes;  ///< of meshes
+    std::optional<experiment> whole;   ///< with the compositions of all curves
+    std::vector<metric_plot> plots;
 };
 
 /// @throws aabb::input_error as `read_experiment`.

@@ -3,8 +3,9 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 module aabblab.configs;
@@ -12,13 +13,17 @@ module aabblab.configs;
 import :document;
 import aabb.base;
 import aabb.policy;
+import aabb.registry;
+import aabblab.metrics;
 import aabblab.scenes;
 
 namespace aabblab {
 
-// Defined in experiment.cpp and scenes.cpp.
+// Defined in curves.cpp, experiment.cpp and scenes.cpp.
+error_curve curve_of(const document& doc, const node& written);
 std::string name_of(const document& doc);
 std::string text_of_config(const std::filesystem::path& file);
+void read_measure(const document& doc, experiment_size size, experiment& e);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
 const node* seed_of(const document& doc, experiment_size size);
 
@@ -26,47 +31,6 @@ namespace {
 
 const std::vector<std::string> known_precisions = {"float", "double"};
 constexpr std::uint64_t quick_share = 20;  // of the pairs, unless the config says how many
-
-/// What a curve's points have in common: the choice without what multiplies.
-std::string label_of(const std::vector<located_text>& names, const std::vector<alternatives>& parameters) {
-    std::string label;
-    for (const located_text& name : names) label += (label.empty() ? "" : ", ") + name.text;
-    for (const auto& [key, values] : parameters)
-        if (values.size() == 1) label += " " + key + "=" + values[0].text;
-    return label;
-}
-
-error_curve curve_of(const document& doc, const node& written) {
-    doc.require_table("curve", written);
-    doc.require_keys(written, " of [[curve]]", {"label", "triangle"});
-    const node* triangle = written.find("triangle");
-    if (!triangle) doc.fail(written.line, "this curve has no method; expected triangle = \"exact\" or another test");
-    std::vector<located_text> names;
-    std::vector<alternatives> parameters;
-    if (triangle->kind == node_kind::table) {
-        const node* name = triangle->find("name");
-        if (!name) doc.fail(triangle->line, "triangle has no name; expected { name = \"moller\", … }");
-        names = doc.alternatives_of("name", *name);
-        for (const node& entry : triangle->items)
-            if (entry.key != "name") parameters.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
-    } else {
-        names = doc.alternatives_of("triangle", *triangle);
-    }
-    error_curve curve;
-    const node* label = written.find("label");
-    curve.label = label ? doc.text_of("label", *label) : label_of(names, parameters);
-    std::vector<std::size_t> factors = sizes_of(parameters);
-    factors.push_back(names.size());
-    doc.require_few(triangle->line, "points of a curve", factors, 0);
-    for (const located_text& name : names)
-        for (std::vector<aabb::setting>& settings : multiplied(parameters)) {
-            aabb::strategy_choice choice{name.text, std::move(settings)};
-            if (choice.settings.empty()) choice = doc.at(name.line, [&] { return aabb::parse_strategy(name.text); });
-            doc.at(triangle->line, [&] { static_cast<void>(triangle_test_named(choice)); });
-            curve.points.push_back(std::move(choice));
-        }
-    return curve;
-}
 
 /// How many pairs at this size of the study.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
@@ -111,7 +75,7 @@ void require_doubles_taken(const document& doc, error_study& study) {
     if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
     std::size_t taking = 0;
     for (const error_curve& curve : study.curves)
-        for (const aabb::strategy_choice& choice : curve.points) {
+        for (const aabb::strategy_choice& choice : curve.triangles) {
             if (triangle_test_named(choice)->takes_double())
                 ++taking;
             else
@@ -130,40 +94,91 @@ void require_meshes(const document& doc, const node& scene) {
     }
 }
 
-}  // namespace
+std::vector<node> tables_of(const document& doc, const std::string& key) {
+    const node* list = doc.root().find(key);
+    if (!list) return {};
+    if (list->kind != node_kind::list) doc.fail(list->line, key + " must stand in double brackets: [[" + key + "]]");
+    return list->items;
+}
 
-error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
-    const document doc(text, file);
-    doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "quick"});
-    error_study study;
-    study.name = name_of(doc);
-    study.text = text;
+/// All of one sort, each method in one of them.
+std::vector<error_curve> curves_of(const document& doc) {
+    std::vector<error_curve> curves;
+    each_once<bool> methods;
+    for (const node& one : tables_of(doc, "curve")) {
+        curves.push_back(curve_of(doc, one));
+        const error_curve& curve = curves.back();
+        if (std::ranges::count(curves, curve.label, &error_curve::label) > 1)
+            doc.fail(one.line, "two curves have the label '" + curve.label + "'");
+        if (curve.triangles.empty() != curves[0].triangles.empty())
+            doc.fail(one.line, "'" + curve.label + "' and '" + curves[0].label +
+                                   "' do not go together: triangle tests alone are held against pairs of triangles, "
+                                   "other compositions play scenes; put them into two configs");
+        const auto add = [&](const std::string& text) {
+            if (!methods.add(true, text)) doc.fail(one.line, "'" + text + "' is a point of two curves");
+        };
+        for (const aabb::strategy_choice& choice : curve.triangles) add(to_text(choice));
+        for (const aabb::composition& c : curve.compositions)
+            add(to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection));
+    }
+    if (curves.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]]");
+    return curves;
+}
+
+/// What only the other sort of study has.
+void refuse_keys(const document& doc, std::initializer_list<std::string_view> keys, const std::string& reason) {
+    for (const std::string_view key : keys)
+        if (const node* found = doc.root().find(key)) doc.fail(found->line, "[[" + std::string(key) + "]] " + reason);
+}
+
+std::vector<metric_plot> plots_of(const document& doc) {
+    std::vector<metric_plot> plots;
+    for (const node& one : tables_of(doc, "plot")) {
+        doc.require_table("plot", one);
+        doc.require_keys(one, " of [[plot]]", {"x", "y"});
+        const auto metric_of = [&](const char* key) {
+            const node* value = one.find(key);
+            if (!value) doc.fail(one.line, std::string("this plot has no ") + key + "; expected the name of a metric");
+            const std::string& name = doc.text_of(key, *value);
+            doc.at(value->line, [&] { static_cast<void>(metric_named(name)); });
+            return name;
+        };
+        plots.push_back({metric_of("x"), metric_of("y")});
+    }
+    if (plots.empty()) plots.push_back({"frame_ms", "wrong_share"});
+    return plots;
+}
+
+/// Compositions that play scenes, as `run` would.
+experiment whole_of(const document& doc, const error_study& study, const std::string& file, experiment_size size) {
+    experiment e;
+    e.name = study.name;
+    e.file = file;
+    e.text = study.text;
+    e.quick = size == experiment_size::quick;
+    read_measure(doc, size, e);
+    if (const node* measure = doc.root().find("measure"))
+        for (const char* key : {"processes", "metrics"})
+            if (const node* found = measure->find(key))
+                doc.fail(found->line, std::string("errors has no ") + key + "; run has");
+    for (const error_curve& curve : study.curves)
+        e.compositions.insert(e.compositions.end(), curve.compositions.begin(), curve.compositions.end());
+    for (const metric_plot& plot : study.plots)
+        for (const std::string& name : {plot.x, plot.y})
+            if (std::ranges::find(e.shown, name) == e.shown.end()) e.shown.push_back(name);
+    read_scenes(doc, size, e);
+    return e;
+}
+
+/// Triangle tests and the pairs of triangles that they are held against.
+void read_triangles(const document& doc, experiment_size size, error_study& study) {
     const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
-    const auto tables = [&](const char* key) -> std::vector<node> {
-        const node* list = doc.root().find(key);
-        if (!list) return {};
-        if (list->kind != node_kind::list)
-            doc.fail(list->line, std::string(key) + " must stand in double brackets: [[" + key + "]]");
-        return list->items;
-    };
-    each_once<aabb::strategy_choice> methods;
-    for (const node& one : tables("curve")) {
-        study.curves.push_back(curve_of(doc, one));
-        const error_curve& curve = study.curves.back();
-        if (curve.label.empty()) doc.fail(one.line, "the label of this curve is empty");
-        if (std::ranges::count(study.curves, curve.label, &error_curve::label) > 1)
-            doc.fail(one.line, "two curves have the label '" + curve.label + "'");
-        for (const aabb::strategy_choice& choice : curve.points)
-            if (!methods.add(choice, to_text(choice)))
-                doc.fail(one.line, "'" + to_text(choice) + "' is a point of two curves");
-    }
-    if (study.curves.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]]");
     each_once<pair_set> sets;
-    for (const node& one : tables("pairs")) add_pairs(doc, one, size, number, sets);
+    for (const node& one : tables_of(doc, "pairs")) add_pairs(doc, one, size, number, sets);
     study.pairs = sets.all();
     require_doubles_taken(doc, study);
-    for (const node& one : tables("scene")) require_meshes(doc, one);
+    for (const node& one : tables_of(doc, "scene")) require_meshes(doc, one);
     if (doc.root().find("scene")) {
         experiment played;
         read_scenes(doc, size, played);
@@ -172,6 +187,26 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     }
     if (study.pairs.empty() && study.scenes.empty())
         doc.fail(1, "this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
+}
+
+}  // namespace
+
+error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
+    const document doc(text, file);
+    doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "plot", "measure", "quick"});
+    error_study study;
+    study.name = name_of(doc);
+    study.text = text;
+    study.curves = curves_of(doc);
+    if (study.curves[0].triangles.empty()) {
+        refuse_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
+        study.plots = plots_of(doc);
+        study.whole = whole_of(doc, study, file, size);
+        study.notes = study.whole->notes;
+    } else {
+        refuse_keys(doc, {"plot", "measure"}, "is for compositions; triangle tests alone are plotted over their time");
+        read_triangles(doc, size, study);
+    }
     if (size == experiment_size::full) static_cast<void>(parse_error_study(text, file, experiment_size::quick));
     return study;
 }

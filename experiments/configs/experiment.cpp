@@ -86,6 +86,20 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
     }
 }
 
+/// Fresh processes share the repeats, so there are at most as many.
+void read_processes(const document& doc, experiment& e) {
+    const node* measure = doc.root().find("measure");
+    const node* processes = measure ? measure->find("processes") : nullptr;
+    if (!processes) return;
+    e.processes = doc.integer_of("processes", *processes, 1);
+    if (e.quick || !e.records(metric_group::time))
+        e.processes = std::min(e.processes, e.repeats);
+    else if (e.processes > e.repeats)
+        doc.fail(processes->line, "processes must be at most repeats, which is " + std::to_string(e.repeats));
+}
+
+}  // namespace
+
 void read_measure(const document& doc, experiment_size size, experiment& e) {
     const bool quick = size == experiment_size::quick;
     if (quick) e.repeats = quick_repeats;
@@ -103,20 +117,6 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     doc.require_keys(*in_quick, " of quick", {"repeats"});
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
-
-/// Fresh processes share the repeats, so there are at most as many.
-void read_processes(const document& doc, experiment& e) {
-    const node* measure = doc.root().find("measure");
-    const node* processes = measure ? measure->find("processes") : nullptr;
-    if (!processes) return;
-    e.processes = doc.integer_of("processes", *processes, 1);
-    if (e.quick || !e.records(metric_group::time))
-        e.processes = std::min(e.processes, e.repeats);
-    else if (e.processes > e.repeats)
-        doc.fail(processes->line, "processes must be at most repeats, which is " + std::to_string(e.repeats));
-}
-
-}  // namespace
 
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
@@ -139,10 +139,11 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
 /// What stands in a config.
 std::string text_of_config(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) {
-        const std::filesystem::path of_project = std::filesystem::path(AABBLAB_CONFIGS) / file.filename();
-        throw aabb::input_error(
-            file.string() + " is not there; " +
-            (std::filesystem::exists(of_project) ? "did you mean " + of_project.string() + "?" : "expected a config"));
+        for (const char* folder : {AABBLAB_CONFIGS, AABBLAB_CONFIGS "/errors"})
+            if (const auto of_project = std::filesystem::path(folder) / file.filename();
+                std::filesystem::exists(of_project))
+                throw aabb::input_error(file.string() + " is not there; did you mean " + of_project.string() + "?");
+        throw aabb::input_error(file.string() + " is not there; expected a config");
     }
     if (std::filesystem::is_directory(file)) throw aabb::input_error(file.string() + " is a folder; expected a config");
     std::ifstream in(file, std::ios::binary);

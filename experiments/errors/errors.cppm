@@ -1,11 +1,13 @@
 module;
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-/// Error against run time: what methods get wrong on pairs of triangles, and the time that they take for it.
+/// Error against run time: what methods get wrong, and the time that they take for it.
 export module aabblab.errors;
 
 import aabb.geometry;
@@ -41,18 +43,41 @@ struct error_point {
 /// into the frame of the first one's mesh, as a tree's leaves are.
 [[nodiscard]] std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& scene);
 
-/// A row for each method and set of pairs, every number in full.
+/// The table of an errors.csv: a row for each method and set of pairs, every number in full.
 [[nodiscard]] table error_rows(std::span<const error_point> points);
+/// The inverse.
+/// @throws aabb::input_error with file and line where it is not an errors.csv.
+[[nodiscard]] std::vector<error_point> read_error_rows(const std::filesystem::path& file);
 
-/// Each method over all sets of one precision: shares of false answers, and the time a pair as the mean over the sets.
-[[nodiscard]] table error_summary(std::span<const error_point> points, bool in_double);
+/// Sets of pairs that are told together.
+enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
+/// In this order.
+[[nodiscard]] std::vector<pair_group> groups_in(std::span<const error_point> points);
+/// "generated triangles of floats"
+[[nodiscard]] std::string_view title_of(pair_group group);
 
-/// What each method gets wrong in each set of one precision, a column a set: false negatives + false positives.
-[[nodiscard]] table errors_by_set(std::span<const error_point> points, bool in_double);
+/// Each method over all sets of a group: shares of false answers, and the time a pair as the mean over the sets.
+[[nodiscard]] table error_summary(std::span<const error_point> points, pair_group group);
 
-/// One for all sets of a precision, and one for each set: error over run time, a curve a method over its knob, both
-/// logarithmic. What nothing else is both faster and more exact than is joined by a line; no error stands on the level
-/// 1/N.
+/// What each method gets wrong in each set of a group, a column a set: false negatives + false positives.
+[[nodiscard]] table errors_by_set(std::span<const error_point> points, pair_group group);
+
+/// Error over run time in all sets of a group, a curve a method over its knob, both logarithmic. What nothing else is
+/// both faster and more exact than is joined by a line; no error stands on the level 1/N.
+[[nodiscard]] figure group_figure(std::span<const error_point> points, pair_group group);
+
+/// The fastest and the most exact of a group in a sentence.
+[[nodiscard]] std::string group_statement(std::span<const error_point> points, pair_group group);
+
+/// The figure of each group, and of each of its sets.
 [[nodiscard]] std::vector<figure> error_figures(std::span<const error_point> points);
+
+/// The plots of a study of compositions, one for each scene: a curve a method over its knob, both axes logarithmic.
+/// @param scenes what came out of playing them
+[[nodiscard]] std::vector<figure> metric_figures(const error_study& study, std::span<const scene_summary> scenes);
+
+/// What has the least of either metric, in each of these plots, a sentence each.
+[[nodiscard]] std::vector<std::string> metric_statements(const error_study& study,
+                                                         std::span<const scene_summary> scenes);
 
 }  // namespace aabblab

@@ -42,7 +42,7 @@ class one_set {
 public:
     one_set(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
-            for (const aabb::strategy_choice& choice : curve.points) {
+            for (const aabb::strategy_choice& choice : curve.triangles) {
                 method& m = methods_.emplace_back();
                 m.point.pairs = name;
                 m.point.in_double = in_double;

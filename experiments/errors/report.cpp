@@ -13,19 +13,16 @@ module;
 
 module aabblab.errors;
 
-import aabb.base;
+import :front;
 import aabb.policy;
 import aabblab.figures;
 import aabblab.numbers;
+import aabblab.scenes;
 import aabblab.tables;
 
 namespace aabblab {
 
 namespace {
-
-std::string_view precision_of(bool in_double) {
-    return in_double ? "double" : "float";
-}
 
 /// A method over several sets of pairs.
 struct pooled {
@@ -61,10 +58,15 @@ std::vector<pooled> pooled_over(std::span<const error_point> points) {
     return all;
 }
 
-std::vector<error_point> of_precision(std::span<const error_point> points, bool in_double) {
+pair_group group_of(const error_point& p) {
+    if (std::ranges::find(pair_classes(), p.pairs, &pair_class_info::name) == pair_classes().end())
+        return pair_group::of_meshes;
+    return p.in_double ? pair_group::of_doubles : pair_group::of_floats;
+}
+
+std::vector<error_point> of_group(std::span<const error_point> points, pair_group group) {
     std::vector<error_point> some;
-    std::ranges::copy_if(points, std::back_inserter(some),
-                         [&](const error_point& p) { return p.in_double == in_double; });
+    std::ranges::copy_if(points, std::back_inserter(some), [&](const error_point& p) { return group_of(p) == group; });
     return some;
 }
 
@@ -75,20 +77,20 @@ std::string share_text(std::uint64_t wrong, std::uint64_t of) {
     return fmt::format("{:.2g}", static_cast<double>(wrong) / static_cast<double>(of));
 }
 
+std::string name_of(pair_group group) {
+    switch (group) {
+        case pair_group::of_floats: return "float";
+        case pair_group::of_doubles: return "double";
+        case pair_group::of_meshes: break;
+    }
+    return "meshes";
+}
+
 std::vector<std::string> sets_in(std::span<const error_point> points) {
     std::vector<std::string> names;
     for (const error_point& p : points)
         if (std::ranges::find(names, p.pairs) == names.end()) names.push_back(p.pairs);
     return names;
-}
-
-/// What nothing else is both faster than and at least as exact as, from the fastest to the most exact.
-std::vector<pooled> front_of(std::vector<pooled> methods) {
-    std::ranges::sort(methods, {}, [](const pooled& m) { return std::pair(m.ns(), m.error()); });
-    std::vector<pooled> front;
-    for (const pooled& m : methods)
-        if (front.empty() || m.error() < front.back().error()) front.push_back(m);
-    return front;
 }
 
 figure figure_of(const std::string& name, const std::string& what, std::span<const error_point> points) {
@@ -113,46 +115,36 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
         line->points.push_back(point_of(m));
     }
     series front{"not dominated", series_style::line, {}};
-    for (const pooled& m : front_of(methods)) front.points.push_back(point_of(m));
+    std::vector<cost> costs;
+    for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
+    for (const std::size_t i : front_of(costs)) front.points.push_back(point_of(methods[i]));
     // Below the curves.
     f.lines.insert(f.lines.begin(), front);
     f.lines.push_back({"nothing wrong (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
     return f;
 }
 
-std::string file_name(std::string text) {
-    for (char& c : text)
-        if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '_') c = '-';
-    return text.substr(0, 100);
-}
-
 }  // namespace
 
-table error_rows(std::span<const error_point> points) {
-    table t{{{"pairs", false},
-             {"precision", false},
-             {"curve", false},
-             {"triangle", false},
-             {"count"},
-             {"intersecting"},
-             {"false_negatives"},
-             {"false_positives"},
-             {"ns"},
-             {"ns_low"},
-             {"ns_high"}},
-            {}};
-    for (const error_point& p : points) {
-        t.rows.push_back({p.pairs, std::string(precision_of(p.in_double)), p.curve, to_text(p.triangle),
-                          std::to_string(p.count), std::to_string(p.intersecting), std::to_string(p.false_negatives),
-                          std::to_string(p.false_positives), aabb::shortest(p.ns_a_pair.median),
-                          aabb::shortest(p.ns_a_pair.low), aabb::shortest(p.ns_a_pair.high)});
-    }
-    return t;
+std::vector<pair_group> groups_in(std::span<const error_point> points) {
+    std::vector<pair_group> groups;
+    for (const pair_group group : {pair_group::of_floats, pair_group::of_doubles, pair_group::of_meshes})
+        if (std::ranges::find(points, group, group_of) != points.end()) groups.push_back(group);
+    return groups;
 }
 
-table error_summary(std::span<const error_point> points, bool in_double) {
+std::string_view title_of(pair_group group) {
+    switch (group) {
+        case pair_group::of_floats: return "generated triangles of floats";
+        case pair_group::of_doubles: return "generated triangles of doubles";
+        case pair_group::of_meshes: break;
+    }
+    return "triangles of meshes whose boxes overlap";
+}
+
+table error_summary(std::span<const error_point> points, pair_group group) {
     table t{{{"triangle", false}, {"ns a pair"}, {"wrong"}, {"missed"}, {"invented"}}, {}};
-    std::vector<pooled> methods = pooled_over(of_precision(points, in_double));
+    std::vector<pooled> methods = pooled_over(of_group(points, group));
     std::ranges::stable_sort(methods, {}, [](const pooled& m) { return std::pair(m.error(), m.ns()); });
     for (const pooled& m : methods)
         t.rows.push_back({to_text(m.triangle), fmt::format("{:.1f}", m.ns()),
@@ -162,8 +154,8 @@ table error_summary(std::span<const error_point> points, bool in_double) {
     return t;
 }
 
-table errors_by_set(std::span<const error_point> points, bool in_double) {
-    const std::vector<error_point> some = of_precision(points, in_double);
+table errors_by_set(std::span<const error_point> points, pair_group group) {
+    const std::vector<error_point> some = of_group(points, group);
     table t{{{"triangle", false}}, {}};
     const std::vector<std::string> sets = sets_in(some);
     for (const std::string& set : sets) t.columns.push_back({set});
@@ -182,21 +174,43 @@ table errors_by_set(std::span<const error_point> points, bool in_double) {
     return t;
 }
 
+figure group_figure(std::span<const error_point> points, pair_group group) {
+    const std::vector<error_point> some = of_group(points, group);
+    return figure_of("errors_" + name_of(group), fmt::format("{} sets of {}", sets_in(some).size(), title_of(group)),
+                     some);
+}
+
+std::string group_statement(std::span<const error_point> points, pair_group group) {
+    const std::vector<pooled> methods = pooled_over(of_group(points, group));
+    std::vector<cost> costs;
+    for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
+    const std::vector<std::size_t> front = front_of(costs);
+    const auto wrong = [](const pooled& m) {
+        const std::uint64_t all = m.false_negatives + m.false_positives;
+        return all == 0 ? "none of " + grouped(m.count) + " pairs wrong"
+                        : fmt::format("{} of {} pairs wrong", grouped(all), grouped(m.count));
+    };
+    const pooled& fastest = methods[front.front()];
+    const pooled& best = methods[front.back()];
+    std::string text = fmt::format("Of {}, {} is the fastest, with {:.1f} ns a pair, and gets {}", title_of(group),
+                                   to_text(fastest.triangle), fastest.ns(), wrong(fastest));
+    if (&fastest != &best)
+        text += fmt::format("; {} gets {}, in {:.1f} ns a pair, {:.2f} times the time", to_text(best.triangle),
+                            wrong(best), best.ns(), best.ns() / fastest.ns());
+    return text + ".";
+}
+
 std::vector<figure> error_figures(std::span<const error_point> points) {
     std::vector<figure> figures;
-    for (const bool in_double : {false, true}) {
-        const std::vector<error_point> some = of_precision(points, in_double);
-        if (some.empty()) continue;
-        const std::string precision(precision_of(in_double));
-        const std::vector<std::string> sets = sets_in(some);
-        figures.push_back(figure_of("errors_" + precision,
-                                    fmt::format("over {} sets of triangles of {}", sets.size(), precision), some));
-        for (const std::string& set : sets) {
+    for (const pair_group group : groups_in(points)) {
+        figures.push_back(group_figure(points, group));
+        const std::vector<error_point> some = of_group(points, group);
+        for (const std::string& set : sets_in(some)) {
             std::vector<error_point> own;
             std::ranges::copy_if(some, std::back_inserter(own), [&](const error_point& p) { return p.pairs == set; });
-            std::string name = "errors_" + precision + "_" + file_name(set);
+            std::string name = "errors_" + name_of(group) + "_" + file_name(set);
             while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
-            figures.push_back(figure_of(name, set + " in " + precision, own));
+            figures.push_back(figure_of(name, fmt::format("{}, {}", set, title_of(group)), own));
         }
     }
     return figures;

@@ -14,7 +14,8 @@ import aabb.base;
 
 export namespace aabb {
 
-/// A real number in (above, at_most], as text; with `or_auto`, "auto" too, which leaves the optional empty.
+/// A real number in (above, at_most], or with `or_equal` in [above, at_most], as text; with `or_auto`, "auto" too,
+/// which leaves the optional empty.
 template <class Config, class Value>
 struct number_parameter {
     std::string_view name;
@@ -22,11 +23,12 @@ struct number_parameter {
     double above;
     double at_most;
     std::string_view help;
+    bool or_equal = false;
 
     static constexpr bool or_auto = std::same_as<Value, std::optional<double>>;
 
     [[nodiscard]] std::string expected() const {
-        std::string text = "a number above " + shortest(above);
+        std::string text = (or_equal ? "a number of at least " : "a number above ") + shortest(above);
         if (at_most < std::numeric_limits<double>::max()) text += " and at most " + shortest(at_most);
         return text + (or_auto ? " or auto" : "");
     }
@@ -46,8 +48,8 @@ struct number_parameter {
             }
         double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || end != text.data() + text.size() || !(value > above && value <= at_most))
-            return false;
+        const bool is_in = (value > above || (or_equal && value == above)) && value <= at_most;
+        if (error != std::errc{} || end != text.data() + text.size() || !is_in) return false;
         config.*field = value;
         return true;
     }

@@ -5,6 +5,7 @@ module;
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -130,7 +131,8 @@ void add_choices(page& out, const reproduction& all) {
 
 }  // namespace
 
-std::string html_of(const std::filesystem::path& folder, const reproduction& all, const provenance& made,
+std::string html_of(const std::filesystem::path& folder, const reproduction& all,
+                    std::span<const report_section> sections, const provenance& made,
                     const std::vector<std::string>& failures) {
     page out(folder);
     out.raw("<h1>The paper, reproduced</h1>\n");
@@ -167,6 +169,12 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
     out.heading("table1", "Table 1: what nodes take");
     for (const named_table& t : all.tables) out.add(t);
     add_choices(out, all);
+    for (const report_section& section : sections) {
+        out.heading(section.id, section.title);
+        for (const std::string& text : section.paragraphs) out.paragraph(text);
+        for (const figure& f : section.figures) out.add(f);
+        for (const named_table& t : section.tables) out.add(t);
+    }
     out.heading("manifest", "What made it");
     for (const provenance::config& config : made.configs)
         out.folded(config.experiment + "/manifest.json", "<pre>" + html_text(config.manifest) + "</pre>");

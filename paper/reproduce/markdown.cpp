@@ -1,4 +1,5 @@
 module;
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,8 @@ import aabblab.tables;
 
 namespace aabblab {
 
-std::string markdown_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
+std::string markdown_of(const reproduction& all, std::span<const report_section> sections, const provenance& made,
+                        const std::vector<std::string>& failures) {
     std::string text = "# The paper, reproduced\n\n" + made.date + ", commit " + made.commit + ", " + made.compiler +
                        ", " + made.cpu + "; " + made.size + " size, " + std::to_string(made.rows) + " rows, up to " +
                        std::to_string(made.processes) + " processes, up to " + std::to_string(made.seeds) +
@@ -33,7 +35,14 @@ std::string markdown_of(const reproduction& all, const provenance& made, const s
     add_table(all.null_control);
     text += "## Table 1\n\n";
     for (const named_table& t : all.tables) add_table(t);
-    return text + "## What the paper leaves open\n\n" + to_markdown(choice_table(all));
+    text += "## What the paper leaves open\n\n" + to_markdown(choice_table(all));
+    for (const report_section& section : sections) {
+        text += "\n## " + section.title + "\n\n";
+        for (const std::string& paragraph : section.paragraphs) text += paragraph + "\n\n";
+        for (const figure& f : section.figures) add_figure(f);
+        for (const named_table& t : section.tables) add_table(t);
+    }
+    return text;
 }
 
 }  // namespace aabblab

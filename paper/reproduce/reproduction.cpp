@@ -3,6 +3,7 @@ module;
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,7 +104,7 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
 }
 
 void write_reproduction(const std::filesystem::path& folder, const reproduction& judged_claims,
-                        const std::vector<std::string>& failures) {
+                        std::span<const report_section> sections, const std::vector<std::string>& failures) {
     reproduction all = judged_claims;
     all.figures.push_back(verdict_figure(all));
     const provenance made = provenance_of(folder, all);
@@ -117,13 +118,17 @@ void write_reproduction(const std::filesystem::path& folder, const reproduction&
         tables.insert(tables.end(), c.tables.begin(), c.tables.end());
         figures.insert(figures.end(), c.figures.begin(), c.figures.end());
     }
+    for (const report_section& section : sections) {
+        tables.insert(tables.end(), section.tables.begin(), section.tables.end());
+        figures.insert(figures.end(), section.figures.begin(), section.figures.end());
+    }
     for (const named_table& t : tables) write_table(folder / "tables", t);
     draw(folder / "figures", figures);
     write_file(folder / "verdicts.csv", to_csv(verdict_table(all)));
     write_file(folder / "endpoints.csv", to_csv(endpoints_of(all)));
     write_file(folder / "macros.tex", macros_of(all, made, failures));
-    write_file(folder / "report.md", markdown_of(all, made, failures));
-    write_file(folder / "report.html", html_of(folder, all, made, failures));
+    write_file(folder / "report.md", markdown_of(all, sections, made, failures));
+    write_file(folder / "report.html", html_of(folder, all, sections, made, failures));
 }
 
 }  // namespace aabblab

@@ -17,6 +17,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
+import aabb.prepare.mean_extent;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -61,7 +62,6 @@ private:
         friend bool operator==(const split&, const split&) = default;
     };
 
-    [[nodiscard]] double longest_whole(std::span<const box> boxes) const;
     [[nodiscard]] static cut_interval cut(float lower, float upper, double longest);
     void find_splits(std::span<const box> boxes, double longest);
     void assign_slots();
@@ -112,7 +112,7 @@ void split_large_stage::update(std::span<const box> boxes) {
     objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
     objects_.settle();
-    const double longest = longest_whole(boxes);
+    const double longest = mean_extents(size_, boxes, objects_);
     find_splits(boxes, longest);
     boxes_ = boxes;
     frame_.change([&] {
@@ -153,18 +153,6 @@ std::vector<part_bytes> split_large_stage::bytes() const {
 
 std::vector<std::string> split_large_stage::left_out() const {
     return search_->left_out();
-}
-
-/// The longest extent that is left whole.
-double split_large_stage::longest_whole(std::span<const box> boxes) const {
-    double extents = 0;
-    std::size_t objects = 0;
-    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
-        if (!objects_.contains(id)) continue;
-        for (int k = 0; k < 3; ++k) extents += double{boxes[id].max[k]} - double{boxes[id].min[k]};
-        ++objects;
-    }
-    return objects == 0 ? 0 : size_ * extents / (3 * static_cast<double>(objects));
 }
 
 split_large_stage::cut_interval split_large_stage::cut(float lower, float upper, double longest) {

@@ -17,11 +17,13 @@
 #include "temporary_folder.hpp"
 
 import aabb;
+import aabb.registry;
 import aabb.triangle.exact;
 import aabblab.configs;
 import aabblab.errors;
 import aabblab.results;
 import aabblab.scenes;
+import aabblab.tables;
 
 using aabblab::experiment_size;
 
@@ -166,6 +168,90 @@ TEST_CASE("a config of errors that is wrong is refused with its line and the nea
     const program_result missing = run_program({"errors", "nowhere.toml"});
     CHECK(missing.status == 2);
     CHECK(is_one_sentence(missing.err));
+}
+
+TEST_CASE("errors plays compositions whole and draws the metrics that the config names") {
+    const temporary_folder folder;
+    const std::string config = folder.write(
+        "e.toml",
+        "name = \"e\"\n[[scene]]\nkind = \"brownian\"\nobjects = 300\nframes = 9\n[measure]\nrepeats = 2\n"
+        "[[curve]]\nprepare = { name = \"neighbour_list\", margin = [0.1, 0.5] }\n"
+        "[[curve]]\nlabel = \"stale\"\nprepare = { name = \"neighbour_list\", margin = 0, every = [4, 8] }\n"
+        "[[plot]]\nx = \"frame_ms\"\ny = \"wrong_share\"\n[[plot]]\nx = \"all_bytes\"\ny = \"box_tests\"\n");
+    const program_result ran = run_program({"errors", config, "--out", folder / "out"});
+    INFO(ran.err << ran.out);
+    REQUIRE(ran.status == 0);
+    CHECK(ran.out.find("wrong_share of 0;") == std::string::npos);
+    CHECK(ran.out.find("has the best wrong_share, 0, with a frame_ms of") != std::string::npos);
+    std::map<std::string, std::set<std::string>> answers;
+    for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv"))
+        answers[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.missing > 0 ? " misses" : "") +
+                                                             (*r.invented > 0 ? " invents" : ""));
+    const std::set<std::string> exact{"exact"};
+    const std::set<std::string> stale{"inexact misses"};
+    CHECK(answers == std::map<std::string, std::set<std::string>>{{"neighbour_list", exact},
+                                                                  {"neighbour_list:margin=0.5", exact},
+                                                                  {"neighbour_list:margin=0,every=4", stale},
+                                                                  {"neighbour_list:margin=0,every=8", stale}});
+    const std::string scene = "brownian-objects-300-frames-9";
+    for (const std::string plot : {"wrong_share_over_frame_ms_", "box_tests_over_all_bytes_"}) {
+        const std::string points = bytes_of_file(folder / "out/figures" / (plot + scene + ".csv"));
+        INFO(points);
+        CHECK(std::ranges::count(points, '\n') > 4);
+    }
+}
+
+TEST_CASE("a config of errors keeps triangle tests and compositions apart") {
+    const std::string lists = "[[curve]]\nlabel = \"lists\"\nprepare = \"neighbour_list\"\n";
+    const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 20\nframes = 3\n";
+    CHECK(refusal_of("name = \"e\"\n" + scene + lists) == "accepted");
+    CHECK(refusal_of("name = \"e\"\n" + lists + scene + one_curve) ==
+          "e.toml:9: 'exact' and 'lists' do not go together: triangle tests alone are held against pairs of triangles, "
+          "other compositions play scenes; put them into two configs");
+    CHECK(refusal_of("name = \"e\"\n" + lists + some_pairs) ==
+          "e.toml:5: [[pairs]] is for curves of triangle tests alone; these play each [[scene]] whole");
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs + one_curve + "[[plot]]\nx = \"frame_ms\"\n") ==
+          "e.toml:6: [[plot]] is for compositions; triangle tests alone are plotted over their time");
+    CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[plot]]\nx = \"frame_ms\"\ny = \"wrong\"\n")
+              .starts_with("e.toml:11: unknown metric 'wrong'"));
+    CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[plot]]\nx = \"frame_ms\"\n") ==
+          "e.toml:9: this plot has no y; expected the name of a metric");
+    CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[measure]\nprocesses = 2\n") ==
+          "e.toml:10: errors has no processes; run has");
+    CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[curve]]\nprepare = \"neighbour_lists\"\n") ==
+          "e.toml:10: unknown prepare 'neighbour_lists'; did you mean 'neighbour_list'?");
+    CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[curve]]\nlabel = \"x\"\n")
+              .starts_with("e.toml:9: this curve has no method; expected triangle = "));
+}
+
+TEST_CASE("an errors.csv is read as it was written, and refused with its line where it is not one") {
+    const temporary_folder folder;
+    const auto study = aabblab::parse_error_study(
+        "name = \"e\"\n[[pairs]]\nclass = [\"random\", \"far\"]\ncount = 100\nprecision = [\"float\", \"double\"]\n"
+        "[[curve]]\ntriangle = { name = \"devillers_guigue\", precision = [\"double\", \"float\"] }\n",
+        "e.toml", experiment_size::full);
+    const std::string text = to_csv(error_rows(measure_errors(study)));
+    CHECK(to_csv(error_rows(aabblab::read_error_rows(folder.write("errors.csv", text)))) == text);
+    const auto refused = [&](const std::string& changed) {
+        const std::string file = folder.write("changed.csv", changed);
+        try {
+            static_cast<void>(aabblab::read_error_rows(file));
+        } catch (const aabb::input_error& error) {
+            return std::string(error.what()).substr(file.size());
+        }
+        return std::string("accepted");
+    };
+    CHECK(refused("pairs\n") == ":1: these are not the columns of this version");
+    const std::string head = text.substr(0, text.find('\n') + 1);
+    CHECK(refused(head + "random,flat,c,exact,1,1,0,0,1,1,1\n") == ":2: precision cannot be 'flat'");
+    CHECK(refused(head + "random,float,c,exact,1,1,0,0,1,1\n") == ":2: expected 11 fields, not 10");
+}
+
+TEST_CASE("every config of errors reads") {
+    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "errors")) {
+        INFO(file.path());
+        CHECK_NOTHROW(static_cast<void>(aabblab::read_error_study(file.path(), experiment_size::full)));
+    }
 }
 
 TEST_CASE("the config that errors runs by default reads, and classify takes the tests of libraries") {

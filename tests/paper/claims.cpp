@@ -339,7 +339,17 @@ TEST_CASE(
     const temporary_folder folder;
     worlds::write_world(folder.path(), 0.6, 0.05);
     const aabblab::reproduction all = judged(aabblab::measurements(folder.path()));
-    write_reproduction(folder.path(), all, {"shell is wrong on brownian, frame 3"});
+    const aabblab::report_section section{"errors",
+                                          "Error against run time",
+                                          {"A statement with its number."},
+                                          {{"a_plot",
+                                            "A plot.",
+                                            {"x", true, {}},
+                                            {"y", true, {}},
+                                            {{"", aabblab::series_style::line, {{1, 2, 2, 2}}}},
+                                            {}}},
+                                          {{"a_table", "A table.", {{{"triangle", false}}, {{"exact"}}}}}};
+    write_reproduction(folder.path(), all, {&section, 1}, {"shell is wrong on brownian, frame 3"});
 
     const std::string page = bytes_of_file(folder / "report.html");
     CHECK(page.find("shell is wrong on brownian, frame 3") != std::string::npos);
@@ -373,9 +383,14 @@ TEST_CASE(
         CAPTURE((*i)[1].str());
         CHECK(std::filesystem::exists(folder / ("tables/" + (*i)[1].str() + ".tex")));
     }
+    for (const char* file : {"figures/a_plot.svg", "tables/a_table.md"}) CHECK(std::filesystem::exists(folder / file));
     for (const char* report : {"report.html", "report.md"}) {
         const std::string text = bytes_of_file(folder / report);
         CHECK(text.find(all.null_control.caption) != std::string::npos);
+        for (const char* part : {"Error against run time", "A statement with its number.", "A plot.", "A table."}) {
+            INFO(part);
+            CHECK(text.find(part) != std::string::npos);
+        }
         CHECK(text.find("Each claim has one primary endpoint") != std::string::npos);
         // Where the file that the program was built with breaks a line, and where it ends.
         CHECK(text.find("the ratio of two compositions, or builds") != std::string::npos);

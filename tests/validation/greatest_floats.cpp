@@ -82,7 +82,8 @@ TEST_CASE("compositions find every pair of boxes that reach to the greatest floa
             partition.settings[0].value = "1e38";
         INFO(text_of_global(composition));
         require_all_found(*global_of(composition, instrumentation::none), frames);
-        if (composition[strategy_kind::prepare].name == "none" || composition[strategy_kind::sort].name != "insertion")
+        if (composition[strategy_kind::prepare].name != "split_large" ||
+            composition[strategy_kind::sort].name != "insertion")
             continue;
         composition[strategy_kind::prepare].settings = {{"size", "0.5"}};
         INFO("into more pieces");

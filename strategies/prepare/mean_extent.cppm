@@ -1,0 +1,26 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+export module aabb.prepare.mean_extent;
+
+import aabb.geometry;
+import aabb.global_search;
+
+export namespace aabb {
+
+/// The unit of lengths that are told in mean extents: `times` the mean, over the boxes of the objects that are present
+/// and the three axes; 0 where nobody is.
+[[nodiscard]] inline double mean_extents(double times, std::span<const box> boxes, const membership& objects) noexcept {
+    double extents = 0;
+    std::size_t present = 0;
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+        if (!objects.contains(id)) continue;
+        for (int k = 0; k < 3; ++k) extents += double{boxes[id].max[k]} - double{boxes[id].min[k]};
+        ++present;
+    }
+    return present == 0 ? 0 : times * extents / (3 * static_cast<double>(present));
+}
+
+}  // namespace aabb

@@ -1,0 +1,51 @@
+module;
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <tuple>
+
+export module aabb.prepare.neighbour_list;
+
+import aabb.pipeline;
+import aabb.policy;
+
+export namespace aabb {
+
+/// Boxes are searched grown by a margin, and the pairs found are kept as a list. While every object's box stays in its
+/// grown one, each pair that overlaps is in the list, so that a frame takes one test a listed pair and no search
+/// (Verlet, "Computer 'experiments' on classical fluids", 1967). An object that comes makes a search too.
+///
+/// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
+/// than their margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
+/// objects move by little a frame; `every` only to see what stale lists cost.
+struct neighbour_list_prepare {
+    static constexpr std::string_view name = "neighbour_list";
+    static constexpr std::string_view summary = "pairs of boxes grown by a margin, kept until an object leaves its own";
+
+    struct config {
+        double margin = 0.1;
+        std::uint32_t every = 0;
+
+        /// Lists of an earlier frame may lack a pair of this one.
+        [[nodiscard]] constexpr bool is_exact() const noexcept { return every <= 1; }
+    };
+    static constexpr std::tuple parameters{
+        number_parameter{"margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
+                         "by which boxes are grown on every side, in mean extents", true},
+        integer_parameter{"every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
+                          "frames from one search to the next, inexact above 1; 0: when an object leaves its margin"}};
+
+    neighbour_list_prepare() = default;
+    explicit neighbour_list_prepare(const config& c) : config_(c) {}
+
+    [[nodiscard]] std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search,
+                                                       instrumentation counted) const;
+
+private:
+    config config_;
+};
+
+static_assert(PreparePolicy<neighbour_list_prepare>);
+
+}  // namespace aabb
