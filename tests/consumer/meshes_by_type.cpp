@@ -9,6 +9,7 @@ import aabb.tree.canonical;
 import aabb.tree.compressed;
 import aabb.tree.compressed_literal;
 import aabb.tree.leafless;
+import aabb.tree.quantized;
 import aabb.tree.shared_planes;
 import aabb.triangle.devillers_guigue;
 import aabb.triangle.exact;
@@ -103,6 +104,7 @@ int main() {
         print_answer<aabb::compressed_tree, aabb::exact_triangle>(m);
         print_answer<aabb::compressed_literal_tree, aabb::exact_triangle>(m);
         print_answer<aabb::leafless_tree, aabb::exact_triangle>(m);
+        print_answer<aabb::quantized_tree, aabb::exact_triangle>(m);
         print_answer<aabb::shared_planes_tree, aabb::exact_triangle>(m);
         print_answer<aabb::canonical_tree, aabb::devillers_guigue_triangle>(m);
         print_answer<aabb::canonical_tree, aabb::moller_triangle>(m);

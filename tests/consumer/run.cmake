@@ -20,7 +20,7 @@ endfunction()
 
 # builds(NAME FLAGS OPTIONS…): configured with these flags and options all programs build and have the right answers.
 set(answers "images: dc8da3cc70a66806\n")
-foreach(how "canonical exact" "compressed exact" "compressed_literal exact" "leafless exact" "shared_planes exact"
+foreach(how "canonical exact" "compressed exact" "compressed_literal exact" "leafless exact" "quantized exact" "shared_planes exact"
         "canonical devillers_guigue" "canonical moller" "canonical moller_double")
     string(APPEND answers "${how}: 489 contacts, 12 of its own\n")
 endforeach()

@@ -26,7 +26,7 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
     REQUIRE(reference["pairs"] > 0);
     const auto tree = GENERATE("canonical", "leafless", "shared_planes", "compressed", "compressed_literal",
-                               "compressed:leaf_test=triangle_box");
+                               "compressed:leaf_test=triangle_box", "quantized:bits=5");
     const auto build = GENERATE("median", "sah");
     const program_result result =
         run_program(joined(base, {"--tree", tree, "--build", build, "--out", folder / "pairs.csv"}));
@@ -78,7 +78,8 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     REQUIRE(reference["neighbours"] == 6 + 6 + 3);
     REQUIRE(reference["pairs"] > 0);
     REQUIRE(reference["triangles"] == std::vector{9});
-    const auto tree = GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal");
+    const auto tree =
+        GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal", "quantized");
     const auto summary = nlohmann::json::parse(run_program(joined(base, {"--tree", tree})).out);
     REQUIRE(summary["pairs"] == reference["pairs"]);
     REQUIRE(summary["neighbours"] == reference["neighbours"]);

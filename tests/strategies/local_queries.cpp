@@ -184,7 +184,7 @@ TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
         CHECK(stage->count_pairs(model, {}, model, moved) > 100);
         return stage->counters();
     };
-    for (const char* layout : {"leafless", "compressed", "compressed_literal"}) {
+    for (const char* layout : {"leafless", "compressed", "compressed_literal", "quantized"}) {
         INFO(layout);
         const work_counters none = work_of({layout, {}});
         const work_counters box = work_of({layout, {{"leaf_test", "triangle_box"}}});

@@ -1,0 +1,201 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+export module aabb.tree.quantized;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.policy;
+import aabb.tree.box_cursor;
+import aabb.tree.leafless_config;
+import aabb.tree.quantized_planes;
+import aabb.tree.sibling_planes;
+
+export namespace aabb {
+
+/// Parameters of `quantized_tree`.
+struct quantized_config : leafless_config {
+    unsigned bits = 8;
+};
+
+/// As `compressed`, with planes in a few bits each: no leaves, and two siblings share six planes, rounded outward.
+/// Boxes are a little larger than `canonical`'s, and always hold what is below them. Nodes stand depth first in one run
+/// of bytes, so that of two children only the right one needs an index. One above two leaves is their triangles, 8
+/// bytes; every other is an index, the symbol and six codes, 5 + 6 bits / 8 bytes. With 8 bits that takes 9.5 bytes a
+/// triangle, where leaves come in pairs (`leaf_pairing::even`). When to use: for the least memory.
+class quantized_tree {
+public:
+    static constexpr std::string_view name = "quantized";
+    static constexpr std::string_view summary =
+        "compressed further: planes in 4 to 16 bits each, rounded outward, and one index for two siblings";
+    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr bool has_leaf_boxes = false;
+    static constexpr leaf_pairing pairing = leaf_pairing::even;
+
+    using config = quantized_config;
+    static constexpr auto parameters = std::tuple_cat(
+        leafless_parameters,
+        std::tuple{integer_parameter{"bits", &config::bits, quantized_planes::least_bits, quantized_planes::most_bits,
+                                     "of a plane: fewer take less memory and make boxes larger"}});
+
+    quantized_tree() = default;
+    explicit quantized_tree(const config& c) : leaf_test_(c.leaf_test), planes_(c.bits) {}
+
+    using cursor = box_cursor;
+
+    /// @throws input_error when the nodes take 2 GiB or more.
+    void pack(std::span<const build_node> nodes) {
+        const auto holds_leaves_only = [&](std::size_t i) {
+            return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
+        };
+        std::vector<std::uint32_t> packed(nodes.size());
+        std::size_t end = 0;
+        records_ = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            packed[i] = nodes[i].is_leaf() ? nodes[i].triangle : static_cast<std::uint32_t>(end);
+            if (nodes[i].is_leaf()) continue;
+            records_ += !holds_leaves_only(i);
+            end += holds_leaves_only(i) ? pair_bytes : record_bytes();
+            if (end > pair_bit) throw input_error("a quantized tree takes no more than 2 GiB; this mesh needs more");
+        }
+        bytes_.assign(end, {});
+        root_ = nodes[0].bounds;
+        std::vector<box> decoded(nodes.size());
+        decoded[0] = root_;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (nodes[i].is_leaf()) continue;
+            const std::size_t at = packed[i];
+            const std::size_t left = i + 1;
+            const std::size_t right = nodes[i].right;
+            if (holds_leaves_only(i)) {
+                set_word(at, packed[left] | pair_bit);
+                set_word(at + word_bytes, packed[right]);
+                continue;
+            }
+            set_word(at, packed[nodes[left].is_leaf() ? left : right]);
+            bytes_[at + symbol_place] = static_cast<std::byte>((nodes[left].is_leaf() ? leaf_flag(0) : 0) |
+                                                               (nodes[right].is_leaf() ? leaf_flag(1) : 0));
+            const auto boxes = encode(at, decoded[i], nodes[left].bounds, nodes[right].bounds);
+            decoded[left] = boxes[0];
+            decoded[right] = boxes[1];
+        }
+    }
+
+    void refit(const mesh& m, std::vector<box>& boxes) {
+        const auto bounds_at = [&](const child& c) {
+            return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[place(c.index)];
+        };
+        // Children stand behind their parents, but from the back nobody can tell where nodes begin: a node's place
+        // holds that until it holds the node's box.
+        boxes.assign(place(bytes_.size()) + 1, empty_box());
+        for (std::size_t at = 0; at < bytes_.size(); at += size_at(at))
+            boxes[place(at)].min[0] = static_cast<float>(at % pair_bytes);
+        for (std::size_t i = boxes.size(); i-- > 0;) {
+            if (boxes[i] == empty_box()) continue;
+            const auto [left, right] = children_at(i * pair_bytes + static_cast<std::size_t>(boxes[i].min[0]));
+            boxes[i] = merged(bounds_at(left), bounds_at(right));
+        }
+        root_ = bytes_.empty() ? bounds_of(m.triangle(0)) : boxes[0];
+        // From the front parents are decoded before their children, whose boxes then take the place of the exact ones.
+        for (std::size_t at = 0; at < bytes_.size(); at += size_at(at)) {
+            if (is_pair(at)) continue;
+            const auto [left, right] = children_at(at);
+            const auto decoded = encode(at, boxes[place(at)], bounds_at(left), bounds_at(right));
+            if (!left.is_leaf) boxes[place(left.index)] = decoded[0];
+            if (!right.is_leaf) boxes[place(right.index)] = decoded[1];
+        }
+    }
+
+    [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
+        return bytes_.empty() ? leaf_cursor(0, root_, leaf_test_, m) : cursor{root_, 0};
+    }
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
+        const auto [left, right] = children_at(at.index);
+        const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, leaf_test_, m); };
+        if (left.is_leaf && right.is_leaf) return {leaf(left.index), leaf(right.index)};
+        const auto boxes = decode(at.index, at.bounds);
+        return {left.is_leaf ? leaf(left.index) : cursor{boxes[0], left.index},
+                right.is_leaf ? leaf(right.index) : cursor{boxes[1], right.index}};
+    }
+    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return leaf_test_; }
+    [[nodiscard]] tree_bytes bytes() const noexcept {
+        const std::size_t planes = records_ * (record_bytes() - word_bytes);
+        return {sizeof(root_) + planes, bytes_.capacity() - planes};
+    }
+
+private:
+    static constexpr std::uint32_t pair_bit = 0x80000000;
+    static constexpr std::size_t word_bytes = 4;
+    static constexpr std::size_t pair_bytes = 2 * word_bytes;
+    static constexpr std::size_t symbol_place = word_bytes;
+    static constexpr std::size_t codes_place = symbol_place + 1;
+    static_assert(quantized_planes::read_beyond <= pair_bytes);
+
+    struct child {
+        std::uint32_t index;  // of its first byte, or its triangle
+        bool is_leaf;
+    };
+
+    [[nodiscard]] inline std::size_t record_bytes() const noexcept { return codes_place + planes_.bytes(); }
+    [[nodiscard]] inline std::uint32_t word(std::size_t at) const noexcept {
+        std::uint32_t value = 0;
+        std::memcpy(&value, &bytes_[at], sizeof value);
+        return value;
+    }
+    void set_word(std::size_t at, std::uint32_t value) noexcept { std::memcpy(&bytes_[at], &value, sizeof value); }
+    [[nodiscard]] inline bool is_pair(std::size_t at) const noexcept { return word(at) & pair_bit; }
+    [[nodiscard]] inline std::size_t size_at(std::size_t at) const noexcept {
+        return is_pair(at) ? pair_bytes : record_bytes();
+    }
+    [[nodiscard]] inline unsigned symbol_at(std::size_t at) const noexcept {
+        return std::to_integer<unsigned>(bytes_[at + symbol_place]);
+    }
+    /// No node is shorter than 8 bytes, so no two begin in the same eight.
+    [[nodiscard]] static std::size_t place(std::size_t at) noexcept { return at / pair_bytes; }
+
+    [[nodiscard]] inline std::array<child, 2> children_at(std::size_t at) const noexcept {
+        const std::uint32_t first = word(at);
+        if (first & pair_bit) return {child{first & ~pair_bit, true}, child{word(at + word_bytes), true}};
+        const auto next = static_cast<std::uint32_t>(at + record_bytes());
+        const unsigned symbol = symbol_at(at);
+        if (symbol & leaf_flag(0)) return {child{first, true}, child{next, false}};
+        return {child{next, false}, child{first, (symbol & leaf_flag(1)) != 0}};
+    }
+
+    /// The children's boxes.
+    [[nodiscard]] inline std::array<box, 2> decode(std::size_t at, const box& parent) const noexcept {
+        return decode_siblings(parent, planes_.decode(parent, &bytes_[at + codes_place]), symbol_at(at));
+    }
+
+    /// Writes the planes, and the symbol but for its leaf flags. @return the children's boxes as they are decoded.
+    std::array<box, 2> encode(std::size_t at, const box& parent, const box& left, const box& right) noexcept {
+        sibling_planes planes{};
+        auto symbol = static_cast<std::uint8_t>(symbol_at(at));
+        encode_siblings(left, right, planes, symbol);
+        bytes_[at + symbol_place] = static_cast<std::byte>(symbol);
+        planes_.encode(parent, planes, &bytes_[at + codes_place]);
+        return decode(at, parent);
+    }
+
+    leaf_test_choice leaf_test_ = {};
+    quantized_planes planes_{config{}.bits};
+    box root_{};
+    std::size_t records_ = 0;  // nodes with planes
+    // Behind a node with planes there is always another one, so reading a few bytes beyond its codes is reading these.
+    std::vector<std::byte> bytes_;
+};
+
+static_assert(TreePolicy<quantized_tree>);
+
+}  // namespace aabb

@@ -1,0 +1,105 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+export module aabb.tree.quantized_planes;
+
+import aabb.geometry;
+import aabb.tree.sibling_planes;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// `sibling_planes` in so many bits a plane, rounded outward, relative to the parent's box as it is decoded. A plane
+/// that a child inherits is the decoded one: what rounding added to it stays, down to where it is that of no child any
+/// more.
+///
+/// A code q counts steps inward from the parent's plane, each 2^-bits of the parent's length on that axis: decoded(q) =
+/// plane + q * step, in float, product and sum rounded apart. Both are monotone in q, and decoded(0) is the parent's
+/// plane, so bisection finds the greatest q that does not cut the child, by comparing what is decoded with the child's
+/// plane. That no box cuts what it must hold rests on this comparison alone, whatever is rounded, lost below the least
+/// denormal or overflows: a step is the difference of two planes times 2^-bits, hence finite, and a q whose product
+/// overflows is none that does not cut.
+class quantized_planes {
+public:
+    static constexpr unsigned least_bits = 4;
+    static constexpr unsigned most_bits = 16;
+
+    /// Beyond the codes as many bytes may be read, and are not used.
+    static constexpr std::size_t read_beyond = 8;
+
+    explicit quantized_planes(unsigned bits) noexcept
+        : bits_(bits), bytes_((6 * bits + 7) / 8), scale_(1 / static_cast<float>(1U << bits)) {}
+
+    /// Of six codes.
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+
+    /// @param parent as it is decoded; holds both children
+    void encode(const box& parent, const sibling_planes& planes, std::byte* codes) const noexcept {
+        std::array<std::uint64_t, 2> words{};
+        for (int k = 0; k < 3; ++k) {
+            const float step = step_on(parent, k);
+            const float low = planes.own[static_cast<std::size_t>(k)];
+            const float high = planes.own[static_cast<std::size_t>(k + 3)];
+            words[0] |= greatest([&](unsigned q) { return decoded(parent.min[k], q, step) <= low; }) << k * bits_;
+            words[1] |= greatest([&](unsigned q) { return decoded(parent.max[k], q, -step) >= high; }) << k * bits_;
+        }
+        // The upper planes' codes begin where the lower ones' end, which may be within a byte.
+        std::array<std::byte, 2 * sizeof(std::uint64_t)> all{};
+        std::memcpy(all.data(), words.data(), sizeof(std::uint64_t));
+        words[1] = words[1] << upper_shift() | (words[0] >> 8 * upper_byte());
+        std::memcpy(&all[upper_byte()], &words[1], sizeof(std::uint64_t));
+        std::copy_n(all.begin(), bytes_, codes);
+    }
+
+    [[nodiscard]] inline sibling_planes decode(const box& parent, const std::byte* codes) const noexcept {
+        std::uint64_t lower = 0;
+        std::uint64_t upper = 0;
+        std::memcpy(&lower, codes, sizeof lower);
+        std::memcpy(&upper, codes + upper_byte(), sizeof upper);
+        upper >>= upper_shift();
+        const unsigned mask = (1U << bits_) - 1;
+        sibling_planes planes{};
+        for (int k = 0; k < 3; ++k) {
+            const auto low = static_cast<std::size_t>(k);
+            const float step = step_on(parent, k);
+            planes.own[low] = decoded(parent.min[k], static_cast<unsigned>(lower >> k * bits_) & mask, step);
+            planes.own[low + 3] = decoded(parent.max[k], static_cast<unsigned>(upper >> k * bits_) & mask, -step);
+        }
+        return planes;
+    }
+
+private:
+    static_assert(std::endian::native == std::endian::little);
+
+    [[nodiscard]] inline std::size_t upper_byte() const noexcept { return 3 * bits_ / 8; }
+    [[nodiscard]] inline unsigned upper_shift() const noexcept { return 3 * bits_ % 8; }
+
+    [[nodiscard]] inline float step_on(const box& parent, int k) const noexcept {
+        return parent.max[k] * scale_ - parent.min[k] * scale_;
+    }
+    [[nodiscard]] static inline float decoded(float plane, unsigned code, float step) noexcept {
+        return plane + static_cast<float>(static_cast<int>(code)) * step;
+    }
+
+    /// Of the codes that fit, where 0 does and with a code every lower one.
+    template <class Fits>
+    [[nodiscard]] std::uint64_t greatest(Fits fits) const noexcept {
+        unsigned code = 0;
+        for (unsigned bit = 1U << (bits_ - 1); bit != 0; bit >>= 1)
+            if (fits(code | bit)) code |= bit;
+        return code;
+    }
+
+    unsigned bits_;
+    unsigned bytes_;
+    float scale_;
+};
+
+}  // namespace aabb
