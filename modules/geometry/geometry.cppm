@@ -4,6 +4,7 @@ export module aabb.geometry;
 export import :box;
 export import :contact;
 export import :index_pair;
+export import :intersection;
 export import :mesh;
 export import :pose;
 export import :predicates;

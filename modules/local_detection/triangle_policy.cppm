@@ -20,4 +20,11 @@ concept DoubleTrianglePolicy = TrianglePolicy<R> && requires(const R policy, con
     { policy.intersects(s, t) } -> std::same_as<bool>;
 };
 
+/// A triangle test that also constructs what two triangles have in common, those of floats taken in double.
+template <class R>
+concept ConstructingTrianglePolicy =
+    TrianglePolicy<R> && requires(const R policy, const triangle3d& s, const triangle3d& t) {
+        { policy.intersection(s, t) } -> std::same_as<triangle_intersection>;
+    };
+
 }  // namespace aabb

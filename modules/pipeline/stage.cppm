@@ -110,6 +110,11 @@ public:
     virtual void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> answers) const = 0;
     /// @throws input_error when the test is made for float only.
     virtual void intersect(std::span<const triangle_pair<double>> pairs, std::span<std::uint8_t> answers) const = 0;
+
+    /// What the two have in common.
+    /// @throws input_error when the test only decides.
+    [[nodiscard]] virtual triangle_intersection intersection(const triangle3d& s, const triangle3d& t) const = 0;
+    [[nodiscard]] virtual bool constructs() const = 0;
 };
 
 /// Whether a stage counts its work. Timing runs are not counted.

@@ -44,6 +44,16 @@ public:
             refuse_doubles();
     }
 
+    [[nodiscard]] triangle_intersection intersection(const triangle3d& s, const triangle3d& t) const override {
+        require_ieee_arithmetic();
+        if constexpr (ConstructingTrianglePolicy<Triangle>)
+            return triangle_.intersection(s, t);
+        else
+            throw input_error(std::string(Triangle::name) +
+                              " decides whether triangles intersect, not what they have in common");
+    }
+    [[nodiscard]] bool constructs() const override { return ConstructingTrianglePolicy<Triangle>; }
+
 private:
     template <class Real>
     void answer(std::span<const triangle_pair<Real>> pairs, std::span<std::uint8_t> answers) const {

@@ -5,6 +5,7 @@ export module aabb.triangle.exact;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.triangle.intersection;
 import aabb.triangle.orientation_test;
 
 export namespace aabb {
@@ -16,8 +17,12 @@ struct exact_triangle : orientation_test<orientations> {
     static constexpr std::string_view name = "exact";
     static constexpr std::string_view summary =
         "exact for any finite triangles, zero-area ones included: orientation signs, filtered in double";
+
+    [[nodiscard]] static triangle_intersection intersection(const triangle3d& s, const triangle3d& t) {
+        return intersection_of(s, t);
+    }
 };
 
-static_assert(DoubleTrianglePolicy<exact_triangle>);
+static_assert(DoubleTrianglePolicy<exact_triangle> && ConstructingTrianglePolicy<exact_triangle>);
 
 }  // namespace aabb

@@ -5,7 +5,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 module aabb.triangle.intersection;
@@ -278,11 +277,6 @@ triangle_intersection crossing_intersection(const triangle3d& given_s, const sig
 }
 
 }  // namespace
-
-std::string_view name_of(intersection_kind kind) {
-    constexpr std::array<std::string_view, 5> names = {"none", "point", "segment", "transversal", "overlap"};
-    return names[static_cast<std::size_t>(kind)];
-}
 
 triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t) {
     require_ieee_arithmetic();

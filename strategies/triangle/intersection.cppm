@@ -1,8 +1,3 @@
-module;
-#include <array>
-#include <cstdint>
-#include <string_view>
-
 /// The geometry of a hit: what two triangles have in common, not only whether.
 export module aabb.triangle.intersection;
 
@@ -10,29 +5,9 @@ import aabb.geometry;
 
 export namespace aabb {
 
-/// What two closed triangles have in common.
-enum class intersection_kind : std::uint8_t {
-    none,
-    point,        ///< they touch in a point
-    segment,      ///< they touch along a segment
-    transversal,  ///< they pass through each other: their interiors meet, in a segment
-    overlap       ///< they lie in one plane and share a part of it, a polygon
-};
-
-/// "none", "point", "segment", "transversal", "overlap".
-[[nodiscard]] std::string_view name_of(intersection_kind kind);
-
-struct triangle_intersection {
-    intersection_kind kind = intersection_kind::none;
-    std::uint32_t size = 0;             ///< corners: 1 of a point, 2 of a segment, 3 to 6 of a polygon
-    std::array<vec3d, 6> corners = {};  ///< those of a polygon in their order around it
-    /// No coordinate of a corner is off by more than this on its axis; 0 where all corners are corners of the
-    /// triangles, which are given as they are.
-    vec3d error = {};
-};
-
-/// Kind and number of corners are exact for any finite triangles, zero-area ones included, which are the segments and
-/// points that they are: a segment through a triangle has a point in common with it. Coordinates are rounded:
+/// What two closed triangles have in common. Kind and number of corners are exact for any finite triangles, zero-area
+/// ones included, which are the segments and points that they are: a segment through a triangle has a point in common
+/// with it. Coordinates are rounded:
 ///
 /// A corner that is none of the triangles' is where an edge from a to b meets the other's plane or edge, of which a and
 /// b lie at signed distances proportional to determinants p and q of opposite signs. These are computed exactly and

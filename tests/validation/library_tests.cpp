@@ -79,6 +79,22 @@ TEST_CASE("every triangle test of a library decides clear pairs") {
     }
 }
 
+TEST_CASE("a test that only decides refuses to construct; epeck constructs what exact does") {
+    const triangle3d face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+    const triangle3d edge{{{1, 0, 0}, {2, 0, 0}, {1, 0, 3}}};
+    for (const library_test_info& info : library_tests()) {
+        INFO(info.name);
+        const auto test = make_library_test({info.name, {}});
+        CHECK(test->constructs() == (info.name == "epeck"));
+        if (test->constructs())
+            CHECK(test->intersection(face, edge).corners == exact_triangle::intersection(face, edge).corners);
+        else
+            CHECK_THROWS_MATCHES(
+                test->intersection(face, edge), input_error,
+                Message(info.name + " decides whether triangles intersect, not what they have in common"));
+    }
+}
+
 TEST_CASE("every triangle test of a library comes to an end, whatever the pair") {
     const auto floats = all_pairs<float>(30);
     const auto doubles = all_pairs<double>(30);

@@ -38,6 +38,10 @@ struct epeck_test {
         return hulls_intersect<kernel>({point(s[0]), point(s[1]), point(s[2])},
                                        {point(t[0]), point(t[1]), point(t[2])});
     }
+
+    [[nodiscard]] static triangle_intersection intersection(const triangle3d& s, const triangle3d& t) {
+        return exact_intersection(s, t).rounded();
+    }
 };
 
 }  // namespace

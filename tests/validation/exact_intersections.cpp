@@ -1,0 +1,168 @@
+#include <CGAL/Exact_rational.h>
+
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <utility>
+
+#include "../triangle_pairs.hpp"
+
+import aabb;
+import aabb.triangle.intersection;
+import aabb.validation;
+
+// CGAL's exact construction behind plain types, and what is held against it.
+
+using aabb::intersection_kind;
+using aabb::triangle3d;
+using aabb::triangle_intersection;
+
+namespace {
+
+const triangle3d face{{{0, 0, 0}, {6, 0, 0}, {3, 6, 0}}};
+const triangle3d star{{{0, 4, 0}, {6, 4, 0}, {3, -2, 0}}};
+/// Through the face along a segment whose ends are not doubles.
+const triangle3d through{{{2, 1, -1}, {2, 1, 2}, {4, 1, 2}}};
+
+triangle3d as_triangle(const triangle_pairs::triangle& t) {
+    triangle3d made{};
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) made[i][k] = t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+    return made;
+}
+
+}  // namespace
+
+TEST_CASE("an intersection is held against the exact one, however its corners are numbered") {
+    const aabb::exact_intersection segment(face, through);
+    CHECK(segment.kind() == intersection_kind::transversal);
+    triangle_intersection computed = aabb::intersection_of(face, through);
+    const aabb::corner_errors errors = segment.errors_of(computed);
+    CHECK(errors.same);
+    CHECK(errors.within);
+    CHECK(errors.of_bound > 0);
+    CHECK(errors.of_bound <= 1);
+    CHECK(errors.greatest <= errors.bound);
+    std::swap(computed.corners[0], computed.corners[1]);
+    CHECK(segment.errors_of(computed).within);
+    computed.corners[0][0] += 2 * computed.error[0];
+    CHECK(segment.errors_of(computed).same);
+    CHECK_FALSE(segment.errors_of(computed).within);
+    CHECK(segment.errors_of(computed).of_bound > 1);
+    computed.kind = intersection_kind::segment;
+    CHECK_FALSE(segment.errors_of(computed).same);
+    CHECK_FALSE(segment.errors_of(computed).within);
+
+    const aabb::exact_intersection polygon(face, star);
+    triangle_intersection hexagon = aabb::intersection_of(face, star);
+    REQUIRE(hexagon.size == 6);
+    for (int turn = 0; turn < 6; ++turn) {
+        CHECK(polygon.errors_of(hexagon).within);
+        triangle_intersection reversed = hexagon;
+        for (std::size_t i = 0; i < 6; ++i) reversed.corners[i] = hexagon.corners[5 - i];
+        CHECK(polygon.errors_of(reversed).within);
+        const aabb::vec3d first = hexagon.corners[0];
+        for (std::size_t i = 0; i < 5; ++i) hexagon.corners[i] = hexagon.corners[i + 1];
+        hexagon.corners[5] = first;
+    }
+    std::swap(hexagon.corners[0], hexagon.corners[1]);
+    CHECK_FALSE(polygon.errors_of(hexagon).within);
+    --hexagon.size;
+    CHECK_FALSE(polygon.errors_of(hexagon).same);
+
+    const aabb::exact_intersection apart(face, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}});
+    CHECK(apart.kind() == intersection_kind::none);
+    CHECK(apart.errors_of({}).same);
+    CHECK(apart.errors_of({}).within);
+}
+
+TEST_CASE("an error where none is stated is infinitely greater than that") {
+    const aabb::exact_intersection segment(face, through);
+    triangle_intersection computed = segment.rounded();
+    computed.error = {};
+    const aabb::corner_errors errors = segment.errors_of(computed);
+    CHECK_FALSE(errors.within);
+    CHECK(errors.of_bound > 1e300);
+}
+
+TEST_CASE(
+    "the exact intersection rounded is off by less than the distance of two doubles, and ours is within its bound") {
+    triangle_pairs::generator g{11};
+    std::size_t hits = 0;
+    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement) {
+            CAPTURE(triangle_pairs::patterns[pattern], triangle_pairs::placements[placement]);
+            int wrong = 0;
+            for (int i = 0; i < 100; ++i) {
+                const triangle_pairs::pair pair =
+                    triangle_pairs::placed<double>(g, triangle_pairs::patterned(g, pattern), placement);
+                const triangle3d s = as_triangle(pair[0]);
+                const triangle3d t = as_triangle(pair[1]);
+                const aabb::exact_intersection exact(s, t);
+                const triangle_intersection rounded = exact.rounded();
+                hits += static_cast<std::size_t>(rounded.size > 0);
+                wrong += static_cast<int>((rounded.size > 0) != aabb::exactly_intersect(s, t));
+                wrong += static_cast<int>(!exact.errors_of(rounded).within);
+                wrong += static_cast<int>(!exact.errors_of(aabb::intersection_of(s, t)).within);
+                for (std::size_t c = 0; c < rounded.size; ++c)
+                    for (int k = 0; k < 3; ++k) {
+                        double largest = 0;
+                        for (std::size_t other = 0; other < rounded.size; ++other)
+                            largest = std::max(largest, std::abs(rounded.corners[other][k]));
+                        wrong += static_cast<int>(rounded.error[k] > largest * 0x1p-51 + 0x1p-1073);
+                    }
+            }
+            CHECK(wrong == 0);
+        }
+    CHECK(hits > 1000);
+    const triangle_intersection doubles = aabb::exact_intersection(face, {{{1, 1, 0}, {2, 1, 0}, {2, 2, 0}}}).rounded();
+    CHECK(doubles.size == 3);
+    CHECK(doubles.error == aabb::vec3d{0, 0, 0});
+}
+
+TEST_CASE("what is carried to the world is within its error there, and stays as it is where nothing moves") {
+    using number = CGAL::Exact_rational;
+    triangle_pairs::generator g{12};
+    const auto any = [&](double reach) { return std::uniform_real_distribution<double>(-reach, reach)(g); };
+    int wrong = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double scale = std::ldexp(1, triangle_pairs::integer(g, -1070, 60));
+        triangle_intersection exact;
+        exact.size = 6;
+        triangle_intersection computed = exact;
+        for (std::size_t c = 0; c < 6; ++c)
+            for (int k = 0; k < 3; ++k) {
+                exact.corners[c][k] = any(1) * scale;
+                const double off = any(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -53, 0));
+                computed.corners[c][k] = exact.corners[c][k] + off;
+                const double error = std::abs(computed.corners[c][k] - exact.corners[c][k]);
+                computed.error[k] = std::max(computed.error[k], std::nextafter(error, 1e300));
+            }
+        aabb::pose pose;
+        const double angle = any(4);
+        pose.rotation = {std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1};
+        for (int k = 0; k < 3; ++k)
+            pose.translation[k] = any(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -30, 30));
+        const triangle_intersection world = aabb::carried(computed, pose);
+        for (std::size_t c = 0; c < 6; ++c)
+            for (int k = 0; k < 3; ++k) {
+                number image(pose.translation[k]);
+                for (int j = 0; j < 3; ++j)
+                    image += number(pose.rotation[static_cast<std::size_t>(3 * k + j)]) * number(exact.corners[c][j]);
+                wrong += static_cast<int>(CGAL::abs(number(world.corners[c][k]) - image) > number(world.error[k]));
+            }
+        CHECK(aabb::carried(computed, {}).corners == computed.corners);
+        CHECK(aabb::carried(computed, {}).error == computed.error);
+        // What the pose adds is some roundings, not more.
+        double reach = 0;
+        for (std::size_t c = 0; c < 6; ++c)
+            for (int k = 0; k < 3; ++k)
+                reach = std::max(reach, std::abs(world.corners[c][k]) + std::abs(pose.translation[k]));
+        for (int k = 0; k < 3; ++k)
+            CHECK(world.error[k] <= 2 * (computed.error[0] + computed.error[1] + computed.error[2]) +
+                                        0x1p-48 * (reach + 3 * scale) + 0x1p-1068);
+    }
+    CHECK(wrong == 0);
+}

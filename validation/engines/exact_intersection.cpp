@@ -1,0 +1,187 @@
+module;
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/variant.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "exact_decision.hpp"
+
+module aabb.engines;
+
+import aabb.geometry;
+
+namespace aabb {
+
+namespace {
+
+using kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using point_3 = kernel::Point_3;
+using segment_3 = kernel::Segment_3;
+using triangle_3 = kernel::Triangle_3;
+using exact_hull = hull<kernel>;
+using exact_number = kernel::FT::ET;
+using exact_point = std::array<exact_number, 3>;
+
+exact_hull exact_hull_of(const triangle3d& t) {
+    const auto point = [](const vec3d& p) { return point_3(p[0], p[1], p[2]); };
+    return hull_of<kernel>({point(t[0]), point(t[1]), point(t[2])});
+}
+
+/// The corners of a shape that CGAL returns.
+struct corners_in_shape {
+    using result_type = std::vector<point_3>;
+    result_type operator()(const point_3& p) const { return {p}; }
+    result_type operator()(const segment_3& s) const { return {s.source(), s.target()}; }
+    result_type operator()(const triangle_3& t) const { return {t[0], t[1], t[2]}; }
+    result_type operator()(const result_type& all) const { return all; }
+};
+
+/// CGAL 6 returns variants of the standard library, CGAL 5 those of Boost.
+template <class Variant>
+std::vector<point_3> corners_in(const Variant& shape) {
+    if constexpr (requires { shape.which(); })
+        return boost::apply_visitor(corners_in_shape{}, shape);
+    else
+        return std::visit(corners_in_shape{}, shape);
+}
+
+/// The corners of what two hulls have in common.
+struct common_corners {
+    using corners = std::vector<point_3>;
+    corners operator()(const point_3& s, const point_3& t) const { return s == t ? corners{s} : corners{}; }
+    corners operator()(const point_3& s, const auto& t) const { return t.has_on(s) ? corners{s} : corners{}; }
+    corners operator()(const auto& s, const point_3& t) const { return (*this)(t, s); }
+    corners operator()(const auto& s, const auto& t) const {
+        const auto found = CGAL::intersection(s, t);
+        if (!found) return {};
+        corners once;
+        for (const point_3& p : corners_in(*found))
+            if (std::ranges::find(once, p) == once.end()) once.push_back(p);
+        return once;
+    }
+};
+
+/// Whether p, a point of the hull, lies on no edge of it.
+bool is_interior(const exact_hull& h, const point_3& p) {
+    const auto* const t = std::get_if<triangle_3>(&h);
+    if (t == nullptr) return false;
+    for (int i = 0; i < 3; ++i)
+        if (segment_3(t->vertex(i), t->vertex(i + 1)).has_on(p)) return false;
+    return true;
+}
+
+intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull& g, const exact_hull& h) {
+    if (corners.empty()) return intersection_kind::none;
+    if (corners.size() == 1) return intersection_kind::point;
+    if (corners.size() > 2) return intersection_kind::overlap;
+    const point_3 middle = CGAL::midpoint(corners[0], corners[1]);
+    return is_interior(g, middle) && is_interior(h, middle) ? intersection_kind::transversal
+                                                            : intersection_kind::segment;
+}
+
+/// Takes the errors of a computed corner.
+void add_errors(corner_errors& errors, const vec3d& computed, const exact_point& corner, const vec3d& stated) {
+    for (int k = 0; k < 3; ++k) {
+        const exact_number off = CGAL::abs(exact_number(computed[k]) - corner[static_cast<std::size_t>(k)]);
+        if (CGAL::is_zero(off)) continue;
+        const exact_number bound(stated[k]);
+        errors.within &= off <= bound;
+        const double of_bound = stated[k] == 0 ? std::numeric_limits<double>::infinity() : CGAL::to_double(off / bound);
+        errors.of_bound = std::max(errors.of_bound, of_bound);
+        const double error = CGAL::to_double(off);
+        if (error <= errors.greatest) continue;
+        errors.greatest = error;
+        errors.bound = stated[k];
+    }
+}
+
+}  // namespace
+
+struct exact_intersection::construction {
+    intersection_kind kind;
+    std::vector<exact_point> corners;
+};
+
+exact_intersection::exact_intersection(const triangle3d& s, const triangle3d& t)
+    : made_(std::make_unique<construction>()) {
+    const exact_hull g = exact_hull_of(s);
+    const exact_hull h = exact_hull_of(t);
+    const std::vector<point_3> corners = std::visit(common_corners{}, g, h);
+    made_->kind = kind_of(corners, g, h);
+    for (const point_3& p : corners) {
+        const auto& exact = CGAL::exact(p);
+        made_->corners.push_back({exact.x(), exact.y(), exact.z()});
+    }
+}
+
+exact_intersection::~exact_intersection() = default;
+
+intersection_kind exact_intersection::kind() const {
+    return made_->kind;
+}
+
+triangle_intersection exact_intersection::rounded() const {
+    triangle_intersection common;
+    common.kind = made_->kind;
+    for (const exact_point& corner : made_->corners) {
+        vec3d& at = common.corners[common.size++];
+        for (int k = 0; k < 3; ++k) {
+            const auto [low, high] = CGAL::to_interval(corner[static_cast<std::size_t>(k)]);
+            at[k] = low / 2 + high / 2;
+            // Halves of the smallest numbers are rounded too.
+            if (at[k] < low || at[k] > high) at[k] = low;
+            common.error[k] = std::max(common.error[k], high - low);
+        }
+    }
+    return common;
+}
+
+corner_errors exact_intersection::errors_of(const triangle_intersection& computed) const {
+    corner_errors best;
+    const std::size_t size = made_->corners.size();
+    best.same = computed.kind == made_->kind && computed.size == size;
+    best.within = best.same && size == 0;
+    if (!best.same || size == 0) return best;
+    best.of_bound = std::numeric_limits<double>::infinity();
+    std::array<vec3d, 6> approximate{};
+    for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t k = 0; k < 3; ++k) approximate[i][static_cast<int>(k)] = CGAL::to_double(made_->corners[i][k]);
+    // Every first corner and both ways round, the nearest by doubles first, which is the one but where corners lie as
+    // near to each other as the error.
+    struct alignment {
+        double distance;
+        std::size_t first, step;
+        [[nodiscard]] std::size_t operator()(std::size_t i, std::size_t of) const { return (first + i * step) % of; }
+    };
+    std::vector<alignment> alignments;
+    for (std::size_t first = 0; first < size; ++first)
+        for (const std::size_t step : {std::size_t{1}, size - 1}) {
+            alignment a{0, first, step};
+            for (std::size_t i = 0; i < size; ++i)
+                for (int k = 0; k < 3; ++k)
+                    a.distance =
+                        std::max(a.distance, std::abs(computed.corners[i][k] / 2 - approximate[a(i, size)][k] / 2));
+            alignments.push_back(a);
+        }
+    std::ranges::sort(alignments, {}, &alignment::distance);
+    for (const alignment& a : alignments) {
+        corner_errors errors{.same = true, .within = true};
+        for (std::size_t i = 0; i < size; ++i)
+            add_errors(errors, computed.corners[i], made_->corners[a(i, size)], computed.error);
+        if (errors.within || errors.of_bound < best.of_bound) best = errors;
+        if (best.within) break;
+    }
+    return best;
+}
+
+}  // namespace aabb
