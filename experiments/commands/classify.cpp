@@ -20,12 +20,16 @@
 #include "number.hpp"
 #include "output.hpp"
 
+// Imports, so it comes last.
+#include "hit_geometry.hpp"
+
 import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabblab.configs;
+import aabblab.pair_output;
 import aabblab.progress;
 
 namespace aabblab {
@@ -36,11 +40,12 @@ struct classify_request {
     std::string file;
     std::string triangle{info_of(aabb::strategy_kind::triangle).fallback};
     bool keep_doubles = false;
+    bool geometry = false;
 };
 
 /// @param words 18 numbers: the corners of one triangle, then of the other
 template <class Real>
-bool intersects(const aabb::triangle_test& test, const std::vector<std::string>& words) {
+std::string answer_of(const aabb::triangle_test& test, const std::vector<std::string>& words, bool geometry) {
     if (words.size() != 18)
         throw aabb::input_error(fmt::format("expected 18 numbers, two triangles, not {}", words.size()));
     aabb::triangle3<Real> triangles[2];
@@ -51,12 +56,13 @@ bool intersects(const aabb::triangle_test& test, const std::vector<std::string>&
             throw aabb::input_error(fmt::format("number {} of 18: {}", i + 1, error.what()));
         }
     }
-    return test.intersects(triangles[0], triangles[1]);
+    if (geometry) return to_text(test.intersection(in_double(triangles[0]), in_double(triangles[1]))) + "\n";
+    return test.intersects(triangles[0], triangles[1]) ? "1\n" : "0\n";
 }
 
 /// Answers that stand before a line that is wrong are printed; the program writes them out with the sentence.
 void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t size, const aabb::triangle_test& test,
-                    bool keep_doubles) {
+                    const classify_request& request) {
     std::optional<progress> shown;  // answers that go to the terminal are progress enough
     if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", size);
     std::size_t read = 0;
@@ -66,8 +72,8 @@ void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t
         try {
             const std::vector<std::string> words = split_numbers(std::string_view(line).substr(0, line.find('#')));
             if (words.empty()) continue;
-            const bool answer = keep_doubles ? intersects<double>(test, words) : intersects<float>(test, words);
-            print(answer ? "1\n" : "0\n");
+            print(request.keep_doubles ? answer_of<double>(test, words, request.geometry)
+                                       : answer_of<float>(test, words, request.geometry));
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(fmt::format("{}:{}: {}", name, number, error.what()));
         }
@@ -77,10 +83,10 @@ void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t
 
 void classify(const classify_request& request) {
     const aabb::strategy_choice choice = aabb::parse_strategy(request.triangle);
-    const auto test = triangle_test_named(choice);
+    const auto test = request.geometry ? constructing_test(choice, false) : triangle_test_named(choice);
     if (request.keep_doubles && !test->takes_double())
         throw aabb::input_error("--double: " + choice.name + " tests triangles of floats only");
-    if (request.file == "-") return classify_lines(std::cin, "standard input", 0, *test, request.keep_doubles);
+    if (request.file == "-") return classify_lines(std::cin, "standard input", 0, *test, request);
     // A pipe under a name may be read, but has no size; a directory opens like a file.
     std::error_code unknown;
     const bool readable = !std::filesystem::is_directory(request.file, unknown);
@@ -89,14 +95,14 @@ void classify(const classify_request& request) {
         throw aabb::input_error("cannot read " + request.file + ": " +
                                 std::generic_category().message(readable ? errno : EISDIR));
     const std::uintmax_t size = std::filesystem::file_size(request.file, unknown);
-    classify_lines(file, request.file, unknown ? 0 : size, *test, request.keep_doubles);
+    classify_lines(file, request.file, unknown ? 0 : size, *test, request);
 }
 
 }  // namespace
 
 void add_classify(CLI::App& program, int&) {
-    auto* command =
-        program.add_subcommand("classify", "Do two triangles intersect? One pair a line, one 0 or 1 a line");
+    auto* command = program.add_subcommand(
+        "classify", "Do two triangles intersect, and in what? One pair a line, one answer a line");
     auto request = std::make_shared<classify_request>();
     command
         ->add_option("FILE", request->file,
@@ -109,6 +115,9 @@ void add_classify(CLI::App& program, int&) {
                      "Triangle test (default exact), or one of a library that `list` shows")
         ->type_name("R");
     command->add_flag("--double", request->keep_doubles, "Keep the numbers as doubles instead of rounding to float");
+    command->add_flag("--geometry", request->geometry,
+                      "What the two have in common in place of 0 or 1: kind, number of corners, corners, and the error "
+                      "of a coordinate on each axis");
     command->callback([request] { classify(*request); });
 }
 

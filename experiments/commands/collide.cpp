@@ -17,8 +17,9 @@
 #include "number.hpp"
 #include "output.hpp"
 
-// Imports, so it comes last.
+// Import, so they come last.
 #include "composing.hpp"
+#include "hit_geometry.hpp"
 
 import aabb.base;
 import aabb.digest;
@@ -44,6 +45,7 @@ struct collide_request {
     bool self = false;
     bool first = false;
     bool count = false;
+    bool geometry = false;
     bool json = false;
 };
 
@@ -51,14 +53,16 @@ struct detection_method {
     std::string name;
     bool exact;
     std::unique_ptr<aabb::local_stage> stage;
+    std::optional<hit_geometry> geometry;  ///< with --geometry
 };
 
 struct detection_result {
     std::vector<std::uint32_t> triangles;  ///< of each mesh
     std::vector<aabb::index_pair> pairs;
-    std::uint64_t count = 0;                  ///< of pairs, of a mesh with itself those that share no vertex
-    std::optional<std::uint64_t> neighbours;  ///< of a mesh with itself: pairs that share a vertex
-    std::optional<std::string> digest;        ///< of all pairs, neighbours too; none where they are counted only
+    std::uint64_t count = 0;                           ///< of pairs, of a mesh with itself those that share no vertex
+    std::optional<std::uint64_t> neighbours;           ///< of a mesh with itself: pairs that share a vertex
+    std::optional<aabb::triangle_intersection> first;  ///< of the one pair that --first found, with --geometry
+    std::optional<std::string> digest;  ///< of all pairs, neighbours too; none where they are counted only
     double build_ms = 0;
     double query_ms = 0;
     std::vector<aabb::part_bytes> bytes;
@@ -69,13 +73,16 @@ detection_method method_of(const collide_request& request) {
     if (request.engine) {
         if (request.local.any())
             throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it alone");
-        return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_mesh_engine(*request.engine)};
+        return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_mesh_engine(*request.engine), {}};
     }
     aabb::composition composition;
     request.local.set(composition);
-    return {aabb::to_text(composition, aabb::stage::local_detection),
-            aabb::is_exact(composition, aabb::stage::local_detection),
-            aabb::compose_local_detection(composition, aabb::instrumentation::none)};
+    detection_method method{aabb::to_text(composition, aabb::stage::local_detection),
+                            aabb::is_exact(composition, aabb::stage::local_detection),
+                            aabb::compose_local_detection(composition, aabb::instrumentation::none),
+                            {}};
+    if (request.geometry) method.geometry.emplace(composition[aabb::strategy_kind::triangle]);
+    return method;
 }
 
 /// @param text the rows of [R t]
@@ -187,10 +194,18 @@ detection_result detect(const collide_request& request, detection_method& method
     for (const aabb::contact& c : who->sorted_contacts()) result.pairs.push_back({c.triangle_a, c.triangle_b});
     std::ranges::sort(result.pairs);
     require_each_once(result.pairs, method.name);
+    if (method.geometry)
+        method.geometry->take(meshes.front(), scene.poses().front(), meshes.back(), scene.poses().back());
     aabb::digest digest;
     for (const aabb::index_pair pair : result.pairs) {
         const std::uint32_t shared = request.self ? shared_vertices(meshes[0], pair) : 0;
-        if (table) request.self ? table->add({pair.a, pair.b, shared}) : table->add({pair.a, pair.b});
+        std::string cells;
+        if (method.geometry) {
+            const aabb::triangle_intersection common = (*method.geometry)(pair);
+            if (request.first) result.first = common;
+            if (table) cells = to_cells(common);
+        }
+        if (table) request.self ? table->add({pair.a, pair.b, shared}, cells) : table->add({pair.a, pair.b}, cells);
         result.count += shared == 0;
     }
     digest.add(0, result.pairs);
@@ -206,6 +221,13 @@ void print_json(const detection_method& method, const detection_result& result) 
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
+    if (result.first) {
+        nlohmann::ordered_json& geometry = summary["geometry"];
+        geometry["kind"] = name_of(result.first->kind);
+        for (std::uint32_t i = 0; i < result.first->size; ++i)
+            geometry["corners"].push_back(result.first->corners[i].at);
+        geometry["error"] = result.first->error.at;
+    }
     summary["method"] = method.name;
     summary["exact"] = method.exact;
     for (const aabb::part_bytes& part : result.bytes) summary["bytes"][part.part] = part.bytes;
@@ -218,7 +240,8 @@ void print_text(const collide_request& request, const detection_method& method, 
         request.self ? "itself" : fmt::format("{} ({} triangles)", visible(*request.b), result.triangles[1])));
     const std::string digest = result.digest ? ", digest " + *result.digest : "";
     if (request.first && !result.pairs.empty())
-        print(fmt::format("triangles {} and {} intersect\n", result.pairs[0].a, result.pairs[0].b));
+        print(fmt::format("triangles {} and {} intersect{}\n", result.pairs[0].a, result.pairs[0].b,
+                          result.first ? ": " + to_text(*result.first) : ""));
     else
         print(fmt::format("{} intersecting pairs of triangles{}{}\n", result.count,
                           request.self ? " that share no vertex" : "", digest));
@@ -248,6 +271,12 @@ void require_sense(const collide_request& request) {
     }
     if (request.first && request.count) throw aabb::input_error("--first and --count ask for different things");
     if (request.count && request.out) throw aabb::input_error("--count keeps no pairs, so there is nothing for --out");
+    if (!request.geometry) return;
+    if (request.count) throw aabb::input_error("--count keeps no pairs, so --geometry does not go with it");
+    if (!request.out && !request.first)
+        throw aabb::input_error("--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
+    if (request.engine)
+        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
 }
 
 void collide(const collide_request& request) {
@@ -260,7 +289,9 @@ void collide(const collide_request& request) {
     std::optional<number_table> table;
     if (request.out) {
         require_no_mesh(*request.out, names);
-        table.emplace(*request.out, request.self ? "a,b,shared_vertices" : "a,b");
+        std::string columns = request.self ? "a,b,shared_vertices" : "a,b";
+        if (request.geometry) columns += "," + std::string(intersection_columns);
+        table.emplace(*request.out, columns);
     }
     scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), poses));
     const detection_result result = detect(request, method, scene, table ? &*table : nullptr);
@@ -296,6 +327,8 @@ void add_collide(CLI::App& program, int&) {
         ->add_option("--out", request->out,
                      "Write the pairs, rows a,b (with --self a,b,shared_vertices), to this CSV file")
         ->type_name("FILE");
+    command->add_flag("--geometry", request->geometry,
+                      "Add to each pair what its triangles have in common, in the world: kind, corners, error");
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->callback([request] { collide(*request); });
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,8 +15,9 @@
 #include "commands.hpp"
 #include "output.hpp"
 
-// Imports, so it comes last.
+// Import, so they come last.
 #include "composing.hpp"
+#include "hit_geometry.hpp"
 
 import aabb.base;
 import aabb.digest;
@@ -39,6 +41,7 @@ struct contacts_request {
     stage_options global{aabb::stage::global_search};
     stage_options local{aabb::stage::local_detection};
     std::optional<std::string> engine, out;
+    bool geometry = false;
     bool json = false;
 };
 
@@ -46,6 +49,7 @@ struct both_stages {
     std::string name;
     bool exact;
     stages made;
+    std::optional<hit_geometry> geometry;  ///< with --geometry
 };
 
 struct contacts_result {
@@ -69,12 +73,16 @@ both_stages stages_of(const contacts_request& request) {
             throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it without them");
         return {global + ", " + *request.engine,
                 exact && aabb::is_exact_engine(*request.engine),
-                {aabb::compose_global_search(c, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)}};
+                {aabb::compose_global_search(c, aabb::instrumentation::none), aabb::make_mesh_engine(*request.engine)},
+                {}};
     }
-    return {global + ", " + to_text(c, aabb::stage::local_detection),
-            exact && is_exact(c, aabb::stage::local_detection),
-            {aabb::compose_global_search(c, aabb::instrumentation::none),
-             aabb::compose_local_detection(c, aabb::instrumentation::none)}};
+    both_stages both{global + ", " + to_text(c, aabb::stage::local_detection),
+                     exact && is_exact(c, aabb::stage::local_detection),
+                     {aabb::compose_global_search(c, aabb::instrumentation::none),
+                      aabb::compose_local_detection(c, aabb::instrumentation::none)},
+                     {}};
+    if (request.geometry) both.geometry.emplace(c[aabb::strategy_kind::triangle]);
+    return both;
 }
 
 std::size_t count_object_pairs(std::span<const aabb::contact> sorted) {
@@ -82,6 +90,25 @@ std::size_t count_object_pairs(std::span<const aabb::contact> sorted) {
     for (std::size_t i = 0; i < sorted.size(); ++i)
         pairs += i == 0 || sorted[i].a != sorted[i - 1].a || sorted[i].b != sorted[i - 1].b;
     return pairs;
+}
+
+/// The rows of a frame.
+void add_rows(number_table& table, const played_frame& frame, const scene_play& scene,
+              std::optional<hit_geometry>& geometry) {
+    const auto mesh_of = [&](std::uint32_t object) -> const aabb::mesh& {
+        return scene.meshes()->meshes[scene.meshes()->mesh_of[object]];
+    };
+    const aabb::contact* before = nullptr;
+    for (const aabb::contact& c : frame.contacts) {
+        std::string cells;
+        if (geometry) {
+            if (before == nullptr || before->a != c.a || before->b != c.b)
+                geometry->take(mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]);
+            cells = to_cells((*geometry)({c.triangle_a, c.triangle_b}));
+            before = &c;
+        }
+        table.add({frame.number, c.a, c.b, c.triangle_a, c.triangle_b}, cells);
+    }
 }
 
 contacts_result detect_all(scene_play& scene, both_stages& both, std::optional<number_table>& table) {
@@ -94,10 +121,9 @@ contacts_result detect_all(scene_play& scene, both_stages& both, std::optional<n
     play(scene, *who, [&](const played_frame& frame) {
         result.milliseconds.push_back(frame.ms());
         require_each_once(frame.contacts, fmt::format("{}, frame {}", both.name, frame.number));
-        for (const aabb::contact& c : frame.contacts) {
+        for (const aabb::contact& c : frame.contacts)
             digest.add(std::array{frame.number, c.a, c.b, c.triangle_a, c.triangle_b});
-            if (table) table->add({frame.number, c.a, c.b, c.triangle_a, c.triangle_b});
-        }
+        if (table) add_rows(*table, frame, scene, both.geometry);
         result.candidates += frame.pairs.size();
         result.object_pairs += count_object_pairs(frame.contacts);
         result.contacts += frame.contacts.size();
@@ -134,12 +160,18 @@ void print_text(const contacts_request& request, const both_stages& both, const 
 }
 
 void find_contacts(const contacts_request& request) {
+    if (request.geometry && !request.out)
+        throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
+    if (request.geometry && request.engine)
+        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
     both_stages both = stages_of(request);
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.motion, 1});
         require_no_mesh(*request.out, request.meshes);
-        table.emplace(*request.out, "frame,object_a,object_b,triangle_a,triangle_b");
+        std::string columns = "frame,object_a,object_b,triangle_a,triangle_b";
+        if (request.geometry) columns += "," + std::string(intersection_columns);
+        table.emplace(*request.out, columns);
     }
     scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     const contacts_result result = detect_all(scene, both, table);
@@ -174,6 +206,8 @@ void add_contacts(CLI::App& program, int&) {
         ->add_option("--out", request->out,
                      "Write the contacts, rows frame,object_a,object_b,triangle_a,triangle_b, to this CSV file")
         ->type_name("FILE");
+    command->add_flag("--geometry", request->geometry,
+                      "Add to each contact what its triangles have in common, in the world: kind, corners, error");
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->callback([request] { find_contacts(*request); });
 }

@@ -56,6 +56,9 @@ enum class experiment_size { full, quick };
 /// @throws aabb::input_error on an unknown name, with the nearest one, and on settings that it has not.
 [[nodiscard]] std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice);
 
+/// Those that construct what two triangles have in common too: strategies, then tests of libraries.
+[[nodiscard]] std::vector<std::string> constructing_tests();
+
 /// Generated pairs of triangles of one class.
 struct pair_set {
     std::string pair_class;

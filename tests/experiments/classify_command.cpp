@@ -1,6 +1,9 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
+#include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
@@ -38,6 +41,62 @@ TEST_CASE("classify keeps doubles when asked to") {
     const program_result refused = run_program({"classify", "-", "--double", "--triangle", "moller"}, just_above);
     REQUIRE(refused.status == 2);
     REQUIRE(is_one_sentence(refused.err));
+}
+
+TEST_CASE("classify gives kind, corners and error of what two triangles have in common") {
+    const std::string face = "0 0 0 4 0 0 0 4 0  ";
+    const auto answer = [&](const std::string& other, const std::vector<std::string>& options) {
+        const program_result result =
+            run_program(joined({"classify", "-", "--geometry"}, options), face + other + "\n");
+        INFO(result.err);
+        REQUIRE(result.status == 0);
+        return result.out;
+    };
+    const std::vector<std::vector<std::string>> everyone = {
+        {}, {"--double"}, {"--triangle", "epeck"}, {"--triangle", "epeck", "--double"}};
+    for (const auto& options : everyone) {
+        CHECK(answer("5 5 5 6 5 5 5 6 5", options) == "none 0 0 0 0\n");
+        CHECK(answer("1 1 0 1 1 3 2 1 3", options) == "point 1 1 1 0 0 0 0\n");
+        CHECK(answer("1 1 0 2 1 0 1 2 0", options).starts_with("overlap 3 "));
+        CHECK(answer("1 1 0 2 1 0 1 2 0", options).ends_with(" 0 0 0\n"));
+        const std::string segment = answer("1 0 0 2 0 0 1 0 3", options);
+        CHECK((segment == "segment 2 1 0 0 2 0 0 0 0 0\n" || segment == "segment 2 2 0 0 1 0 0 0 0 0\n"));
+    }
+    // Both ends are computed, so `exact` states an error; that of `epeck` is one rounding, and these are doubles.
+    const std::string through = "1 1 -1 1 1 3 2 1 3";
+    std::istringstream words(answer(through, {}));
+    std::string kind;
+    int corners = 0;
+    double x[2] = {};
+    double y[2] = {};
+    double z[2] = {};
+    double error[3] = {};
+    words >> kind >> corners >> x[0] >> y[0] >> z[0] >> x[1] >> y[1] >> z[1] >> error[0] >> error[1] >> error[2];
+    REQUIRE(words);
+    CHECK(kind == "transversal");
+    CHECK(corners == 2);
+    CHECK(std::abs(x[0] + x[1] - 2.25) <= 2 * error[0]);
+    CHECK(std::abs(y[0] + y[1] - 2) <= 2 * error[1]);
+    CHECK(std::abs(z[0]) + std::abs(z[1]) <= 2 * error[2]);
+    CHECK(error[0] > 0);
+    CHECK(error[1] == 0);
+    CHECK(error[0] < 1e-14);
+    CHECK(answer(through, {"--triangle", "epeck"}).ends_with(" 0 0 0\n"));
+    // A tenth, as float and as double.
+    CHECK(answer(".1 1 0 .1 1 3 .1 2 3", {}) == "point 1 0.10000000149011612 1 0 0 0 0\n");
+    CHECK(answer(".1 1 0 .1 1 3 .1 2 3", {"--double"}) == "point 1 0.1 1 0 0 0 0\n");
+}
+
+TEST_CASE("classify refuses the geometry of tests that only decide") {
+    for (const std::string test : {"moller", "devillers_guigue", "epick", "interval_arithmetic:fallback=exact"}) {
+        const program_result refused = run_program({"classify", "-", "--geometry", "--triangle", test}, crossing);
+        INFO(refused.err);
+        CHECK(refused.status == 2);
+        CHECK(refused.out.empty());
+        CHECK(refused.err == "aabblab: --geometry: " + test.substr(0, test.find(':')) +
+                                 " decides whether triangles intersect, not what they have in common; give "
+                                 "--triangle exact or epeck\n");
+    }
 }
 
 TEST_CASE("classify names the line and the number that is wrong, after the answers before it") {

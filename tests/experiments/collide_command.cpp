@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
+#include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -93,6 +95,95 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
             std::string::npos);
 }
 
+namespace {
+
+/// The cells of a CSV file whose cells hold no commas: its columns' names first.
+std::vector<std::vector<std::string>> cells_of(const std::string& text) {
+    std::vector<std::vector<std::string>> rows(1, std::vector<std::string>(1));
+    for (const char c : text) {
+        if (c == ',')
+            rows.back().emplace_back();
+        else if (c == '\n')
+            rows.emplace_back(1);
+        else
+            rows.back().back() += c;
+    }
+    rows.pop_back();
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("collide writes what the triangles of each pair have in common, in the world") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::string b = folder.write("b.off", pyramid);
+    const auto rows_of = [&](const std::vector<std::string>& options) {
+        const program_result result =
+            run_program(joined({"collide", a, b, "--geometry", "--out", folder / "pairs.csv"}, options));
+        INFO(result.err);
+        REQUIRE(result.status == 0);
+        return cells_of(bytes_of_file(folder / "pairs.csv"));
+    };
+    const auto here = rows_of({"--pose-b", "1,0,0,0.4, 0,1,0,0.2, 0,0,1,-0.1"});
+    REQUIRE(here.size() > 3);
+    CHECK(here[0] == std::vector<std::string>{"a",  "b",  "kind", "corners", "error_x", "error_y", "error_z",
+                                              "x1", "y1", "z1",   "x2",      "y2",      "z2",      "x3",
+                                              "y3", "z3", "x4",   "y4",      "z4",      "x5",      "y5",
+                                              "z5", "x6", "y6",   "z6"});
+    // Both meshes turned about z by a quarter and taken away: y is where x was, and x where -y was.
+    const auto there =
+        rows_of({"--pose-a", "0,-1,0,100, 1,0,0,200, 0,0,1,300", "--pose-b", "0,-1,0,99.8, 1,0,0,200.4, 0,0,1,299.9"});
+    REQUIRE(there.size() == here.size());
+    for (std::size_t i = 1; i < here.size(); ++i) {
+        INFO("row " << i);
+        REQUIRE(here[i].size() == here[0].size());
+        for (std::size_t k = 0; k < 4; ++k) CHECK(there[i][k] == here[i][k]);
+        const std::size_t corners = std::stoul(here[i][3]);
+        const auto number = [&](const auto& rows, std::size_t cell) { return std::stod(rows[i][cell]); };
+        for (std::size_t c = 0; c < 6; ++c) {
+            const std::size_t x = 7 + 3 * c;
+            CHECK(here[i][x].empty() == (c >= corners));
+            if (c >= corners) continue;
+            // The translations differ in the last place, which rounding to float mostly hides.
+            CHECK(std::abs(number(there, x) - (100 - number(here, x + 1))) < 1e-6);
+            CHECK(std::abs(number(there, x + 1) - (200 + number(here, x))) < 1e-6);
+            CHECK(std::abs(number(there, x + 2) - (300 + number(here, x + 2))) < 1e-6);
+        }
+        for (std::size_t k = 4; k < 7; ++k) {
+            CHECK(number(there, k) > 1e-14);  // some roundings at 100
+            CHECK(number(there, k) < 1e-12);
+        }
+    }
+    const program_result first = run_program({"collide", a, b, "--first", "--geometry"});
+    CHECK(first.out.find(" intersect: ") != std::string::npos);
+    const auto json = nlohmann::json::parse(run_program({"collide", a, b, "--first", "--geometry", "--json"}).out);
+    CHECK(first.out.find(" intersect: " + json["geometry"]["kind"].get<std::string>() + " " +
+                         std::to_string(json["geometry"]["corners"].size()) + " ") != std::string::npos);
+    CHECK(json["geometry"]["error"].size() == 3);
+    const std::string away = "1,0,0,-9,0,1,0,0,0,0,1,0";
+    CHECK(run_program({"collide", a, b, "--first", "--geometry", "--pose-a", away}).out.find("0 intersecting") !=
+          std::string::npos);
+}
+
+TEST_CASE("neighbours in a mesh have an edge or a corner in common") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::string b = folder.write("b.off", pyramid);
+    for (const auto& [mesh, edges, points] : {std::tuple(a, 6, 0), std::tuple(b, 9, 6)}) {
+        REQUIRE(run_program({"collide", mesh, "--self", "--geometry", "--out", folder / "self.csv"}).status == 0);
+        const auto rows = cells_of(bytes_of_file(folder / "self.csv"));
+        int segment = 0;
+        int point = 0;
+        for (const auto& row : rows) {
+            segment += static_cast<int>(row[2] == "2" && row[3] == "segment" && row[4] == "2" && row[5] == "0");
+            point += static_cast<int>(row[2] == "1" && row[3] == "point" && row[4] == "1" && row[5] == "0");
+        }
+        CHECK(segment == edges);
+        CHECK(point == points);
+    }
+}
+
 TEST_CASE("collide refuses questions that do not go together") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
@@ -103,6 +194,12 @@ TEST_CASE("collide refuses questions that do not go together") {
         {{a, "--self", "--first"}, "--self finds every pair, so --first does not go with it"},
         {{a, a, "--first", "--count"}, "--first and --count ask for different things"},
         {{a, a, "--count", "--out", folder / "x.csv"}, "--count keeps no pairs"},
+        {{a, a, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
+        {{a, a, "--geometry", "--count"}, "--count keeps no pairs, so --geometry does not go with it"},
+        {{a, a, "--geometry", "--first", "--engine", "cgal"}, "so --engine does not go with it"},
+        {{a, a, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
+         "--geometry: moller decides whether triangles intersect, not what they have in common; give --triangle "
+         "exact\n"},
     };
     for (const auto& [options, said] : refused) {
         const program_result result = run_program(joined({"collide"}, options));

@@ -59,6 +59,24 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     CHECK(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out.find("fcl (inexact)") != std::string::npos);
 }
 
+TEST_CASE("contacts writes what collide writes of the same triangles at the same poses") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string motion = folder.write("m.txt", coming);
+    REQUIRE(run_program({"contacts", motion, mesh, "--geometry", "--out", folder / "c.csv"}).status == 0);
+    REQUIRE(run_program({"collide", mesh, mesh, "--geometry", "--out", folder / "p.csv", "--pose-b",
+                         "1,0,0,0.25,0,1,0,0.25,0,0,1,0"})
+                .status == 0);
+    std::string expected = bytes_of_file(folder / "p.csv").substr(4);
+    CHECK(expected.starts_with("kind,corners,error_x,"));
+    const std::size_t header = expected.find('\n') + 1;
+    std::string rows = "frame,object_a,object_b,triangle_a,triangle_b," + expected.substr(0, header);
+    for (const char* frame : {"1,0,1,", "2,0,1,"})
+        for (std::size_t at = header; at < expected.size(); at = expected.find('\n', at) + 1)
+            rows += frame + expected.substr(at, expected.find('\n', at) + 1 - at);
+    CHECK(bytes_of_file(folder / "c.csv") == rows);
+}
+
 TEST_CASE("a frame that a motion file leaves out is like the one before") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
@@ -132,6 +150,11 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
         {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"},
          "--engine stands in for --build, --tree and --triangle"},
         {{"contacts", motion, mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
+        {{"contacts", motion, mesh, "--geometry"}, "--geometry adds columns to the contacts, so give --out FILE"},
+        {{"contacts", motion, mesh, "--geometry", "--out", folder / "x.csv", "--engine", "cgal"},
+         "--geometry is constructed by the triangle test, so --engine does not go with it"},
+        {{"contacts", motion, mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "separating_axes"},
+         "--geometry: separating_axes decides whether triangles intersect"},
         {{"contacts", motion, mesh, "--out", motion}, "m.txt"},
         {{"contacts", motion, mesh, "--out", mesh}, "a.off"},
         {{"scene", "mesh_pair", "--mesh", mesh, "--out", mesh}, "a.off"},

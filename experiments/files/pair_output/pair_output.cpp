@@ -34,9 +34,9 @@ void require_each_once(std::span<const aabb::contact> contacts, std::string_view
 number_table::number_table(const std::filesystem::path& file, std::string_view header)
     : file_(file), text_(std::string(header) + "\n") {}
 
-void number_table::add(std::initializer_list<std::uint32_t> row) {
+void number_table::add(std::initializer_list<std::uint32_t> row, std::string_view further) {
     constexpr std::size_t block = 1U << 16U;
-    fmt::format_to(std::back_inserter(text_), "{}\n", fmt::join(row, ","));
+    fmt::format_to(std::back_inserter(text_), "{}{}{}\n", fmt::join(row, ","), further.empty() ? "" : ",", further);
     if (text_.size() < block) return;
     file_.write(text_);
     text_.clear();

@@ -27,6 +27,16 @@ public:
 void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where);
 void require_each_once(std::span<const aabb::contact> contacts, std::string_view where);
 
+/// What two triangles have in common as a line: kind, number of corners, their coordinates, the error on each axis.
+[[nodiscard]] std::string to_text(const aabb::triangle_intersection& common);
+
+/// The same as cells of a row of CSV: those of corners that are not there are empty.
+[[nodiscard]] std::string to_cells(const aabb::triangle_intersection& common);
+/// The names of the columns of `to_cells`.
+inline constexpr std::string_view intersection_columns =
+    "kind,corners,error_x,error_y,error_z,"
+    "x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4,x5,y5,z5,x6,y6,z6";
+
 /// A CSV file of whole numbers. There only once it is committed.
 class number_table {
 public:
@@ -34,7 +44,8 @@ public:
     /// @throws aabb::input_error when the file cannot be written, as do `add` and `commit`.
     number_table(const std::filesystem::path& file, std::string_view header);
     /// A row.
-    void add(std::initializer_list<std::uint32_t> row);
+    /// @param further cells after the numbers, with commas between; empty where there are none
+    void add(std::initializer_list<std::uint32_t> row, std::string_view further = {});
     void commit();
 
 private:
