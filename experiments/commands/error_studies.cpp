@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,32 @@ void print_tables(std::span<const error_point> points) {
     }
 }
 
+void print_tables(std::span<const hit_point> points) {
+    for (const bool in_double : {false, true}) {
+        const table shown = hit_summary(points, in_double);
+        if (shown.rows.empty()) continue;
+        print(
+            fmt::format("Hits of triangles of {}s against CGAL's exact construction: hits whose kind or number of\n"
+                        "corners differs, the greatest error of a coordinate over its bound, the greatest at all\n"
+                        "beside its bound\n\n{}\n",
+                        in_double ? "double" : "float", to_text(shown, output_width())));
+    }
+}
+
+/// @returns a sentence for each test whose hits are wrong
+std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, std::span<const pair_set> sets,
+                                           printed shown) {
+    const std::vector<hit_point> points = measure_hits(sets);
+    write_file(folder / "intersections.csv", to_csv(hit_rows(points)));
+    if (shown != printed::nothing) print_tables(points);
+    std::vector<std::string> failures;
+    for (const hit_point& p : points)
+        if (!p.is_right())
+            failures.push_back(
+                fmt::format("{} constructs {} hits of {} wrongly", p.triangle, p.different + p.outside, p.pairs));
+    return failures;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> error_configs() {
@@ -50,11 +77,13 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
         if (shown != printed::nothing)
             for (const std::string& text : metric_statements(study, summarise(read_rows(folder / "results.csv"))))
                 print(text + "\n\n");
-    } else {
+    } else if (!study.curves.empty()) {
         const std::vector<error_point> points = measure_errors(study);
         write_file(folder / "errors.csv", to_csv(error_rows(points)));
         if (shown != printed::nothing) print_tables(points);
     }
+    if (!study.hits.empty())
+        std::ranges::move(measure_hits_into(folder, study.hits, shown), std::back_inserter(failures));
     write_file(folder / "config.toml", study.text);
     return failures;
 }

@@ -35,14 +35,16 @@ int run(const errors_request& request) {
     const std::filesystem::path folder =
         request.out.value_or("results/errors-" + study.name + (request.quick ? "-quick" : ""));
     const std::vector<std::string> failures = measure_study(study, folder, printed::tables);
+    const auto say = [&](const char* file) { print("Every number is in " + visible((folder / file).string()) + "\n"); };
+    if (!study.hits.empty()) say("intersections.csv");
     if (study.whole) {
         draw(folder / "figures", metric_figures(study, summarise(read_rows(folder / "results.csv"))));
-        print("Every repeat is a row of " + visible((folder / "results.csv").string()));
-    } else {
+        say("results.csv");
+    } else if (!study.curves.empty()) {
         draw(folder / "figures", error_figures(read_error_rows(folder / "errors.csv")));
-        print("Every number is in " + visible((folder / "errors.csv").string()));
+        say("errors.csv");
     }
-    print(", a plot for each set in\n" + visible((folder / "figures").string()) + "\n");
+    if (!study.curves.empty()) print("A plot for each set is in " + visible((folder / "figures").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -90,13 +91,18 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     return failures;
 }
 
-/// Where the studies of error against run time stand.
-std::filesystem::path folder_of_study(const std::filesystem::path& folder, const std::filesystem::path& config) {
-    return folder / "errors" / config.stem();
+/// The project's studies of error against run time, as far as they have something to plot.
+std::vector<error_study> studies_with_curves(bool quick) {
+    std::vector<error_study> studies;
+    for (const std::filesystem::path& config : error_configs()) {
+        error_study study = read_error_study(config, quick ? experiment_size::quick : experiment_size::full);
+        if (!study.curves.empty()) studies.push_back(std::move(study));
+    }
+    return studies;
 }
 
-experiment_size size_of(bool quick) {
-    return quick ? experiment_size::quick : experiment_size::full;
+std::filesystem::path folder_of_study(const std::filesystem::path& folder, const error_study& study) {
+    return folder / "errors" / study.name;
 }
 
 /// Plays every experiment of the paper, and keeps what is wrong as soon as it is found.
@@ -104,7 +110,7 @@ void measure(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs())
         experiments.push_back(open_experiment(config.string(), quick));
-    const std::vector<std::filesystem::path> studies = error_configs();
+    const std::vector<error_study> studies = studies_with_curves(quick);
     const std::size_t all = experiments.size() + 1 + studies.size();
     std::vector<std::string> failures;
     const auto add = [&](const std::vector<std::string>& found) {
@@ -118,10 +124,10 @@ void measure(const std::filesystem::path& folder, bool quick) {
     }
     note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, all));
     add(time_tests(folder / "c6", quick));
-    for (const std::filesystem::path& config : studies) {
-        note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&config - studies.data()), all,
-                         config.stem().string()));
-        add(measure_study(read_error_study(config, size_of(quick)), folder_of_study(folder, config), printed::nothing));
+    for (const error_study& study : studies) {
+        note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&study - studies.data()), all,
+                         study.name));
+        add(measure_study(study, folder_of_study(folder, study), printed::nothing));
     }
 }
 
@@ -134,8 +140,8 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
                        "the exact one; a method that gets nothing wrong stands at one wrong answer in all."},
         .figures = {},
         .tables = {}};
-    for (const std::filesystem::path& config : error_configs()) {
-        const std::filesystem::path results = folder_of_study(folder, config);
+    for (const error_study& study : studies_with_curves(quick)) {
+        const std::filesystem::path results = folder_of_study(folder, study);
         if (std::filesystem::exists(results / "errors.csv")) {
             const std::vector<error_point> points = read_error_rows(results / "errors.csv");
             for (const pair_group group : groups_in(points)) {
@@ -149,7 +155,6 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
                      error_summary(points, group)});
             }
         } else if (std::filesystem::exists(results / "results.csv")) {
-            const error_study study = read_error_study(config, size_of(quick));
             const std::vector<scene_summary> scenes = summarise(read_rows(results / "results.csv"));
             std::ranges::copy(metric_statements(study, scenes), std::back_inserter(section.paragraphs));
             std::ranges::copy(metric_figures(study, scenes), std::back_inserter(section.figures));

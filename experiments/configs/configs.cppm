@@ -86,6 +86,8 @@ struct error_study {
     std::string name;
     std::string text;  ///< what stands in the config
     std::vector<error_curve> curves;
+    /// Whose hits, `count` of each, are held against CGAL's exact construction.
+    std::vector<pair_set> hits;
     std::vector<std::string> notes;
     std::vector<pair_set> pairs;
     std::vector<scene_choice> scenes;  ///< of meshes

@@ -46,10 +46,11 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
     return size == experiment_size::quick ? few : wanted;
 }
 
-void add_pairs(const document& doc, const node& written, experiment_size size, std::uint64_t seed,
-               each_once<pair_set>& sets) {
-    doc.require_table("pairs", written);
-    doc.require_keys(written, " of [[pairs]]", {"class", "precision", "count", "quick"});
+/// @param key "pairs", or "hits", of which as many are counted as intersect
+void add_pairs(const document& doc, const std::string& key, const node& written, experiment_size size,
+               std::uint64_t seed, each_once<pair_set>& sets) {
+    doc.require_table(key, written);
+    doc.require_keys(written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
     std::vector<located_text> classes;
     if (const node* given = written.find("class")) {
         classes = doc.alternatives_of("class", *given);
@@ -65,7 +66,7 @@ void add_pairs(const document& doc, const node& written, experiment_size size, s
         for (const located_text& one : classes) {
             doc.at(one.line, [&] { static_cast<void>(pair_source<float>(one.text, seed)); });
             if (!sets.add({one.text, precision.text == "double", count, seed}, one.text + " in " + precision.text))
-                doc.fail(one.line, "these pairs are listed twice: " + one.text + " in " + precision.text);
+                doc.fail(one.line, "these " + key + " are listed twice: " + one.text + " in " + precision.text);
         }
     }
 }
@@ -121,7 +122,6 @@ std::vector<error_curve> curves_of(const document& doc) {
         for (const aabb::composition& c : curve.compositions)
             add(to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection));
     }
-    if (curves.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]]");
     return curves;
 }
 
@@ -170,13 +170,17 @@ experiment whole_of(const document& doc, const error_study& study, const std::st
     return e;
 }
 
-/// Triangle tests and the pairs of triangles that they are held against.
-void read_triangles(const document& doc, experiment_size size, error_study& study) {
+std::vector<pair_set> pairs_of(const document& doc, const std::string& key, experiment_size size) {
     const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
     each_once<pair_set> sets;
-    for (const node& one : tables_of(doc, "pairs")) add_pairs(doc, one, size, number, sets);
-    study.pairs = sets.all();
+    for (const node& one : tables_of(doc, key)) add_pairs(doc, key, one, size, number, sets);
+    return sets.all();
+}
+
+/// Triangle tests and the pairs of triangles that they are held against.
+void read_triangles(const document& doc, experiment_size size, error_study& study) {
+    study.pairs = pairs_of(doc, "pairs", size);
     require_doubles_taken(doc, study);
     for (const node& one : tables_of(doc, "scene")) require_meshes(doc, one);
     if (doc.root().find("scene")) {
@@ -193,12 +197,16 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
 
 error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
-    doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "plot", "measure", "quick"});
+    doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "hits", "plot", "measure", "quick"});
     error_study study;
     study.name = name_of(doc);
     study.text = text;
     study.curves = curves_of(doc);
-    if (study.curves[0].triangles.empty()) {
+    study.hits = pairs_of(doc, "hits", size);
+    if (study.curves.empty()) {
+        if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]]");
+        refuse_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
+    } else if (study.curves[0].triangles.empty()) {
         refuse_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
         study.plots = plots_of(doc);
         study.whole = whole_of(doc, study, file, size);

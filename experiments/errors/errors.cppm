@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,7 @@ export module aabblab.errors;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.validation;
 import aabblab.configs;
 import aabblab.figures;
 import aabblab.scenes;
@@ -79,5 +81,32 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// What has the least of either metric, in each of these plots, a sentence each.
 [[nodiscard]] std::vector<std::string> metric_statements(const error_study& study,
                                                          std::span<const scene_summary> scenes);
+
+/// What one test that constructs gave for the hits of one class, against CGAL's exact construction.
+struct hit_point {
+    std::string pairs;  ///< of which class
+    bool in_double = false;
+    std::string triangle;
+    std::uint64_t tried = 0;               ///< pairs
+    std::uint64_t count = 0;               ///< hits among them that it constructed
+    std::array<std::uint64_t, 5> kinds{};  ///< hits by kind
+    std::uint64_t different = 0;           ///< hits whose kind or number of corners is not the exact one
+    std::uint64_t outside = 0;             ///< hits with a coordinate off by more than the error that was stated
+    aabb::corner_errors greatest;          ///< of all hits
+    quartiles ns_a_hit;                    ///< over batches, in which the tests take turns
+
+    [[nodiscard]] bool is_right() const { return different + outside == 0; }
+};
+
+/// Makes pairs of each set until it has as many hits as the set says, and has every test that constructs construct
+/// them, those of libraries one batch of hits in sixteen. Where hits are rare it stops at a thousand pairs for each one
+/// that is wanted.
+[[nodiscard]] std::vector<hit_point> measure_hits(std::span<const pair_set> sets);
+
+/// A row for each test and set, every number in full.
+[[nodiscard]] table hit_rows(std::span<const hit_point> points);
+
+/// The same of one precision, for the screen.
+[[nodiscard]] table hit_summary(std::span<const hit_point> points, bool in_double);
 
 }  // namespace aabblab

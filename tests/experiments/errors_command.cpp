@@ -138,6 +138,63 @@ TEST_CASE("errors counts what each method gets wrong, the same every time, and d
         }
 }
 
+TEST_CASE("errors holds the geometry of hits against CGAL's exact construction") {
+    const temporary_folder folder;
+    const std::string config =
+        folder.write("h.toml",
+                     "name = \"h\"\n[[hits]]\nclass = [\"random\", \"coplanar\", \"zero_area\"]\n"
+                     "precision = [\"float\", \"double\"]\ncount = 1500\n");
+    const program_result ran = run_program({"errors", config, "--out", folder / "out"});
+    INFO(ran.err << ran.out);
+    REQUIRE(ran.status == 0);
+    CHECK(ran.out.find("Hits of triangles of doubles") != std::string::npos);
+    CHECK(ran.out.find("error/bound") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "out/errors.csv"));
+    CHECK(std::filesystem::exists(folder / "out/config.toml"));
+    const std::string file = folder / "out/intersections.csv";
+    const auto records = aabblab::read_csv(bytes_of_file(file), file).records;
+    CHECK(records.size() == 1 + 3 * 2 * 2);
+    const std::vector<std::string>& columns = records[0].fields;
+    for (const auto& r : std::span(records).subspan(1)) {
+        const auto at = [&](const char* column) {
+            return r.fields[static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin())];
+        };
+        INFO(at("pairs") << " " << at("precision") << " " << at("triangle"));
+        CHECK((at("triangle") == "exact" || at("triangle") == "epeck"));
+        // Tests of libraries take part in one batch of sixteen.
+        const std::size_t expected = at("triangle") == "exact" ? 1500 : 1024;
+        CHECK(std::stoul(at("hits")) == expected);
+        CHECK(std::stoul(at("tried")) > 1500);
+        std::size_t hits = 0;
+        for (const char* kind : {"point", "segment", "transversal", "overlap"}) hits += std::stoul(at(kind));
+        CHECK(hits == expected);
+        if (at("pairs") == "random") CHECK(std::stoul(at("transversal")) == expected);
+        CHECK(at("different") == "0");
+        CHECK(at("outside") == "0");
+        CHECK(std::stod(at("of_bound")) > 0);
+        CHECK(std::stod(at("of_bound")) <= 1);
+        CHECK(std::stod(at("error")) <= std::stod(at("bound")));
+        CHECK(std::stod(at("ns")) > 0);
+    }
+}
+
+TEST_CASE("what a test that constructs gets wrong is counted, and rare hits are looked for in vain only so long") {
+    const std::vector<aabblab::pair_set> sets = {{"huge", false, 3, 1}, {"shared_edge", true, 2000, 1}};
+    const std::vector<aabblab::hit_point> points = aabblab::measure_hits(sets);
+    REQUIRE(points.size() == 4);
+    CHECK(points[0].count == 3);
+    CHECK(points[0].tried <= 3000);
+    CHECK(points[2].count == 2000);
+    CHECK(points[2].tried == 2000);
+    CHECK(points[2].kinds[static_cast<std::size_t>(aabb::intersection_kind::segment)] > 1900);
+    CHECK(std::ranges::all_of(points, &aabblab::hit_point::is_right));
+    aabblab::hit_point wrong = points[0];
+    wrong.outside = 1;
+    CHECK_FALSE(wrong.is_right());
+    CHECK(aabblab::hit_summary(points, true).rows.size() == 2);
+    CHECK(aabblab::hit_rows(points).rows.size() == 4);
+}
+
 TEST_CASE("a config of errors that is wrong is refused with its line and the nearest name") {
     CHECK(refusal_of("name = \"e\"\n" + some_pairs + one_curve) == "accepted");
     CHECK(refusal_of("name = \"e\"\n" + some_pairs) ==
@@ -165,6 +222,20 @@ TEST_CASE("a config of errors that is wrong is refused with its line and the nea
     CHECK(refusal_of("name = \"e\"\nquick = 5\n" + some_pairs + one_curve).starts_with("e.toml:2: quick is a number"));
     CHECK(refusal_of("name = \"e\"\n[[pairs]]\ncount = 0\n" + one_curve) ==
           "e.toml:3: count must be a whole number, at least 1, not 0");
+    const std::string some_hits = "[[hits]]\nclass = \"random\"\n";
+    CHECK(refusal_of("name = \"e\"\n" + some_hits) == "accepted");
+    CHECK(refusal_of("name = \"e\"\n" + some_hits + some_pairs + one_curve) == "accepted");
+    CHECK(refusal_of("name = \"e\"\n" + some_hits + one_curve) ==
+          "e.toml:1: this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
+    CHECK(refusal_of("name = \"e\"\n" + some_hits + some_pairs) ==
+          "e.toml:1: this config has no curve; expected at least one [[curve]]");
+    CHECK(refusal_of("name = \"e\"\n" + some_hits + some_hits) ==
+          "e.toml:5: these hits are listed twice: random in float");
+    CHECK(refusal_of("name = \"e\"\n[[hits]]\nclas = \"random\"\n")
+              .starts_with("e.toml:3: unknown key of [[hits]] 'clas'"));
+    CHECK(refusal_of("name = \"e\"\n[[hits]]\ncount = 0\n") ==
+          "e.toml:3: count must be a whole number, at least 1, not 0");
+    CHECK(refusal_of("name = \"e\"\n[hits]\ncount = 5\n") == "e.toml:2: hits must stand in double brackets: [[hits]]");
     const program_result missing = run_program({"errors", "nowhere.toml"});
     CHECK(missing.status == 2);
     CHECK(is_one_sentence(missing.err));
@@ -259,6 +330,11 @@ TEST_CASE("the config that errors runs by default reads, and classify takes the 
                                                  experiment_size::quick);
     CHECK(study.pairs.size() == 2 * aabblab::pair_classes().size());
     CHECK(study.curves.size() >= 8);
+    const auto hits = aabblab::read_error_study(std::filesystem::path(AABBLAB_CONFIGS) / "errors/intersections.toml",
+                                                experiment_size::full);
+    REQUIRE(hits.hits.size() == 2 * aabblab::pair_classes().size());
+    CHECK(hits.hits[0].count == 1'000'000);
+    CHECK(hits.curves.empty());
     const std::string crossing = "0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 5 5 1\n";
     CHECK(run_program({"classify", "-", "--triangle", "epeck"}, crossing).out == "1\n");
     CHECK(run_program({"classify", "-", "--triangle", "interval_arithmetic:fallback=intersects"}, crossing).out ==
