@@ -5,6 +5,7 @@ export import :box;
 export import :contact;
 export import :index_pair;
 export import :intersection;
+export import :lanes;
 export import :mesh;
 export import :pose;
 export import :predicates;

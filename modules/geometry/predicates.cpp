@@ -6,6 +6,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 
 module aabb.geometry;
 
@@ -138,53 +139,84 @@ bool exact_difference(const vec3d& p, const vec3d& q, vec3d& difference) noexcep
     return exact;
 }
 
-/// The values as whole numbers of one unit, where each is less than 2^bits of them: so are the differences of floats
-/// that are not too different in size, of points of a lattice, and of all that was measured in one unit.
-/// @returns whether they are
-template <std::size_t N>
-bool as_integers(const std::array<double, N>& values, int bits, std::array<std::int64_t, N>& integers) noexcept {
-    double largest = 0;
-    for (const double v : values) largest = std::max(largest, std::abs(v));
-    integers = {};
-    if (largest == 0) return true;
-    if (!(largest >= 0x1p-900 && largest <= 0x1p900)) return false;
-    const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52) - 1023;
-    const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + bits - 1 - exponent) << 52);
-    bool whole = true;
-    for (std::size_t i = 0; i < N; ++i) {
-        const double scaled = values[i] * scale;
-        integers[i] = static_cast<std::int64_t>(scaled);
-        whole &= static_cast<double>(integers[i]) == scaled && (integers[i] != 0 || values[i] == 0);
-    }
-    return whole;
-}
-
 __extension__ using wide_signed = __int128;
 
-int sign_of(wide_signed x) noexcept {
-    return (x > 0) - (x < 0);
+using vec3i = vec3<std::int64_t>;
+
+/// Points in whole steps of a grid, whose step on each axis is the power of two of which the largest coordinate has at
+/// least 2^59 and less than 2^60. What lies between two steps is cut off, so that a coordinate is off by less than one
+/// step and a difference, below 2^61, by less than two.
+class grid {
+public:
+    explicit grid(std::initializer_list<const vec3d*> points) noexcept {
+        for (int k = 0; k < 3; ++k) {
+            double largest = 0;
+            for (const vec3d* p : points) largest = std::max(largest, std::abs((*p)[k]));
+            const int exponent = std::max(static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52), 1) - 1023;
+            // In two factors, as their product may lie beyond the range of double.
+            const int up = 59 - exponent;
+            first_[k] = power_of_two(up / 2);
+            second_[k] = power_of_two(up - up / 2);
+        }
+    }
+
+    [[nodiscard]] vec3i operator()(const vec3d& p) noexcept {
+        vec3i made;
+        for (int k = 0; k < 3; ++k) {
+            const double steps = p[k] * first_[k] * second_[k];
+            made[k] = static_cast<std::int64_t>(steps);
+            is_exact_ &= static_cast<double>(made[k]) == steps;
+            // What is too small for a double in steps has become zero.
+            is_exact_ &= steps != 0 || p[k] == 0;
+        }
+        return made;
+    }
+
+    /// Nothing was cut off so far.
+    [[nodiscard]] bool is_exact() const noexcept { return is_exact_; }
+
+private:
+    static double power_of_two(int exponent) noexcept {
+        return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52);
+    }
+
+    vec3d first_{};
+    vec3d second_{};
+    bool is_exact_ = true;
+};
+
+using vec3w = vec3<wide_signed>;
+
+vec3w wide_cross(const vec3i& p, const vec3i& q) noexcept {
+    const auto component = [&](int x, int y) { return wide_signed{p[x]} * q[y] - wide_signed{p[y]} * q[x]; };
+    return {component(1, 2), component(2, 0), component(0, 1)};
 }
 
-/// The sign of det(p, q, r); false where the numbers have too many digits.
-bool whole_volume_sign(const std::array<vec3d, 3>& rows, int& sign) noexcept {
-    const auto& [p, q, r] = rows;
-    std::array<std::int64_t, 9> n;
-    // Six products of three numbers below 2^41 add up to less than 2^126.
-    if (!as_integers(std::array{p[0], p[1], p[2], q[0], q[1], q[2], r[0], r[1], r[2]}, 41, n)) return false;
-    const auto cross = [&](std::size_t i, std::size_t j) {
-        return wide_signed{n[3 + i]} * n[6 + j] - wide_signed{n[3 + j]} * n[6 + i];
-    };
-    sign = sign_of(n[0] * cross(1, 2) + n[1] * cross(2, 0) + n[2] * cross(0, 1));
-    return true;
+/// The sign of normal · p in steps of a grid, of differences below 2^61 as `grid` gives them. Where something was cut
+/// off, six products of three differences that are off by less than 2 make less than 6 · 3 · 2 · 2^122 (1 + 2^-59) <
+/// 2^128.
+/// @returns whether it is certain
+bool volume_sign(const vec3w& normal, const vec3i& p, bool is_exact, int& sign) noexcept {
+    // The normal is below 2^123. Its upper and lower 64 bits times p below 2^61, three times, fit 128 bits.
+    wide_signed high = 0;
+    wide_signed low = 0;
+    for (int k = 0; k < 3; ++k) {
+        high += (normal[k] >> 64) * p[k];
+        low += wide_signed{static_cast<std::uint64_t>(normal[k])} * p[k];
+    }
+    high += low >> 64;
+    sign = high < 0 ? -1 : static_cast<int>(high > 0 || static_cast<std::uint64_t>(low) != 0);
+    constexpr wide_signed least = wide_signed{1} << 64;
+    return is_exact || high >= least || high <= -least;
 }
 
-/// The sign of p[x] q[y] - p[y] q[x], likewise.
-bool whole_area_sign(const std::array<vec3d, 2>& rows, int x, int y, int& sign) noexcept {
-    const auto& [p, q] = rows;
-    std::array<std::int64_t, 4> n;
-    if (!as_integers(std::array{p[x], p[y], q[x], q[y]}, 62, n)) return false;
-    sign = sign_of(wide_signed{n[0]} * n[3] - wide_signed{n[1]} * n[2]);
-    return true;
+/// The sign of the component of p × q between the axes x and y, likewise: two products of two are off by less than
+/// 2 · 2 · 2 · 2^61 (1 + 2^-60) < 2^65.
+bool area_sign(const vec3i& p, const vec3i& q, int x, int y, bool is_exact, int& sign) noexcept {
+    const wide_signed area = wide_signed{p[x]} * q[y] - wide_signed{p[y]} * q[x];
+    sign = static_cast<int>(area > 0) - static_cast<int>(area < 0);
+    constexpr wide_signed least = wide_signed{1} << 65;
+    return is_exact || area >= least || area <= -least;
 }
 
 /// b, c and d from a, if no coordinate needs rounding.
@@ -195,15 +227,12 @@ bool exact_rows(const vec3d& a, const vec3d& b, const vec3d& c, std::array<vec3d
     return exact_difference(b, a, rows[0]) && exact_difference(c, a, rows[1]);
 }
 
-product_sum volume_of(const std::array<vec3d, 3>& rows) noexcept {
-    product_sum sum;
-    sum.add_determinant(rows[0], rows[1], rows[2]);
-    return sum;
-}
-
-/// Of points whose differences would be rounded.
 product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
+    if (std::array<vec3d, 3> rows; exact_rows(a, b, c, d, rows)) {
+        sum.add_determinant(rows[0], rows[1], rows[2]);
+        return sum;
+    }
     sum.add_determinant(b, c, d);
     sum.add_determinant(c, a, d);
     sum.add_determinant(a, b, d);
@@ -211,15 +240,12 @@ product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3
     return sum;
 }
 
-product_sum area_of(const std::array<vec3d, 2>& rows, int x, int y) noexcept {
-    product_sum sum;
-    sum.add_cross(rows[0], rows[1], x, y);
-    return sum;
-}
-
-/// Of points whose differences would be rounded.
 product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y) noexcept {
     product_sum sum;
+    if (std::array<vec3d, 2> rows; exact_rows(a, b, c, rows)) {
+        sum.add_cross(rows[0], rows[1], x, y);
+        return sum;
+    }
     sum.add_cross(a, b, x, y);
     sum.add_cross(b, c, x, y);
     sum.add_cross(c, a, x, y);
@@ -229,31 +255,64 @@ product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y
 }  // namespace
 
 int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
-    std::array<vec3d, 3> rows;
-    if (!exact_rows(a, b, c, d, rows)) return volume_of(a, b, c, d).sign();
+    grid steps{&a, &b, &c, &d};
+    const vec3i origin = steps(a);
+    const vec3w normal = wide_cross(steps(b) - origin, steps(c) - origin);
+    const vec3i p = steps(d) - origin;
     int sign = 0;
-    return whole_volume_sign(rows, sign) ? sign : volume_of(rows).sign();
+    return volume_sign(normal, p, steps.is_exact(), sign) ? sign : volume_of(a, b, c, d).sign();
+}
+
+corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept {
+    grid steps{&s[0], &s[1], &s[2], &t[0], &t[1], &t[2]};
+    const vec3i origin = steps(t[0]);
+    const vec3w normal = wide_cross(steps(t[1]) - origin, steps(t[2]) - origin);
+    const std::array<vec3i, 3> corners{steps(s[0]) - origin, steps(s[1]) - origin, steps(s[2]) - origin};
+    std::array<int, 3> signs{};
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!volume_sign(normal, corners[i], steps.is_exact(), signs[i]))
+            signs[i] = volume_of(t[0], t[1], t[2], s[static_cast<int>(i)]).sign();
+    return corner_sides(signs);
 }
 
 int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
     const int x = (axis + 1) % 3;
     const int y = (axis + 2) % 3;
-    std::array<vec3d, 2> rows;
-    if (!exact_rows(a, b, c, rows)) return area_of(a, b, c, x, y).sign();
+    grid steps{&a, &b, &c};
+    const vec3i origin = steps(a);
+    const vec3i p = steps(b) - origin;
+    const vec3i q = steps(c) - origin;
     int sign = 0;
-    return whole_area_sign(rows, x, y, sign) ? sign : area_of(rows, x, y).sign();
+    return area_sign(p, q, x, y, steps.is_exact(), sign) ? sign : area_of(a, b, c, x, y).sign();
+}
+
+bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& extent) noexcept {
+    vec3d rounder{};
+    for (int k = 0; k < 3; ++k) {
+        if (extent[k] != 0 && !(extent[k] >= 0x1p-200 && extent[k] <= 0x1p200)) return false;
+        // The extent is at least 2^15 units, and less than 2^16. Between 2^52 units and twice as many a double has no
+        // digit below one: what is below 2^50 units is rounded to units where one and a half of that are added.
+        const std::uint64_t exponent = extent[k] == 0 ? 1023 : std::bit_cast<std::uint64_t>(extent[k]) >> 52;
+        rounder[k] = 1.5 * std::bit_cast<double>((exponent + 52 - 15) << 52);
+    }
+    const lanes<double> round = coordinates(rounder);
+    const lanes<double> largest = round / 8;
+    const auto is_flat = coordinates(extent) == 0;
+    auto all = round == round;
+    for (const triangle3d* of : {&s, &t})
+        for (int i = 0; i < 3; ++i) {
+            const lanes<double> p = coordinates((*of)[i]);
+            all &= is_flat | (((p + round) - round == p) & (p <= largest) & (p >= -largest));
+        }
+    return bits(all) == 7;
 }
 
 scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
-    std::array<vec3d, 3> rows;
-    return (exact_rows(a, b, c, d, rows) ? volume_of(rows) : volume_of(a, b, c, d)).rounded();
+    return volume_of(a, b, c, d).rounded();
 }
 
 scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-    const int x = (axis + 1) % 3;
-    const int y = (axis + 2) % 3;
-    std::array<vec3d, 2> rows;
-    return (exact_rows(a, b, c, rows) ? area_of(rows, x, y) : area_of(a, b, c, x, y)).rounded();
+    return area_of(a, b, c, (axis + 1) % 3, (axis + 2) % 3).rounded();
 }
 
 }  // namespace aabb

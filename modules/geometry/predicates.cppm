@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -6,6 +7,7 @@ module;
 /// in the arithmetic that `require_ieee_arithmetic` accepts.
 export module aabb.geometry:predicates;
 
+import :lanes;
 import :triangle;
 import :vec3;
 
@@ -14,12 +16,41 @@ import :vec3;
 
 export namespace aabb {
 
+/// On which side of a plane the corners of a triangle lie: a bit each, bit i for corner i.
+struct corner_sides {
+    unsigned above = 0;  ///< positive
+    unsigned below = 0;  ///< negative
+
+    constexpr corner_sides() = default;
+    constexpr corner_sides(unsigned positive, unsigned negative) noexcept : above(positive), below(negative) {}
+    constexpr explicit corner_sides(const std::array<int, 3>& signs) noexcept {
+        for (unsigned i = 0; i < 3; ++i) {
+            above |= static_cast<unsigned>(signs[i] > 0) << i;
+            below |= static_cast<unsigned>(signs[i] < 0) << i;
+        }
+    }
+
+    [[nodiscard]] constexpr bool on_one_side() const noexcept { return above == 7 || below == 7; }
+    [[nodiscard]] constexpr bool on_plane() const noexcept { return (above | below) == 0; }
+    [[nodiscard]] constexpr bool all_off_plane() const noexcept { return (above | below) == 7; }
+    [[nodiscard]] constexpr int operator[](int corner) const noexcept {
+        return static_cast<int>(above >> corner & 1) - static_cast<int>(below >> corner & 1);
+    }
+};
+
 /// Sign (-1, 0, 1) of det(b - a, c - a, d - a): the side of the plane through a, b and c on which d lies. Zero when the
 /// four lie in one plane. Slow; `orientations` asks it when rounded arithmetic cannot tell.
 [[nodiscard]] int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;
 
+/// The sides of the plane of `t` on which the corners of `s` lie, each as by `exact_side`.
+[[nodiscard]] corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept;
+
 /// Sign of the component `axis` of (b - a) × (c - a): the way that a, b, c turn when seen along that axis.
 [[nodiscard]] int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
+
+/// Whether all coordinates are multiples of a unit on their axis of which the extent has less than 2^16. False for
+/// extents whose products would leave the range of double, and where coordinates are too large to tell.
+[[nodiscard]] bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& extent) noexcept;
 
 /// A number whose exponent may lie beyond that of a double: mantissa 2^exponent, |mantissa| in [1/2, 1), or both 0.
 struct scaled_double {
@@ -31,12 +62,12 @@ struct scaled_double {
 [[nodiscard]] scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;
 [[nodiscard]] scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
 
-/// The same signs, fast, for points that lie in one box: computed in double, and again exactly where the result lies
-/// within its own rounding error. The bound of that error is one number for the whole box (a semi-static filter, Meyer
+/// The same signs, fast, for the corners of two triangles: computed in double, and again exactly where the result lies
+/// within its own rounding error. The bound of that error is one number for all corners (a semi-static filter, Meyer
 /// and Pion, "FPG: a code generator for fast and certified geometric predicates", 2008).
 ///
-/// Bounds, with u = 2^-53 and E the extent of the box on an axis. A difference of coordinates is at most E and carries
-/// one rounding, a factor (1 + δ) with |δ| <= u, even where the coordinates were floats.
+/// Bounds, with u = 2^-53 and E the extent of the corners' box on an axis. A difference of coordinates is at most E and
+/// carries one rounding, a factor (1 + δ) with |δ| <= u, even where the coordinates were floats.
 /// - Turn, two terms: each carries the roundings of two differences, a product and the last subtraction. The error is
 ///   at most 2 ((1 + u)^4 - 1) E E, below 8.1 u E E.
 /// - Side, six terms: four roundings as above; one for the third difference, one for the product with it, at most two
@@ -45,42 +76,94 @@ struct scaled_double {
 /// and 2^200 keep overflow away, and what underflow can add, less than 2^-870, is far below u E E E >= 2^-653: one more
 /// u. Other extents make the bound infinite or NaN, so that everything is computed exactly; floats never get there. An
 /// extent of zero makes the bound zero, and the computed zero is exact.
+///
+/// Where that leaves a sign open, all coordinates may be multiples of a unit on their axis of which E has less than
+/// 2^16, as points of a lattice are. Then a difference is a whole number below 2^16, a component of the normal one
+/// below 2^33, and what is added up to a volume stays below 3 · 2^49: nothing was rounded, and the bound is zero.
 class orientations {
 public:
-    /// All points asked for lie in the closed box from `low` to `high`.
-    constexpr orientations(const vec3d& low, const vec3d& high) noexcept : extent_(high - low) {
-        for (int k = 0; k < 3; ++k)
-            if (extent_[k] != 0 && !(extent_[k] >= 0x1p-200 && extent_[k] <= 0x1p200))
-                extent_[k] = std::numeric_limits<double>::infinity();
-        side_error_ = 50 * unit * extent_[0] * extent_[1] * extent_[2];
+    /// All points asked for are corners of `s` or `t`, which both outlive this and lie in the closed box from `low` to
+    /// `high`.
+    inline orientations(const triangle3d& s, const triangle3d& t, const lanes<double>& low,
+                        const lanes<double>& high) noexcept
+        : s_(s), t_(t) {
+        const lanes<double> given = high - low;
+        const auto in_range = (given == 0) | ((given >= 0x1p-200) & (given <= 0x1p200));
+        const lanes<double> extent = in_range ? given : lanes<double>{} + std::numeric_limits<double>::infinity();
+        extent_ = {extent[0], extent[1], extent[2]};
+        side_error_ = 50 * unit * extent[0] * extent[1] * extent[2];
+    }
+
+    /// The sides of the other's plane on which each triangle's corners lie. Some stay open where the rest proves that
+    /// the triangles are apart.
+    /// @returns whether one triangle lies strictly on one side of the other's plane
+    [[nodiscard]] inline bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {
+        const lanes<double> of_s = volumes(s_, t_);
+        const lanes<double> of_t = volumes(t_, s_);
+        s_to_t = certain_signs(of_s, side_error_);
+        t_to_s = certain_signs(of_t, side_error_);
+        if (s_to_t.on_one_side() || t_to_s.on_one_side()) return true;
+        if ((s_to_t.all_off_plane() && t_to_s.all_off_plane()) || side_error_ == 0) [[likely]]
+            return false;
+        if (on_lattice()) {
+            s_to_t = certain_signs(of_s, 0);
+            t_to_s = certain_signs(of_t, 0);
+        } else {
+            if (!s_to_t.all_off_plane()) s_to_t = exact_sides(s_, t_);
+            if (s_to_t.on_one_side()) return true;
+            if (!t_to_s.all_off_plane()) t_to_s = exact_sides(t_, s_);
+        }
+        return s_to_t.on_one_side() || t_to_s.on_one_side();
     }
 
     /// As `exact_side`.
-    [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) const noexcept {
-        const int sign = certain_sign(dot(cross(b - a, c - a), d - a), side_error_);
-        return sign != 0 || side_error_ == 0 ? sign : exact_side(a, b, c, d);
+    [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+        const double computed = volume(a, b, c, d);
+        const int sign = certain_sign(computed, side_error_);
+        if (sign != 0 || side_error_ == 0) [[likely]]
+            return sign;
+        return on_lattice() ? certain_sign(computed, 0) : exact_side(a, b, c, d);
     }
 
-    /// The sides of the plane of `t` on which the corners of `s` lie.
-    [[nodiscard]] inline std::array<int, 3> sides(const triangle3d& s, const triangle3d& t) const noexcept {
-        const vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
-        const int first = certain_sign(dot(normal, s[0] - t[0]), side_error_);
-        const int second = certain_sign(dot(normal, s[1] - t[0]), side_error_);
-        const int third = certain_sign(dot(normal, s[2] - t[0]), side_error_);
-        if (first * second * third != 0 || side_error_ == 0) return {first, second, third};
-        return {first != 0 ? first : exact_side(t[0], t[1], t[2], s[0]),
-                second != 0 ? second : exact_side(t[0], t[1], t[2], s[1]),
-                third != 0 ? third : exact_side(t[0], t[1], t[2], s[2])};
+    /// side(s0, s1, t0, t1) <= 0 and side(s0, s2, t0, t2) >= 0. Both are computed at once: which of them decides cannot
+    /// be predicted.
+    [[nodiscard]] inline bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0,
+                                       const vec3d& t1, const vec3d& t2) noexcept {
+        const int first = certain_sign(volume(s0, s1, t0, t1), side_error_);
+        const int second = certain_sign(volume(s0, s2, t0, t2), side_error_);
+        if (first * second != 0 || side_error_ == 0) [[likely]]
+            return std::max(first, -second) <= 0;
+        return side(s0, s1, t0, t1) <= 0 && side(s0, s2, t0, t2) >= 0;
     }
 
     /// As `exact_turn`.
-    [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) const noexcept {
+    [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;
         const double computed = (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
-        const double error = 10 * unit * extent_[x] * extent_[y];
+        const double error = turn_error(x, y);
         const int sign = certain_sign(computed, error);
-        return sign != 0 || error == 0 ? sign : exact_turn(a, b, c, axis);
+        if (sign != 0 || error == 0) return sign;
+        return on_lattice() ? certain_sign(computed, 0) : exact_turn(a, b, c, axis);
+    }
+
+    /// Do a, b and each corner of `t` turn in one way, which is not `own`, seen along that axis?
+    [[nodiscard]] inline bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
+        const int x = (axis + 1) % 3;
+        const int y = (axis + 2) % 3;
+        const lanes<double> computed =
+            (b[x] - a[x]) * (corners_along(t, y) - a[y]) - (b[y] - a[y]) * (corners_along(t, x) - a[x]);
+        const double error = turn_error(x, y);
+        corner_sides turns = certain_signs(computed, error);
+        if (!turns.all_off_plane() && error != 0) {
+            if (turns.above != 0 && turns.below != 0) return false;
+            if (on_lattice())
+                turns = certain_signs(computed, 0);
+            else
+                turns = corner_sides(
+                    {exact_turn(a, b, t[0], axis), exact_turn(a, b, t[1], axis), exact_turn(a, b, t[2], axis)});
+        }
+        return (own <= 0 && turns.above == 7) || (own >= 0 && turns.below == 7);
     }
 
 private:
@@ -90,9 +173,40 @@ private:
     [[nodiscard]] static inline int certain_sign(double computed, double error) noexcept {
         return static_cast<int>(computed > error) - static_cast<int>(computed < -error);
     }
+    [[nodiscard]] static inline corner_sides certain_signs(const lanes<double>& computed, double error) noexcept {
+        return {bits(computed > error), bits(computed < -error)};
+    }
 
+    [[nodiscard]] static inline double volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+        return dot(cross(b - a, c - a), d - a);
+    }
+
+    /// Of the corners of `s` over the plane of `t`.
+    [[nodiscard]] static inline lanes<double> volumes(const triangle3d& s, const triangle3d& t) noexcept {
+        const vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
+        const auto along = [&](int k) { return normal[k] * (corners_along(s, k) - t[0][k]); };
+        return along(0) + along(1) + along(2);
+    }
+
+    [[nodiscard]] inline double turn_error(int x, int y) const noexcept {
+        return is_lattice_ ? 0 : 10 * unit * extent_[x] * extent_[y];
+    }
+
+    /// Asked where the filter has failed, and answered once.
+    [[nodiscard]] inline bool on_lattice() noexcept {
+        if (is_lattice_known_) return is_lattice_;
+        is_lattice_known_ = true;
+        is_lattice_ = are_on_lattice(s_, t_, extent_);
+        if (is_lattice_) side_error_ = 0;
+        return is_lattice_;
+    }
+
+    const triangle3d& s_;
+    const triangle3d& t_;
     vec3d extent_;
     double side_error_;
+    bool is_lattice_known_ = false;
+    bool is_lattice_ = false;
 };
 
 }  // namespace aabb

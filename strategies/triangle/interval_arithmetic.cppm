@@ -73,19 +73,19 @@ using bracket3 = std::array<bracket, 3>;
 template <bool Exact>
 class interval_signs {
 public:
-    interval_signs(const vec3d&, const vec3d&) noexcept {}
+    interval_signs(const triangle3d& s, const triangle3d& t, const lanes<double>&, const lanes<double>&) noexcept
+        : s_(s), t_(t) {}
+
+    [[nodiscard]] inline bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {
+        s_to_t = sides(s_, t_);
+        if (s_to_t.on_one_side()) return true;
+        t_to_s = sides(t_, s_);
+        return t_to_s.on_one_side();
+    }
 
     [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
         return sign(dot(cross(difference(b, a), difference(c, a)), difference(d, a)),
                     [&] { return exact_side(a, b, c, d); });
-    }
-    [[nodiscard]] inline std::array<int, 3> sides(const triangle3d& s, const triangle3d& t) noexcept {
-        const bracket3 normal = cross(difference(t[1], t[0]), difference(t[2], t[0]));
-        const auto of = [&](const vec3d& p) {
-            return sign(dot(normal, difference(p, t[0])), [&] { return exact_side(t[0], t[1], t[2], p); });
-        };
-        // Braces are evaluated from left to right.
-        return {of(s[0]), of(s[1]), of(s[2])};
     }
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
         const int x = (axis + 1) % 3;
@@ -95,9 +95,27 @@ public:
                     [&] { return exact_turn(a, b, c, axis); });
     }
 
+    [[nodiscard]] inline bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0,
+                                       const vec3d& t1, const vec3d& t2) noexcept {
+        return side(s0, s1, t0, t1) <= 0 && side(s0, s2, t0, t2) >= 0;
+    }
+    [[nodiscard]] inline bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
+        const int first = turn(a, b, t[0], axis);
+        return first != 0 && first != own && turn(a, b, t[1], axis) == first && turn(a, b, t[2], axis) == first;
+    }
+
     [[nodiscard]] inline bool unsure() const noexcept { return unsure_; }
 
 private:
+    [[nodiscard]] inline corner_sides sides(const triangle3d& s, const triangle3d& t) noexcept {
+        const bracket3 normal = cross(difference(t[1], t[0]), difference(t[2], t[0]));
+        const auto of = [&](const vec3d& p) {
+            return sign(dot(normal, difference(p, t[0])), [&] { return exact_side(t[0], t[1], t[2], p); });
+        };
+        // Braces are evaluated from left to right.
+        return corner_sides(std::array{of(s[0]), of(s[1]), of(s[2])});
+    }
+
     template <class Compute>
     [[nodiscard]] inline int sign(const bracket& of, Compute compute) noexcept {
         if (of.low > 0) return 1;
@@ -110,6 +128,8 @@ private:
         return 0;
     }
 
+    const triangle3d& s_;
+    const triangle3d& t_;
     bool unsure_ = false;
 };
 

@@ -1,7 +1,5 @@
 module;
-#include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -13,51 +11,60 @@ export namespace aabb {
 
 /// Do two closed triangles share a point, zero-area ones included? The signs of at most eight orientations decide
 /// (Devillers and Guigue, "Faster triangle-triangle intersection tests", INRIA RR-4488, 2002).
-/// @tparam Signs how they are found: made from the lowest and the highest corner of a box that holds all points, with
-/// `side`, `sides` and `turn` as `orientations` has them. The answer is exact where they are. One that may fail to find
-/// a sign returns 0 and has `unsure()`, which is true from then on; what cannot be ruled out then counts as a hit.
+/// @tparam Signs how they are found: made from the triangles and the lowest and the highest corner of their box, with
+/// `part`, `side`, `in_order`, `turn` and `beyond` as `orientations` has them. The answer is exact where they are. One
+/// that may fail to find a sign returns 0 and has `unsure()`, which is true from then on; what cannot be ruled out then
+/// counts as a hit.
 template <class Signs>
 class orientation_test {
 public:
     template <class Real>
     [[nodiscard]] static inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
-        vec3d low;
-        vec3d high;
-        for (int k = 0; k < 3; ++k) {
-            const auto [s_low, s_high] = range(s, k);
-            const auto [t_low, t_high] = range(t, k);
-            if (s_low > t_high || t_low > s_high) return false;
-            low[k] = std::min(s_low, t_low);
-            high[k] = std::max(s_high, t_high);
-        }
+        const auto [s_low, s_high] = range(s);
+        const auto [t_low, t_high] = range(t);
+        if (bits((s_low > t_high) | (t_low > s_high)) != 0) return false;
         if (share_a_corner(s, t)) return true;
-        Signs signs(low, high);
-        return near_intersects(in_double(s), in_double(t), signs);
+        const triangle3d s_in_double = in_double(s);
+        const triangle3d t_in_double = in_double(t);
+        Signs signs(s_in_double, t_in_double, __builtin_convertvector(lesser(s_low, t_low), lanes<double>),
+                    __builtin_convertvector(greater(s_high, t_high), lanes<double>));
+        return near_intersects(s_in_double, t_in_double, signs);
     }
 
 private:
-    using sides = std::array<int, 3>;
+    using sides = corner_sides;
 
+    template <class Lanes>
+    [[nodiscard]] static inline Lanes lesser(const Lanes& p, const Lanes& q) noexcept {
+        return p < q ? p : q;
+    }
+    template <class Lanes>
+    [[nodiscard]] static inline Lanes greater(const Lanes& p, const Lanes& q) noexcept {
+        return p > q ? p : q;
+    }
+
+    /// The lowest and the highest corner of the triangle's box.
     template <class Real>
-    [[nodiscard]] static std::pair<Real, Real> range(const triangle3<Real>& t, int axis) noexcept {
-        return {std::min(std::min(t[0][axis], t[1][axis]), t[2][axis]),
-                std::max(std::max(t[0][axis], t[1][axis]), t[2][axis])};
+    [[nodiscard]] static inline std::pair<lanes<Real>, lanes<Real>> range(const triangle3<Real>& t) noexcept {
+        const lanes<Real> p = coordinates(t[0]);
+        const lanes<Real> q = coordinates(t[1]);
+        const lanes<Real> r = coordinates(t[2]);
+        return {lesser(lesser(p, q), r), greater(greater(p, q), r)};
     }
 
     template <class Real>
     [[nodiscard]] static inline bool share_a_corner(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
-                if (s[i] == t[j]) return true;
+                if (bits(coordinates(s[i]) == coordinates(t[j])) == 7) return true;
         return false;
     }
 
     /// The boxes of `s` and `t` overlap.
     [[nodiscard]] static inline bool near_intersects(const triangle3d& s, const triangle3d& t, Signs& signs) noexcept {
-        const sides s_to_t = signs.sides(s, t);
-        if (on_one_side(s_to_t)) return false;
-        const sides t_to_s = signs.sides(t, s);
-        if (on_one_side(t_to_s)) return false;
+        sides s_to_t;
+        sides t_to_s;
+        if (signs.part(s_to_t, t_to_s)) return false;
         const bool found = crossing_intersects(s, s_to_t, t, t_to_s, signs);
         if constexpr (requires { signs.unsure(); })
             return found || signs.unsure();
@@ -70,16 +77,12 @@ private:
                                                          const sides& t_to_s, Signs& signs) noexcept {
         // All sides are zero when the planes are the same, or when the other triangle has no plane: zero area. A side
         // that is not zero proves that the other triangle has one.
-        const bool s_on_t = s_to_t == sides{};
-        const bool t_on_s = t_to_s == sides{};
+        const bool s_on_t = s_to_t.on_plane();
+        const bool t_on_s = t_to_s.on_plane();
         if (s_on_t && t_on_s) return flat_intersects(signs, s, t);
         if (t_on_s) return line_meets(signs, s, s_to_t, t);
         if (s_on_t) return line_meets(signs, t, t_to_s, s);
         return intervals_meet(signs, s, s_to_t, t, t_to_s);
-    }
-
-    [[nodiscard]] static inline bool on_one_side(const sides& d) noexcept {
-        return (d[0] > 0 && d[1] > 0 && d[2] > 0) || (d[0] < 0 && d[1] < 0 && d[2] < 0);
     }
 
     /// The corner that the other plane cuts off from the two that follow it in the triangle's order, and whether it is
@@ -89,27 +92,25 @@ private:
         bool negative;
     };
 
-    /// By 9 d0 + 3 d1 + d2 + 13. An apex either lies off the plane, the others not on its side of it, or on the plane
-    /// with the others off it on one side. Rows of sides that are all equal are not used.
-    static constexpr std::array<apex, 27> apices = [] {
-        std::array<apex, 27> rows{};
-        for (int row = 0; row < 27; ++row) {
-            const sides d{row / 9 - 1, row / 3 % 3 - 1, row % 3 - 1};
-            for (std::size_t i = 0; i < 3; ++i)
+    /// By 8 above + below. An apex either lies off the plane, the others not on its side of it, or on the plane with
+    /// the others off it on one side. Rows of sides that are all equal are not used.
+    static constexpr std::array<apex, 64> apices = [] {
+        std::array<apex, 64> rows{};
+        for (unsigned row = 0; row < 64; ++row) {
+            const sides d{row / 8, row % 8};
+            for (int i = 0; i < 3; ++i)
                 for (const int up : {1, -1}) {
                     const int own = up * d[i];
                     const int p = up * d[(i + 1) % 3];
                     const int q = up * d[(i + 2) % 3];
                     if ((own > 0 && p <= 0 && q <= 0) || (own == 0 && p < 0 && q < 0))
-                        rows[static_cast<std::size_t>(row)] = {static_cast<std::uint8_t>(i), up < 0};
+                        rows[row] = {static_cast<std::uint8_t>(i), up < 0};
                 }
         }
         return rows;
     }();
 
-    [[nodiscard]] static inline apex apex_of(const sides& d) noexcept {
-        return apices[static_cast<std::size_t>(9 * d[0] + 3 * d[1] + d[2] + 13)];
-    }
+    [[nodiscard]] static inline apex apex_of(const sides& d) noexcept { return apices[8 * d.above + d.below]; }
 
     /// Both triangles cut the line in which their planes meet, each in an interval between the edges at its apex. With
     /// each triangle turned so that the other's apex lies above it, the intervals run against each other, and two
@@ -127,7 +128,7 @@ private:
         const vec3d& t0 = t[of_t.corner];
         const auto [s1, s2] = ends(s, of_s.corner, of_t.negative);
         const auto [t1, t2] = ends(t, of_t.corner, of_s.negative);
-        return signs.side(s0, s1, t0, t1) <= 0 && signs.side(s0, s2, t0, t2) >= 0;
+        return signs.in_order(s0, s1, s2, t0, t1, t2);
     }
 
     /// `s` has zero area and reaches the plane of `t`, which it crosses in one point: is that point in `t`?
@@ -148,13 +149,17 @@ private:
     /// by the line of an edge, or lie on one line, where their boxes would be apart. Apart in a view is apart; what
     /// meets in a view in which the common plane is not seen edge-on meets.
     [[nodiscard]] static inline bool flat_intersects(Signs& signs, const triangle3d& s, const triangle3d& t) noexcept {
+        const auto apart = [&](int axis, int s_turn, int t_turn) {
+            return edge_separates(signs, s, s_turn, t, axis) || edge_separates(signs, t, t_turn, s, axis);
+        };
         for (int axis = 0; axis < 3; ++axis) {
             const int s_turn = signs.turn(s[0], s[1], s[2], axis);
             const int t_turn = signs.turn(t[0], t[1], t[2], axis);
-            if (edge_separates(signs, s, s_turn, t, axis) || edge_separates(signs, t, t_turn, s, axis)) return false;
-            if (s_turn != 0 || t_turn != 0) return true;
+            if (s_turn != 0 || t_turn != 0) return !apart(axis, s_turn, t_turn);
         }
-        // Two segments or points that meet in all views: do they lie in one plane?
+        // Two segments or points. Where they meet in all views, do they lie in one plane?
+        for (int axis = 0; axis < 3; ++axis)
+            if (apart(axis, 0, 0)) return false;
         const auto second = [](const triangle3d& of) { return of[1] == of[0] ? of[2] : of[1]; };
         return signs.side(s[0], second(s), t[0], second(t)) == 0;
     }
@@ -162,11 +167,8 @@ private:
     /// Does the line of an edge of `s` have `s` on one side and `t` strictly on the other? `turn` is that of `s`.
     [[nodiscard]] static inline bool edge_separates(Signs& signs, const triangle3d& s, int turn, const triangle3d& t,
                                                     int axis) noexcept {
-        for (int i = 0; i < 3; ++i) {
-            const auto side = [&](int j) { return signs.turn(s[i], s[(i + 1) % 3], t[j], axis); };
-            const int first = side(0);
-            if (first != 0 && first != turn && side(1) == first && side(2) == first) return true;
-        }
+        for (int i = 0; i < 3; ++i)
+            if (signs.beyond(s[i], s[(i + 1) % 3], turn, t, axis)) return true;
         return false;
     }
 };
