@@ -149,19 +149,19 @@ private:
     /// by the line of an edge, or lie on one line, where their boxes would be apart. Apart in a view is apart; what
     /// meets in a view in which the common plane is not seen edge-on meets.
     [[nodiscard]] static inline bool flat_intersects(Signs& signs, const triangle3d& s, const triangle3d& t) noexcept {
-        const auto apart = [&](int axis, int s_turn, int t_turn) {
-            return edge_separates(signs, s, s_turn, t, axis) || edge_separates(signs, t, t_turn, s, axis);
-        };
         for (int axis = 0; axis < 3; ++axis) {
             const int s_turn = signs.turn(s[0], s[1], s[2], axis);
             const int t_turn = signs.turn(t[0], t[1], t[2], axis);
-            if (s_turn != 0 || t_turn != 0) return !apart(axis, s_turn, t_turn);
+            if (s_turn != 0 || t_turn != 0)
+                return !edge_separates(signs, s, s_turn, t, axis) && !edge_separates(signs, t, t_turn, s, axis);
         }
-        // Two segments or points. Where they meet in all views, do they lie in one plane?
+        // Two segments or points, each on one line. Where they lie in one plane, do they meet in all views?
+        const vec3d& s_end = s[1] == s[0] ? s[2] : s[1];
+        const vec3d& t_end = t[1] == t[0] ? t[2] : t[1];
+        if (signs.side(s[0], s_end, t[0], t_end) != 0) return false;
         for (int axis = 0; axis < 3; ++axis)
-            if (apart(axis, 0, 0)) return false;
-        const auto second = [](const triangle3d& of) { return of[1] == of[0] ? of[2] : of[1]; };
-        return signs.side(s[0], second(s), t[0], second(t)) == 0;
+            if (signs.beyond(s[0], s_end, 0, t, axis) || signs.beyond(t[0], t_end, 0, s, axis)) return false;
+        return true;
     }
 
     /// Does the line of an edge of `s` have `s` on one side and `t` strictly on the other? `turn` is that of `s`.
