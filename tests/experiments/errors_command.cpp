@@ -252,8 +252,10 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
     const program_result ran = run_program({"errors", config, "--out", folder / "out"});
     INFO(ran.err << ran.out);
     REQUIRE(ran.status == 0);
-    CHECK(ran.out.find("wrong_share of 0;") == std::string::npos);
-    CHECK(ran.out.find("has the best wrong_share, 0, with a frame_ms of") != std::string::npos);
+    // Lines are broken where they are too long, names of compositions too.
+    std::string words = ran.out;
+    std::erase_if(words, [](char c) { return c == ' ' || c == '\n'; });
+    CHECK(words.find("hasthebestwrong_share,0,withaframe_msof") != std::string::npos);
     std::map<std::string, std::set<std::string>> answers;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv"))
         answers[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.missing > 0 ? " misses" : "") +
