@@ -88,17 +88,19 @@ public:
         return p;
     }
 
-    /// Exactly in one plane, and as far apart as numbers of that size can be.
+    /// Exactly in one plane: a parallelogram whose first and last corner are as far apart as numbers of that size can
+    /// be.
     points in_plane() {
-        while (true) {
-            points p{point(), point(), point(), {}};
-            bool fits = true;
-            for (int k = 0; k < 3; ++k) {
-                p[3][k] = p[1][k] + (p[2][k] - p[0][k]);
-                fits &= number(p[3][k]) - number(p[1][k]) == number(p[2][k]) - number(p[0][k]);
-            }
-            if (fits) return p;
+        points p{point(), point(), {}, {}};
+        for (int k = 0; k < 3; ++k) {
+            p[3][k] = 2 - std::ldexp(std::abs(coordinate()), -below(40));
+            p[0][k] = std::ldexp(std::abs(coordinate()), -below(40)) - 2;
+            // Multiples of 2^-52 again, so that the next sum is exact.
+            p[3][k] = std::ldexp(std::floor(std::ldexp(p[3][k], 52)), -52);
+            p[0][k] = std::ldexp(std::floor(std::ldexp(p[0][k], 52)), -52);
+            p[2][k] = p[0][k] + p[3][k] - p[1][k];
         }
+        return p;
     }
 
 private:
@@ -212,6 +214,12 @@ TEST_CASE("filtered signs are those of rational arithmetic, on lattices and besi
             for (vec3d& q : p) q[make.below(3)] = 0.3;
         triangle3d s{{p[0], p[1], p[2]}};
         triangle3d t{{p[3], p[4], p[5]}};
+        // So far away that a sum with 2^52 and a half may keep halves.
+        const bool is_far = make.below(8) == 0;
+        if (is_far)
+            for (triangle3d* of : {&s, &t})
+                for (vec3d& q : of->corner)
+                    for (double& x : q.at) x -= 0x1p51 + (make.below(30) == 0 ? 0.5 : 0);
         const double unit = std::ldexp(1, make.below(100) - 50);
         for (triangle3d* of : {&s, &t})
             for (vec3d& q : of->corner)
@@ -226,8 +234,9 @@ TEST_CASE("filtered signs are those of rational arithmetic, on lattices and besi
             for (const triangle3d* of : {&s, &t})
                 for (const vec3d& q : of->corner) expected &= std::fmod(q[k], step) == 0;
         }
-        ++lattices[aabb::are_on_lattice(s, t, extent) ? 1 : 0];
-        wrong += aabb::are_on_lattice(s, t, extent) != expected;
+        const bool found = aabb::are_on_lattice(s, t, extent);
+        ++lattices[found ? 1 : 0];
+        wrong += found ? !expected : expected && !is_far;
         check_filtered(s, t, wrong);
         check_filtered(t, s, wrong);
     }
