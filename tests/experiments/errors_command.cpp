@@ -228,7 +228,7 @@ TEST_CASE("a config of errors that is wrong is refused with its line and the nea
     CHECK(refusal_of("name = \"e\"\n" + some_hits + one_curve) ==
           "e.toml:1: this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
     CHECK(refusal_of("name = \"e\"\n" + some_hits + some_pairs) ==
-          "e.toml:1: this config has no curve; expected at least one [[curve]]");
+          "e.toml:4: [[pairs]] is for curves, and this config has none");
     CHECK(refusal_of("name = \"e\"\n" + some_hits + some_hits) ==
           "e.toml:5: these hits are listed twice: random in float");
     CHECK(refusal_of("name = \"e\"\n[[hits]]\nclas = \"random\"\n")
@@ -262,7 +262,7 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
                                                              (*r.invented > 0 ? " invents" : ""));
     const std::set<std::string> exact{"exact"};
     const std::set<std::string> stale{"inexact misses"};
-    CHECK(answers == std::map<std::string, std::set<std::string>>{{"neighbour_list", exact},
+    CHECK(answers == std::map<std::string, std::set<std::string>>{{"neighbour_list:margin=0.1", exact},
                                                                   {"neighbour_list:margin=0.5", exact},
                                                                   {"neighbour_list:margin=0,every=4", stale},
                                                                   {"neighbour_list:margin=0,every=8", stale}});
