@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <initializer_list>
@@ -30,6 +31,7 @@ inline std::vector<std::string> values_of(const aabb::parameter_info& parameter)
             for (int value = least; value <= most; ++value) values.push_back(std::to_string(value));
         else
             values = {std::to_string(least), parameter.fallback, std::to_string(most)};
+        values.erase(std::ranges::unique(values).begin(), values.end());
     } else {
         values = {parameter.fallback, "3"};
     }

@@ -24,8 +24,8 @@ namespace {
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
         print(
-            fmt::format("In {}: shares of pairs with a wrong answer, of\nintersecting ones that were missed, of others "
-                        "that were invented; fewest wrong first\n\n{}\n",
+            fmt::format("In {}:\nshares of pairs with a wrong answer, of intersecting ones that were missed,\nof "
+                        "others that were invented; fewest wrong first\n\n{}\n",
                         title_of(group), to_text(error_summary(points, group), output_width())));
         print(fmt::format("By set, missed + invented as shares of all pairs\n\n{}\n",
                           to_text(errors_by_set(points, group), output_width())));
@@ -38,9 +38,9 @@ void print_tables(std::span<const hit_point> points) {
         const table shown = hit_summary(points, in_double);
         if (shown.rows.empty()) continue;
         print(
-            fmt::format("Hits of triangles of {}s against CGAL's exact construction: hits whose kind or number of\n"
-                        "corners differs, the greatest error of a coordinate over its bound, the greatest at all\n"
-                        "beside its bound\n\n{}\n",
+            fmt::format("Hits of triangles of {}s against CGAL's exact construction: hits whose\n"
+                        "kind or number of corners differs, the greatest error of a coordinate over its\n"
+                        "bound, the greatest at all beside its bound\n\n{}\n",
                         in_double ? "double" : "float", to_text(shown, output_width())));
     }
 }
@@ -48,8 +48,10 @@ void print_tables(std::span<const hit_point> points) {
 /// @returns a sentence for each test whose hits are wrong
 std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, std::span<const pair_set> sets,
                                            printed shown) {
-    const std::vector<hit_point> points = measure_hits(sets);
-    write_file(folder / "intersections.csv", to_csv(hit_rows(points)));
+    // What is finished stays, whatever happens afterwards.
+    const std::vector<hit_point> points = measure_hits(sets, [&](std::span<const hit_point> so_far) {
+        write_file(folder / "intersections.csv", to_csv(hit_rows(so_far)));
+    });
     if (shown != printed::nothing) print_tables(points);
     std::vector<std::string> failures;
     for (const hit_point& p : points)
@@ -72,19 +74,22 @@ std::vector<std::filesystem::path> error_configs() {
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown) {
     std::vector<std::string> failures;
     std::filesystem::create_directories(folder);
+    // Of an earlier study, they would stand beside the config of this one.
+    for (const char* file : {"errors.csv", "intersections.csv"}) std::filesystem::remove(folder / file);
+    write_file(folder / "config.toml", study.text);
     if (study.whole) {
         failures = play_experiment(*study.whole, folder, existing_results::replace, "the same command", shown);
         if (shown != printed::nothing)
             for (const std::string& text : metric_statements(study, summarise(read_rows(folder / "results.csv"))))
                 print(text + "\n\n");
     } else if (!study.curves.empty()) {
-        const std::vector<error_point> points = measure_errors(study);
-        write_file(folder / "errors.csv", to_csv(error_rows(points)));
+        const std::vector<error_point> points = measure_errors(study, [&](std::span<const error_point> so_far) {
+            write_file(folder / "errors.csv", to_csv(error_rows(so_far)));
+        });
         if (shown != printed::nothing) print_tables(points);
     }
     if (!study.hits.empty())
         std::ranges::move(measure_hits_into(folder, study.hits, shown), std::back_inserter(failures));
-    write_file(folder / "config.toml", study.text);
     return failures;
 }
 

@@ -40,6 +40,7 @@ struct pairs_request {
 
 struct search_method {
     std::string name;
+    bool exact;
     std::unique_ptr<aabb::global_stage> stage;
 };
 
@@ -54,11 +55,12 @@ search_method method_of(const pairs_request& request) {
     if (request.engine) {
         if (request.global.any())
             throw aabb::input_error("--engine stands in for " + request.global.names() + ", so give it alone");
-        return {*request.engine, aabb::make_box_engine(*request.engine)};
+        return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_box_engine(*request.engine)};
     }
     aabb::composition composition;
     request.global.set(composition);
     return {aabb::to_text(composition, aabb::stage::global_search),
+            aabb::is_exact(composition, aabb::stage::global_search),
             aabb::compose_global_search(composition, aabb::instrumentation::none)};
 }
 
@@ -81,12 +83,11 @@ search_result search_all(scene_play& scene, search_method& method, std::optional
     return result;
 }
 
-void print_json(const search_result& result) {
-    const nlohmann::ordered_json summary = {{"objects", result.objects},
-                                            {"frames", result.milliseconds.size()},
-                                            {"pairs", result.pairs},
-                                            {"digest", result.digest},
-                                            {"ms", result.milliseconds}};
+void print_json(const search_method& method, const search_result& result) {
+    const nlohmann::ordered_json summary = {{"objects", result.objects}, {"frames", result.milliseconds.size()},
+                                            {"pairs", result.pairs},     {"digest", result.digest},
+                                            {"ms", result.milliseconds}, {"method", method.name},
+                                            {"exact", method.exact}};
     print(summary.dump() + "\n");
 }
 
@@ -95,7 +96,8 @@ void print_text(const pairs_request& request, const search_method& method, const
                       result.milliseconds.size()));
     print(fmt::format("{} overlapping pairs, digest {}\n", result.pairs, result.digest));
     if (!result.milliseconds.empty())
-        print(fmt::format("{}: {:.3f} ms a frame (median)\n", method.name, quartiles_of(result.milliseconds).median));
+        print(fmt::format("{}{}: {:.3f} ms a frame (median)\n", method.name, method.exact ? "" : " (inexact)",
+                          quartiles_of(result.milliseconds).median));
 }
 
 void find_pairs(const pairs_request& request) {
@@ -109,7 +111,7 @@ void find_pairs(const pairs_request& request) {
     const search_result result = search_all(scene, method, table);
     if (table) table->commit();
     if (request.json)
-        print_json(result);
+        print_json(method, result);
     else
         print_text(request, method, result);
 }

@@ -142,7 +142,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
         .tables = {}};
     for (const error_study& study : studies_with_curves(quick)) {
         const std::filesystem::path results = folder_of_study(folder, study);
-        if (std::filesystem::exists(results / "errors.csv")) {
+        if (!study.whole && std::filesystem::exists(results / "errors.csv")) {
             const std::vector<error_point> points = read_error_rows(results / "errors.csv");
             for (const pair_group group : groups_in(points)) {
                 section.paragraphs.push_back(group_statement(points, group));
@@ -154,7 +154,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
                                  title_of(group)),
                      error_summary(points, group)});
             }
-        } else if (std::filesystem::exists(results / "results.csv")) {
+        } else if (study.whole && std::filesystem::exists(results / "results.csv")) {
             const std::vector<scene_summary> scenes = summarise(read_rows(results / "results.csv"));
             std::ranges::copy(metric_statements(study, scenes), std::back_inserter(section.paragraphs));
             std::ranges::copy(metric_figures(study, scenes), std::back_inserter(section.figures));
@@ -187,7 +187,8 @@ int reproduce(const reproduce_request& request) {
     if (!request.judge) measure(folder, request.quick);
     const std::vector<std::string> failures = kept_failures(folder);
     const reproduction all = judged(measurements(folder));
-    const std::vector<report_section> sections{errors_section(folder, request.quick)};
+    std::vector<report_section> sections{errors_section(folder, request.quick)};
+    if (sections[0].figures.empty()) sections.clear();
     write_reproduction(folder, all, sections, failures);
     print(verdict_text(all));
     if (!failures.empty()) print(fmt::format("\n{} compositions were wrong; they have no times:\n", failures.size()));

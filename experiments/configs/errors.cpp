@@ -75,13 +75,15 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
 void require_doubles_taken(const document& doc, error_study& study) {
     if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
     std::size_t taking = 0;
+    std::string names;
     for (const error_curve& curve : study.curves)
         for (const aabb::strategy_choice& choice : curve.triangles) {
             if (triangle_test_named(choice)->takes_double())
                 ++taking;
             else
-                study.notes.push_back(to_text(choice) + " takes triangles of floats only, and has no part in doubles");
+                names += (names.empty() ? "" : "; ") + to_text(choice);
         }
+    if (!names.empty()) study.notes.push_back("of floats only, with no part in doubles: " + names);
     if (taking == 0) doc.fail(doc.root().find("pairs")->line, "no curve takes triangles of doubles");
 }
 
@@ -128,7 +130,10 @@ std::vector<error_curve> curves_of(const document& doc) {
 /// What only the other sort of study has.
 void refuse_keys(const document& doc, std::initializer_list<std::string_view> keys, const std::string& reason) {
     for (const std::string_view key : keys)
-        if (const node* found = doc.root().find(key)) doc.fail(found->line, "[[" + std::string(key) + "]] " + reason);
+        if (const node* found = doc.root().find(key)) {
+            const std::string name = "[" + std::string(key) + "]";
+            doc.fail(found->line, (found->kind == node_kind::list ? "[" + name + "]" : name) + " " + reason);
+        }
 }
 
 std::vector<metric_plot> plots_of(const document& doc) {
@@ -171,10 +176,12 @@ experiment whole_of(const document& doc, const error_study& study, const std::st
 }
 
 std::vector<pair_set> pairs_of(const document& doc, const std::string& key, experiment_size size) {
+    const std::vector<node> tables = tables_of(doc, key);
+    if (tables.empty()) return {};
     const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
     each_once<pair_set> sets;
-    for (const node& one : tables_of(doc, key)) add_pairs(doc, key, one, size, number, sets);
+    for (const node& one : tables) add_pairs(doc, key, one, size, number, sets);
     return sets.all();
 }
 
@@ -197,6 +204,8 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
 
 error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
+    if (const node* compose = doc.root().find("compose"))
+        doc.fail(compose->line, "[compose] is of a config of run; ./aabblab run plays it");
     doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "hits", "plot", "measure", "quick"});
     error_study study;
     study.name = name_of(doc);
@@ -204,7 +213,7 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     study.curves = curves_of(doc);
     study.hits = pairs_of(doc, "hits", size);
     if (study.curves.empty()) {
-        if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]]");
+        if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]], or [[hits]]");
         refuse_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
     } else if (study.curves[0].triangles.empty()) {
         refuse_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");

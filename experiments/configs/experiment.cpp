@@ -120,6 +120,8 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
 
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
+    if (const node* curve = doc.root().find("curve"))
+        doc.fail(curve->line, "[[curve]] is of a config of errors; ./aabblab errors runs it");
     doc.require_keys(doc.root(), "", {"name", "seed", "engines", "scene", "compose", "measure", "quick"});
     experiment e;
     e.file = file;

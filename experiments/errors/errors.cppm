@@ -3,6 +3,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,7 +40,9 @@ struct error_point {
 
 /// Plays every method on every set of pairs that it takes. Generated pairs are made batch by batch, so that their
 /// number costs no memory.
-[[nodiscard]] std::vector<error_point> measure_errors(const error_study& study);
+/// @param finished where there is one, takes all points so far, after each set
+std::vector<error_point> measure_errors(const error_study& study,
+                                        const std::function<void(std::span<const error_point>)>& finished = {});
 
 /// The pairs of triangles whose boxes overlap, of objects whose boxes do, over all frames: the second triangle carried
 /// into the frame of the first one's mesh, as a tree's leaves are.
@@ -61,7 +64,8 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// Each method over all sets of a group: shares of false answers, and the time a pair as the mean over the sets.
 [[nodiscard]] table error_summary(std::span<const error_point> points, pair_group group);
 
-/// What each method gets wrong in each set of a group, a column a set: false negatives + false positives.
+/// What each method gets wrong in each set of a group, a column a set, scenes of meshes by number: false negatives +
+/// false positives.
 [[nodiscard]] table errors_by_set(std::span<const error_point> points, pair_group group);
 
 /// Error over run time in all sets of a group, a curve a method over its knob, both logarithmic. What nothing else is
@@ -101,7 +105,9 @@ struct hit_point {
 /// Makes pairs of each set until it has as many hits as the set says, and has every test that constructs construct
 /// them, those of libraries one batch of hits in sixteen. Where hits are rare it stops at a thousand pairs for each one
 /// that is wanted.
-[[nodiscard]] std::vector<hit_point> measure_hits(std::span<const pair_set> sets);
+/// @param finished where there is one, takes all points so far, after each set
+std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
+                                    const std::function<void(std::span<const hit_point>)>& finished = {});
 
 /// A row for each test and set, every number in full.
 [[nodiscard]] table hit_rows(std::span<const hit_point> points);

@@ -5,6 +5,7 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -138,7 +139,8 @@ std::string number_text(double number) {
 
 }  // namespace
 
-std::vector<hit_point> measure_hits(std::span<const pair_set> sets) {
+std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
+                                    const std::function<void(std::span<const hit_point>)>& finished) {
     std::uint64_t all = 0;
     for (const pair_set& set : sets) all += set.count;
     progress shown("hits", all);
@@ -147,6 +149,7 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets) {
     for (const pair_set& set : sets) {
         for (hit_point& p : set.in_double ? points_of<double>(set, shown, done) : points_of<float>(set, shown, done))
             points.push_back(std::move(p));
+        if (finished) finished(points);
         shown.at(done += set.count);
     }
     return points;

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <random>
@@ -125,9 +126,13 @@ std::vector<error_point> points_of(const error_study& study, const scene_choice&
 
 }  // namespace
 
-std::vector<error_point> measure_errors(const error_study& study) {
+std::vector<error_point> measure_errors(const error_study& study,
+                                        const std::function<void(std::span<const error_point>)>& finished) {
     std::vector<error_point> points;
-    const auto add = [&](std::vector<error_point> more) { std::ranges::move(more, std::back_inserter(points)); };
+    const auto add = [&](std::vector<error_point> more) {
+        std::ranges::move(more, std::back_inserter(points));
+        if (finished) finished(points);
+    };
     std::uint64_t all = 0;
     for (const pair_set& set : study.pairs) all += set.count;
     {

@@ -158,7 +158,9 @@ table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> some = of_group(points, group);
     table t{{{"triangle", false}}, {}};
     const std::vector<std::string> sets = sets_in(some);
-    for (const std::string& set : sets) t.columns.push_back({set});
+    // Scenes of meshes have long names.
+    for (const std::string& set : sets)
+        t.columns.push_back({group == pair_group::of_meshes ? fmt::format("scene {}", &set - sets.data() + 1) : set});
     for (const pooled& m : pooled_over(some)) {
         std::vector<std::string>& row = t.rows.emplace_back();
         row.push_back(to_text(m.triangle));

@@ -17,7 +17,7 @@ export namespace aabb {
 /// (Verlet, "Computer 'experiments' on classical fluids", 1967). An object that comes makes a search too.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
-/// than their margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
+/// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
 /// objects move by little a frame; `every` only to see what stale lists cost.
 struct neighbour_list_prepare {
     static constexpr std::string_view name = "neighbour_list";

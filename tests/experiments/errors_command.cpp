@@ -21,6 +21,7 @@ import aabb.registry;
 import aabb.triangle.exact;
 import aabblab.configs;
 import aabblab.errors;
+import aabblab.figures;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.tables;
@@ -198,7 +199,7 @@ TEST_CASE("what a test that constructs gets wrong is counted, and rare hits are 
 TEST_CASE("a config of errors that is wrong is refused with its line and the nearest name") {
     CHECK(refusal_of("name = \"e\"\n" + some_pairs + one_curve) == "accepted");
     CHECK(refusal_of("name = \"e\"\n" + some_pairs) ==
-          "e.toml:1: this config has no curve; expected at least one [[curve]]");
+          "e.toml:1: this config has no curve; expected at least one [[curve]], or [[hits]]");
     CHECK(refusal_of("name = \"e\"\n" + one_curve) ==
           "e.toml:1: this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
     CHECK(refusal_of("name = \"e\"\n[[pairs]]\nclass = \"randon\"\n" + one_curve) ==
@@ -289,12 +290,55 @@ TEST_CASE("a config of errors keeps triangle tests and compositions apart") {
               .starts_with("e.toml:11: unknown metric 'wrong'"));
     CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[plot]]\nx = \"frame_ms\"\n") ==
           "e.toml:9: this plot has no y; expected the name of a metric");
+    CHECK(refusal_of("name = \"e\"\nseed = [1, 2]\n" + scene + lists) == "accepted");
+    CHECK(refusal_of("name = \"e\"\n" + scene + "[compose]\n") ==
+          "e.toml:6: [compose] is of a config of run; ./aabblab run plays it");
+    try {
+        static_cast<void>(aabblab::parse_experiment("name = \"e\"\n" + scene + lists, "e.toml", experiment_size::full));
+        FAIL("a config of errors is taken for one of run");
+    } catch (const aabb::input_error& error) {
+        CHECK(std::string(error.what()) == "e.toml:6: [[curve]] is of a config of errors; ./aabblab errors runs it");
+    }
+    CHECK(refusal_of("name = \"e\"\n" + some_pairs + one_curve + "[measure]\nrepeats = 2\n")
+              .starts_with("e.toml:6: [measure] is for compositions"));
     CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[measure]\nprocesses = 2\n") ==
           "e.toml:10: errors has no processes; run has");
     CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[curve]]\nprepare = \"neighbour_lists\"\n") ==
           "e.toml:10: unknown prepare 'neighbour_lists'; did you mean 'neighbour_list'?");
     CHECK(refusal_of("name = \"e\"\n" + scene + lists + "[[curve]]\nlabel = \"x\"\n")
               .starts_with("e.toml:9: this curve has no method; expected triangle = "));
+}
+
+TEST_CASE("what one seed of several gets wrong shows in the plot") {
+    const temporary_folder folder;
+    const std::string config =
+        folder.write("e.toml",
+                     "name = \"e\"\nseed = [1, 2, 3, 4, 5]\n[[scene]]\nkind = \"brownian\"\nobjects = 12\nframes = "
+                     "9\n[measure]\nrepeats = 1\n"
+                     "[[curve]]\nlabel = \"stale\"\nprepare = { name = \"neighbour_list\", every = 4 }\n"
+                     "[[curve]]\nlabel = \"none\"\nprepare = \"none\"\n");
+    const program_result ran = run_program({"errors", config, "--out", folder / "out"});
+    INFO(ran.err << ran.out);
+    REQUIRE(ran.status == 0);
+    std::uint64_t seeds = 0;
+    std::uint64_t missing = 0;
+    std::uint64_t exact = 0;
+    for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv")) {
+        if (r.name[aabb::strategy_kind::prepare] == "none") continue;
+        missing += *r.missing;
+        seeds += *r.missing > 0;
+        exact += r.candidates + *r.missing;
+    }
+    // Fewer than half of the seeds, so that a median would be zero.
+    REQUIRE(seeds > 0);
+    REQUIRE(seeds < 3);
+    const auto study = aabblab::read_error_study(config, experiment_size::full);
+    const auto scenes = aabblab::summarise(aabblab::read_rows(folder / "out/results.csv"));
+    const std::vector<aabblab::figure> figures = metric_figures(study, scenes);
+    const auto stale = std::ranges::find(figures.at(0).lines, "stale", &aabblab::series::label);
+    REQUIRE(stale != figures[0].lines.end());
+    CHECK(stale->points.at(0).y > 0.5 / static_cast<double>(exact) * static_cast<double>(missing));
+    CHECK(figures[0].y.logarithmic);
 }
 
 TEST_CASE("an errors.csv is read as it was written, and refused with its line where it is not one") {
@@ -321,10 +365,19 @@ TEST_CASE("an errors.csv is read as it was written, and refused with its line wh
 }
 
 TEST_CASE("every config of errors reads") {
-    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "errors")) {
+    const std::filesystem::path configs(AABBLAB_CONFIGS);
+    for (const auto& file : std::filesystem::directory_iterator(configs / "errors")) {
         INFO(file.path());
         CHECK_NOTHROW(static_cast<void>(aabblab::read_error_study(file.path(), experiment_size::full)));
     }
+    // The large one has the same methods, on more than a hundred million pairs.
+    const auto some = aabblab::read_error_study(configs / "errors/triangle_tests.toml", experiment_size::full);
+    const auto many = aabblab::read_error_study(configs / "errors_large.toml", experiment_size::full);
+    CHECK(std::ranges::equal(some.curves, many.curves, {}, &aabblab::error_curve::triangles,
+                             &aabblab::error_curve::triangles));
+    std::uint64_t pairs = 0;
+    for (const aabblab::pair_set& set : many.pairs) pairs += set.count;
+    CHECK(pairs > 100'000'000);
 }
 
 TEST_CASE("the config that errors runs by default reads, and classify takes the tests of libraries") {

@@ -42,6 +42,7 @@ TEST_CASE("pairs gives one set of pairs whatever finds it") {
     REQUIRE(summary["ms"].size() == 4);
     REQUIRE(summary["pairs"] == reference["pairs"]);
     REQUIRE(summary["digest"] == reference["digest"]);
+    REQUIRE(summary["exact"] == true);
 
     std::istringstream rows(bytes_of_file(out));
     std::string row;

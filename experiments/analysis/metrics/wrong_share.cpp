@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <optional>
 
 module aabblab.metrics;
@@ -10,7 +11,7 @@ namespace aabblab {
 metric wrong_share_metric() {
     return {"wrong_share",
             "",
-            "pairs missing and invented, over those of the exact answer",
+            "pairs missing and invented, over those of the exact answer, or over one where it has none",
             metric_group::error,
             better::less,
             [](const row& r) -> std::optional<double> {
@@ -18,8 +19,7 @@ metric wrong_share_metric() {
                 const auto found = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
                 const auto missing = static_cast<double>(*r.missing);
                 const auto invented = static_cast<double>(*r.invented);
-                const double exact = found - invented + missing;
-                return exact == 0 ? std::nullopt : std::optional((missing + invented) / exact);
+                return (missing + invented) / std::max(found - invented + missing, 1.0);
             }};
 }
 

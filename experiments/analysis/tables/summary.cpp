@@ -4,6 +4,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,7 +75,12 @@ summary_line line_of(std::span<const row* const> repeats) {
         std::vector<double> values;
         for (const row* r : repeats)
             if (const std::optional<double> value = m.of(*r)) values.push_back(*value);
-        line.metrics.push_back(values.empty() ? std::nullopt : std::optional(quartiles_of(values).median));
+        // The median over seeds would hide the one in which something is wrong.
+        line.metrics.push_back(
+            values.empty() ? std::nullopt
+            : m.group == metric_group::error
+                ? std::optional(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()))
+                : std::optional(quartiles_of(values).median));
     }
     if (times.empty()) return line;
     line.ms_a_frame = quartiles_of(times);

@@ -71,7 +71,7 @@ struct summary_line {
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes_by_part;  ///< the most of any seed
     std::optional<double> bytes_a_triangle;  ///< of the trees; empty where there are none to be seen
     std::optional<double> box_inflation;
-    std::vector<std::optional<double>> metrics;  ///< the median of each, over seeds and repeats
+    std::vector<std::optional<double>> metrics;  ///< the median of each over seeds and repeats; of errors the mean
 };
 
 /// A scene, whatever its seeds.
