@@ -71,7 +71,7 @@ TEST_CASE("global search allocates nothing in steady state") {
 }
 
 TEST_CASE("local detection allocates nothing in steady state") {
-    mesh m = ripples(12);
+    mesh m = ripples(8);
     for (const aabb::composition& composition : all_local_compositions()) {
         INFO(text_of_local(composition));
         const auto stage = local_of(composition, instrumentation::none);
