@@ -275,8 +275,7 @@ void require_sense(const collide_request& request) {
     if (request.count) throw aabb::input_error("--count keeps no pairs, so --geometry does not go with it");
     if (!request.out && !request.first)
         throw aabb::input_error("--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
-    if (request.engine)
-        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
+    require_no_engine(request.engine);
 }
 
 void collide(const collide_request& request) {

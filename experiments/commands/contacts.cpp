@@ -162,8 +162,7 @@ void print_text(const contacts_request& request, const both_stages& both, const 
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
-    if (request.geometry && request.engine)
-        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
+    if (request.geometry) require_no_engine(request.engine);
     both_stages both = stages_of(request);
     std::optional<number_table> table;
     if (request.out) {

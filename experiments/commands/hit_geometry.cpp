@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choi
         fmt::format("--geometry: {} decides whether triangles intersect, not what they have in "
                     "common; give --triangle {}",
                     choice.name, fmt::join(names, " or ")));
+}
+
+void require_no_engine(const std::optional<std::string>& engine) {
+    if (engine)
+        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
 }
 
 hit_geometry::hit_geometry(const aabb::strategy_choice& triangle) : test_(constructing_test(triangle, true)) {}

@@ -17,6 +17,9 @@ namespace aabblab {
 [[nodiscard]] std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice,
                                                                      bool composed);
 
+/// @throws aabb::input_error where one is asked for, which has no triangle test to construct anything.
+void require_no_engine(const std::optional<std::string>& engine);
+
 /// What triangles of two posed meshes have in common: found in the frame of the first mesh, in which they are tested
 /// (`relative_pose`), and carried to the world.
 class hit_geometry {

@@ -51,22 +51,23 @@ public:
 
     using cursor = box_cursor;
 
-    /// @throws input_error when the nodes take 2 GiB or more.
+    /// @throws input_error when the nodes take more than 2 GiB.
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
         };
         std::vector<std::uint32_t> packed(nodes.size());
         std::size_t end = 0;
-        records_ = 0;
+        std::size_t records = 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             packed[i] = nodes[i].is_leaf() ? nodes[i].triangle : static_cast<std::uint32_t>(end);
             if (nodes[i].is_leaf()) continue;
-            records_ += !holds_leaves_only(i);
+            records += !holds_leaves_only(i);
             end += holds_leaves_only(i) ? pair_bytes : record_bytes();
             if (end > pair_bit) throw input_error("a quantized tree takes no more than 2 GiB; this mesh needs more");
         }
         bytes_.assign(end, {});
+        records_ = records;
         root_ = nodes[0].bounds;
         std::vector<box> decoded(nodes.size());
         decoded[0] = root_;

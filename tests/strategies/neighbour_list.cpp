@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../compositions.hpp"
+#include "../validation/support.hpp"
 
 using namespace aabb;
 using Catch::Matchers::Message;
@@ -23,14 +24,6 @@ std::unique_ptr<global_stage> stage_of(const aabb::composition& c, std::size_t o
     auto stage = global_of(c, instrumentation::counters);
     for (std::uint32_t id = 0; id < objects; ++id) stage->insert(id);
     return stage;
-}
-
-std::vector<index_pair> pairs_of(global_stage& stage, const std::vector<box>& boxes) {
-    std::vector<index_pair> pairs;
-    stage.update(boxes);
-    stage.search(pairs);
-    std::ranges::sort(pairs);
-    return pairs;
 }
 
 box cube(float at) {

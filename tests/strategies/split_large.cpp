@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-import aabb;
-import aabb.registry;
+#include "../compositions.hpp"
+#include "../validation/support.hpp"
 
 using namespace aabb;
 using Catch::Matchers::Message;
@@ -22,14 +22,6 @@ std::unique_ptr<global_stage> splitting(double size, std::uint32_t objects) {
     auto stage = compose_global_search(c, instrumentation::counters);
     for (std::uint32_t id = 0; id < objects; ++id) stage->insert(id);
     return stage;
-}
-
-std::vector<index_pair> pairs_of(global_stage& stage, const std::vector<box>& boxes) {
-    std::vector<index_pair> pairs;
-    stage.update(boxes);
-    stage.search(pairs);
-    std::ranges::sort(pairs);
-    return pairs;
 }
 
 box cube(float at, float edge) {
