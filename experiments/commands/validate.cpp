@@ -11,6 +11,7 @@
 #include "output.hpp"
 
 #include "experiments.hpp"
+#include "validate.hpp"
 
 import aabb.base;
 import aabb.registry;
@@ -99,7 +100,11 @@ void add_validate(CLI::App& program, int& status) {
     command->add_option("CONFIG", request->config, "Config of the experiment (.toml); without one, every composition")
         ->type_name("");
     command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
-    command->callback([request, &status] { status = validate(*request); });
+    // CLI11 calls this after a subcommand has been played, too.
+    command->callback([request, command, &status] {
+        if (command->get_subcommands().empty()) status = validate(*request);
+    });
+    add_validate_stiff(*command, status);
 }
 
 }  // namespace aabblab

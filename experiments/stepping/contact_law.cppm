@@ -1,0 +1,54 @@
+module;
+#include <cstdint>
+#include <span>
+
+export module aabblab.stepping:contact_law;
+
+import aabb.geometry;
+
+export namespace aabblab {
+
+/// How two bodies push each other, from nothing but the triangles that were found to intersect: a pair that was missed
+/// or invented changes the force.
+enum class contact_geometry : std::uint8_t {
+    /// A linear spring and dashpot on the depth of the deepest vertex of the second body's triangles below the plane of
+    /// the triangle of the first that each intersects, along that triangle's normal. One force for two bodies.
+    deepest_vertex,
+    /// The same for each vertex of the second body that is found at or below the plane, with a spring that is
+    /// compressed by `rest` when the vertex touches: many contacts that share a load.
+    each_vertex,
+    /// A pressure on the surface of the second body inside the first. By Stokes' theorem the integral of its normal is
+    /// ½ ∮ r × dr around the curve where the meshes cross, of which every pair of triangles has a segment: the force is
+    /// the negative gradient of stiffness times the volume that the two share.
+    shared_volume
+};
+
+struct contact_law {
+    contact_geometry geometry = contact_geometry::deepest_vertex;
+    double stiffness = 0;  ///< N/m; of a shared volume N/m³
+    double damping = 0;    ///< N s/m; of a shared volume N s/m⁴
+    double rest = 0;       ///< m
+};
+
+/// A mesh where it is: vertex x at R x + t.
+struct placed_mesh {
+    const aabb::mesh* mesh;
+    aabb::pose pose;
+
+    /// In double, as it is written.
+    [[nodiscard]] aabb::triangle3d triangle(std::uint32_t index) const;
+};
+
+/// What two bodies do to each other.
+struct contact_force {
+    aabb::vec3d force = {0, 0, 0};  ///< on the second body, N; the first gets the opposite
+    double depth = 0;               ///< of the deepest vertex, m; 0 of a shared volume
+    double energy = 0;              ///< in springs, J; 0 of a shared volume, which only `overlap_volume` knows
+};
+
+/// @param contacts of these two bodies, sorted
+/// @param approach velocity of the second relative to the first, m/s
+[[nodiscard]] contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts,
+                                     const placed_mesh& first, const placed_mesh& second, const aabb::vec3d& approach);
+
+}  // namespace aabblab

@@ -1,0 +1,37 @@
+module;
+#include <boost/numeric/odeint/stepper/symplectic_euler.hpp>
+
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+module aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+class symplectic_euler final : public integrator {
+public:
+    void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
+        // The velocity is that of the step's begin until the stepper has the acceleration.
+        const auto momentum = [&](const std::vector<double>& position, std::vector<double>& change) {
+            acceleration(position, state.velocity, change);
+        };
+        stepper_.do_step(momentum, std::pair(std::ref(state.position), std::ref(state.velocity)), state.time, step);
+        state.time += step;
+    }
+
+private:
+    boost::numeric::odeint::symplectic_euler<std::vector<double>> stepper_;
+};
+
+}  // namespace
+
+integrator_info symplectic_euler_integrator() {
+    return {"symplectic_euler", "semi-implicit Euler: a step with the old velocity, then the force there (Boost.odeint)",
+            false, 1, 2, [](double) -> std::unique_ptr<integrator> { return std::make_unique<symplectic_euler>(); }};
+}
+
+}  // namespace aabblab

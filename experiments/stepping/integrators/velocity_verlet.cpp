@@ -1,0 +1,35 @@
+module;
+#include <boost/numeric/odeint/stepper/velocity_verlet.hpp>
+
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+module aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+class velocity_verlet final : public integrator {
+public:
+    void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
+        const auto force = [&](const std::vector<double>& position, const std::vector<double>& velocity,
+                               std::vector<double>& change, double) { acceleration(position, velocity, change); };
+        stepper_.do_step(force, std::pair(std::ref(state.position), std::ref(state.velocity)), state.time, step);
+        state.time += step;
+    }
+
+private:
+    boost::numeric::odeint::velocity_verlet<std::vector<double>> stepper_;
+};
+
+}  // namespace
+
+integrator_info velocity_verlet_integrator() {
+    return {"velocity_verlet", "central differences with the velocity at full steps (Boost.odeint)", false, 2, 2,
+            [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
+}
+
+}  // namespace aabblab

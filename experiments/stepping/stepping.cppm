@@ -1,0 +1,8 @@
+/// Stepping in time through detection: bodies that push each other where their meshes were found to intersect.
+export module aabblab.stepping;
+
+export import :body;
+export import :contact_law;
+export import :dynamics;
+export import :integrator;
+export import :overlap_volume;

@@ -1,0 +1,143 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+module aabblab.stiff;
+
+import :ball_world;
+import :oscillator;
+import :rules;
+import :simulation;
+import :study;
+import aabblab.figures;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double speed = 1;        // m/s
+constexpr double tolerance = 1e-9;  // of what chooses its own steps
+
+/// One contact, from touching to leaving.
+struct bounce {
+    double error = 0;  // the greatest of position and velocity, over those of the undamped ball
+    double contact_time = 0;
+    double restitution = 0;
+};
+
+bounce bounce_of(const oscillator& contact, const contender& who, const integrator_info& stepping, double step,
+                 double its_tolerance) {
+    const stepped_world world = ball_on_floor(contact, speed);
+    simulation ball(world, who, stepping, its_tolerance);
+    bounce found;
+    double before = 0;
+    for (double end = 4 * contact.contact_time(); ball.state().time < end;) {
+        ball.advance(step);
+        const double time = ball.state().time;
+        const double depth = depth_of_ball(ball.state());
+        if (time <= contact.contact_time())
+            found.error = std::max(
+                found.error, std::hypot((depth - contact.depth(speed, time)) * contact.frequency / speed,
+                                        speed_of_ball(ball.state()) / speed + contact.sinking(speed, time) / speed));
+        if (depth < 0) {
+            found.contact_time = time + step * depth / (before - depth);
+            found.restitution = speed_of_ball(ball.state()) / speed;
+            break;
+        }
+        before = depth;
+    }
+    return found;
+}
+
+std::string subject_of(const integrator_info& i, double scaled, const std::string& more = {}) {
+    return std::string(i.name) + ", dt·ω " + short_number(scaled) + more;
+}
+
+/// The slope of log error over log step.
+double order_of(std::span<const double> steps, std::span<const double> errors) {
+    double mean_x = 0;
+    double mean_y = 0;
+    const auto count = static_cast<double>(steps.size());
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        mean_x += std::log(steps[i]) / count;
+        mean_y += std::log(errors[i]) / count;
+    }
+    double covariance = 0;
+    double variance = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        covariance += (std::log(steps[i]) - mean_x) * (std::log(errors[i]) - mean_y);
+        variance += (std::log(steps[i]) - mean_x) * (std::log(steps[i]) - mean_x);
+    }
+    return covariance / variance;
+}
+
+void convergence(const stiff_setting& setting, stiff_result& result) {
+    const oscillator contact{1e3, 0};
+    constexpr std::array steps = {0.4, 0.2, 0.1, 0.05};
+    figure plot{.name = "ball_error_over_step",
+                .caption = "Error of the ball's position in contact over the step: each integrator falls with its order.",
+                .x = {"step times angular frequency", true, {}},
+                .y = {"greatest error over greatest depth", true, {}},
+                .lines = {},
+                .marks = {}};
+    for (const integrator_info& i : integrators()) {
+        std::vector<double> errors;
+        series line{std::string(i.name), series_style::line, {}};
+        for (const double scaled : steps) {
+            const double error =
+                bounce_of(contact, setting.who, i, scaled / contact.frequency, tolerance).error;
+            errors.push_back(error);
+            line.points.push_back({scaled, error, error, error});
+        }
+        plot.lines.push_back(std::move(line));
+        const std::string subject = subject_of(i, steps.back());
+        // An integrator of first order is off by half a step.
+        result.rows.push_back(at_most(subject, "trajectory error", errors.back(), i.order == 1 ? steps.back() : 1e-3));
+        if (!i.adaptive)
+            result.rows.push_back(
+                at_least(std::string(i.name), "order of convergence", order_of(steps, errors), i.order - 0.1));
+    }
+    result.figures.push_back(std::move(plot));
+}
+
+void stiffness(const stiff_setting& setting, stiff_result& result) {
+    const double damped = oscillator::damping_for(0.5);
+    for (const double k : {1e4, 1e6, 1e8, 1e10}) {
+        const oscillator contact{std::sqrt(k), damped};
+        for (const integrator_info& i : integrators()) {
+            if (i.order == 1) continue;
+            const bounce found = bounce_of(contact, setting.who, i, 0.05 / contact.frequency, tolerance);
+            const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
+            // Central differences take the dashpot's force half a step late.
+            const double share = i.order == 2 ? 0.025 : 0.01;
+            result.rows.push_back(
+                within(subject, "contact time (s)", found.contact_time, contact.contact_time(), share));
+            result.rows.push_back(within(subject, "restitution", found.restitution, contact.restitution(), share));
+        }
+    }
+}
+
+}  // namespace
+
+stiff_result play_ball_bounces(const stiff_setting& setting) {
+    stiff_result result;
+    convergence(setting, result);
+    stiffness(setting, result);
+    return result;
+}
+
+stiff_study ball_bounces_study() {
+    return {"ball_bounces",
+            "A ball of 1 kg meets a floor at 1 m/s, on a linear spring, without a dashpot and with one for a restitution "
+            "of 0.5, at dt·ω = 0.05 and stiffness 1e4 to 1e10 N/m",
+            "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²))",
+            &play_ball_bounces};
+}
+
+}  // namespace aabblab

@@ -1,0 +1,67 @@
+module;
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+module aabblab.stiff;
+
+import :ball_world;
+import :oscillator;
+import :rules;
+import :simulation;
+import :study;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double gravity = 9.81;
+constexpr double damping = 10;  // ζ
+constexpr double end = 1;       // s
+
+/// The depth of a ball that was let go on the floor, over its depth at rest; overdamped.
+double share_of_rest(double frequency, double time) {
+    const double root = std::sqrt(damping * damping - 1);
+    const double slow = frequency * (damping - root);
+    const double fast = frequency * (damping + root);
+    return 1 - (fast * std::exp(-slow * time) - slow * std::exp(-fast * time)) / (fast - slow);
+}
+
+}  // namespace
+
+stiff_result play_overdamped(const stiff_setting& setting) {
+    stiff_result result;
+    for (const double k : {1e4, 1e6, 1e8, 1e10}) {
+        const double frequency = std::sqrt(k);
+        // With central differences the dashpot's rate, 2ζω, allows steps of one over it.
+        const double explicit_steps = end * 2 * damping * frequency;
+        const stepped_world world = ball_on_floor({frequency, damping}, 0, gravity);
+        for (const integrator_info& i : integrators()) {
+            if (!i.adaptive) continue;
+            // What takes as many steps as an explicit integrator must ends where there are too many.
+            if (i.name != "bdf" && explicit_steps > (setting.quick ? 1e4 : 1e6)) continue;
+            simulation ball(world, setting.who, i, 1e-6 * gravity / k);
+            while (ball.state().time < end * (1 - 1e-9)) ball.advance(end / 20);
+            const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
+            result.rows.push_back(within(subject, "depth after 1 s over depth at rest",
+                                         depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, end),
+                                         1e-3));
+            const auto detections = static_cast<double>(ball.detections());
+            if (i.name == "bdf")
+                result.rows.push_back(at_most(subject, "detections", detections, 2000));
+            else
+                result.rows.push_back(told(subject, "detections", detections));
+        }
+    }
+    return result;
+}
+
+stiff_study overdamped_study() {
+    return {"overdamped",
+            "A ball of 1 kg is let go on a floor whose dashpot is ten times the critical one, for a second: what "
+            "takes steps as long as the motion allows, and what takes them as short as the contact's stiffness asks",
+            "closed form of the overdamped oscillator under gravity", &play_overdamped};
+}
+
+}  // namespace aabblab

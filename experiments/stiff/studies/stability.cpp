@@ -1,0 +1,156 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.stiff;
+
+import :ball_world;
+import :oscillator;
+import :rules;
+import :simulation;
+import :study;
+import aabblab.figures;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double frequency = 1e3;
+constexpr double gravity = 9.81;
+constexpr double at_rest = gravity / (frequency * frequency);  // the depth there, m
+
+/// A ball that swings about its depth at rest, in contact all the time.
+class swinging_ball {
+public:
+    swinging_ball(const contender& who, const integrator_info& stepping, double amplitude, double tolerance)
+        : world_(world_with(amplitude)), ball_(world_, who, stepping, tolerance) {}
+
+    void advance(double step) { ball_.advance(step); }
+    [[nodiscard]] double energy() const {
+        const double out = depth_of_ball(ball_.state()) - at_rest;
+        const double v = speed_of_ball(ball_.state());
+        return (v * v + frequency * frequency * out * out) / 2;
+    }
+
+private:
+    static stepped_world world_with(double amplitude) {
+        stepped_world world = ball_on_floor({frequency, 0}, 0, gravity);
+        world.bodies[1].position[2] -= at_rest + amplitude;
+        return world;
+    }
+
+    stepped_world world_;
+    simulation ball_;
+};
+
+/// The greatest energy in the last tenth of these periods over that in the first, less 1: energies that swing without
+/// end drift by nothing.
+double drift_of(const contender& who, const integrator_info& stepping, double scaled, std::size_t periods,
+                double tolerance) {
+    swinging_ball ball(who, stepping, at_rest / 100, tolerance);
+    const auto steps = static_cast<std::size_t>(static_cast<double>(periods) * 2 * std::numbers::pi / scaled);
+    double first = 0;
+    double last = 0;
+    for (std::size_t i = 0; i < steps; ++i) {
+        ball.advance(scaled / frequency);
+        if (i < steps / 10) first = std::max(first, ball.energy());
+        if (i >= steps - steps / 10) last = std::max(last, ball.energy());
+    }
+    return last / first - 1;
+}
+
+/// What the stability polynomial of Dormand and Prince leaves of an oscillation's energy, each step.
+double kept_by_dormand_prince(double scaled) {
+    const std::complex<double> z(0, scaled);
+    const auto growth = 1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0 * (1.0 + z / 5.0 * (1.0 + z / 5.0)))));
+    return std::norm(growth);
+}
+
+/// Whether its energy stays what it was. Symplectic integrators keep one of their own, which swings the more the nearer
+/// their limit is.
+bool is_stable(const contender& who, const integrator_info& stepping, double scaled) {
+    // So small that it stays in contact however much it grows here.
+    swinging_ball ball(who, stepping, at_rest * 1e-6, 0);
+    double before = 0;
+    double after = 0;
+    constexpr int steps = 20000;
+    for (int i = 0; i < steps; ++i) {
+        ball.advance(scaled / frequency);
+        const double energy = ball.energy();
+        // Out of contact; or no number any more.
+        if (!(energy < frequency * frequency * at_rest * at_rest / 2)) return false;
+        double& half = i < steps / 2 ? before : after;
+        half = std::max(half, energy);
+    }
+    return after <= 1.01 * before;
+}
+
+double limit_of(const contender& who, const integrator_info& stepping) {
+    double stable = 0.1;
+    double unstable = 4;
+    while (unstable - stable > 1e-3) {
+        const double middle = (stable + unstable) / 2;
+        (is_stable(who, stepping, middle) ? stable : unstable) = middle;
+    }
+    return (stable + unstable) / 2;
+}
+
+}  // namespace
+
+stiff_result play_stability(const stiff_setting& setting) {
+    stiff_result result;
+    const std::size_t periods = setting.quick ? 100 : 1000;
+    figure plot{.name = "energy_drift",
+                .caption = "Relative drift of a ball's energy over " + std::to_string(periods) +
+                           " periods in contact, without sign, over the step; marked are the steps from which on "
+                           "an oscillation grows.",
+                .x = {"step times angular frequency", true, {}},
+                .y = {"relative energy drift", true, {}},
+                .lines = {},
+                .marks = {}};
+    for (const integrator_info& i : integrators()) {
+        series line{std::string(i.name), series_style::line, {}};
+        std::vector<double> steps = {0.05, 0.1, 0.2, 0.4, 0.8};
+        if (!i.adaptive && i.stable_below > 1.5) steps.insert(steps.end(), {1.6, 1.9});
+        for (const double scaled : steps) {
+            const double drift = drift_of(setting.who, i, scaled, periods, 1e-10);
+            line.points.push_back({scaled, std::abs(drift), std::abs(drift), std::abs(drift)});
+            const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled);
+            if (i.adaptive) {
+                result.rows.push_back(told(subject, "energy drift", drift));
+            } else if (i.order < 5) {
+                result.rows.push_back(at_most(subject, "energy drift, without sign", std::abs(drift), 0.05));
+            } else {
+                const double lost = std::pow(kept_by_dormand_prince(scaled),
+                                             0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled) - 1;
+                result.rows.push_back(within(subject, "energy drift", drift, lost, 0.01));
+            }
+        }
+        plot.lines.push_back(std::move(line));
+        if (i.adaptive) continue;
+        const double limit = limit_of(setting.who, i);
+        result.rows.push_back(within(std::string(i.name), "greatest stable dt·ω", limit, i.stable_below, 0.005));
+        if (i.order > 1) plot.marks.push_back({limit, std::string(i.name) + " " + short_number(limit)});
+    }
+    result.figures.push_back(std::move(plot));
+    return result;
+}
+
+stiff_study stability_study() {
+    return {"stability",
+            "A ball of 1 kg swings on a floor about its depth at rest, in contact all the time, without a dashpot: energy "
+            "that drifts, and the step from which on it grows",
+            "central differences end at dt·ω = 2, and 5 to 10 % of the contact time is the usual advice (O'Sullivan and "
+            "Bray 2004); the stability polynomial of Dormand and Prince (1980) on the imaginary axis",
+            &play_stability};
+}
+
+}  // namespace aabblab
