@@ -25,6 +25,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.registry;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.picture;
@@ -51,7 +52,10 @@ class world_boxes final : public aabb::box_scene {
 public:
     /// @param motion null where poses are not to be written.
     world_boxes(const scene_choice& choice, motion_file* motion)
-        : scene_(choice), motion_(motion), world_(*scene_.meshes()) {}
+        : scene_(choice), motion_(motion), world_(*scene_.meshes()) {
+        if (scene_.meshes()->reacts())
+            finder_.emplace(contender_of(aabb::composition(), true), scene_, aabb::instrumentation::none);
+    }
 
     [[nodiscard]] const aabb::mesh_scene& meshes() const { return *scene_.meshes(); }
     [[nodiscard]] std::size_t objects() const override { return scene_.objects(); }
@@ -60,6 +64,12 @@ public:
         if (!scene_.next()) return false;
         if (motion_) motion_->add(scene_.poses());
         scene_.in_frame([&] { world_.update(scene_.poses()); });
+        if (finder_) {
+            finder_->update();
+            finder_->search();
+            finder_->detect();
+            scene_.tell(finder_->sorted_pairs(), finder_->sorted_contacts());
+        }
         boxes.assign(world_.boxes().begin(), world_.boxes().end());
         return true;
     }
@@ -68,6 +78,7 @@ private:
     scene_play scene_;
     motion_file* motion_;
     aabb::posed_boxes world_;
+    std::optional<player> finder_;  // of contacts, where the scene must be told
 };
 
 /// A scene that is looked at while it is played.

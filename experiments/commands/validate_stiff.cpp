@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "validate.hpp"
 
 import aabb.base;
+import aabb.policy;
 import aabblab.figures;
 import aabblab.files;
 import aabblab.progress;
@@ -36,11 +38,51 @@ std::string_view verdict_of(const stiff_row& r) {
     return r.holds ? "holds" : "FAILS";
 }
 
-table table_of(const stiff_result& result) {
-    table t{{{"what", false}, {"quantity", false}, {"measured"}, {"expected", false}, {"verdict", false}}, {}};
+/// In lines as wide as the terminal, at most 80.
+std::string wrapped(const std::string& text) {
+    const std::size_t most = std::min<std::size_t>(output_width(), 80);
+    std::string lines;
+    std::size_t width = 0;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t to = std::min(text.find(' ', from), text.size());
+        const std::string word = text.substr(from, to - from);
+        const std::size_t wide = word.size();
+        if (width > 0) lines += width + 1 + wide > most ? "\n" : " ";
+        width = width > 0 && width + 1 + wide <= most ? width + 1 + wide : wide;
+        lines += word;
+        from = to + 1;
+    }
+    return lines;
+}
+
+/// A table for each quantity.
+std::string tables_of(const stiff_result& result) {
+    std::vector<std::string> quantities;
     for (const stiff_row& r : result.rows)
-        t.rows.push_back({r.subject, r.quantity, fmt::format("{:.4g}", r.measured), r.rule, std::string(verdict_of(r))});
-    return t;
+        if (std::ranges::find(quantities, r.quantity) == quantities.end()) quantities.push_back(r.quantity);
+    std::string text;
+    for (const std::string& quantity : quantities) {
+        table t{{{quantity, false}, {"measured"}, {"expected", false}, {"", false}}, {}};
+        for (const stiff_row& r : result.rows)
+            if (r.quantity == quantity)
+                t.rows.push_back({r.subject, fmt::format("{:.4g}", r.measured), r.rule, std::string(verdict_of(r))});
+        text += to_text(t) + "\n";
+    }
+    return text;
+}
+
+/// Those of these names, all where none is given.
+std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
+    std::vector<stiff_study> chosen;
+    std::vector<std::string> known;
+    for (const stiff_study& study : stiff_studies()) {
+        known.emplace_back(study.name);
+        if (names.empty() || std::ranges::find(names, study.name) != names.end()) chosen.push_back(study);
+    }
+    for (const std::string& name : names)
+        if (std::ranges::find(known, name) == known.end())
+            throw aabb::input_error(aabb::unknown_name("study", name, known));
+    return chosen;
 }
 
 int validate_stiff(const stiff_request& request) {
@@ -52,15 +94,16 @@ int validate_stiff(const stiff_request& request) {
     table all{{{"study", false}, {"what", false}, {"quantity", false}, {"measured"}, {"expected", false}, {"verdict", false}},
               {}};
     std::size_t failed = 0;
-    for (const stiff_study& study : stiff_studies()) {
+    for (const stiff_study& study : chosen_studies(request.studies)) {
         progress shown("playing " + std::string(study.name), 1000);
         const stiff_result result =
             study.play({request.quick, usual_contender(), [&](double share) {
                             shown.at(static_cast<std::size_t>(1000 * share));
                         }});
         shown.hide();
-        print(fmt::format("{}: {}.\nExpected: {}.\n\n{}\n", study.name, study.about, study.reference,
-                          to_text(table_of(result))));
+        print(fmt::format("{}\n\n{}", wrapped(fmt::format("{}: {}. Expected: {}.", study.name, study.about,
+                                                         study.reference)),
+                          tables_of(result)));
         flush_output();
         for (const stiff_row& r : result.rows) {
             failed += r.holds ? 0 : 1;
@@ -83,6 +126,7 @@ void add_validate_stiff(CLI::App& validate, int& status) {
     auto* command = validate.add_subcommand(
         "stiff", "Bodies stepped in time through detection, held against closed forms and published results");
     auto request = std::make_shared<stiff_request>();
+    command->add_option("STUDY", request->studies, "Some of the studies by name; without, all of them")->type_name("");
     command->add_option("--out", request->out, "Folder of table and plots (default results/stiff)")->type_name("DIR");
     command->add_flag("--quick", request->quick, "Fewer and shorter, for a first look");
     command->callback([request, &status] { status = validate_stiff(*request); });

@@ -21,13 +21,14 @@ import aabblab.files;
 import :icosphere;
 import :kind;
 import :noise_sphere;
+import :square;
 import :torus_knot;
 
 namespace aabblab {
 
 namespace {
 
-using shape_types = aabb::type_list<icosphere, torus_knot, noise_sphere>;
+using shape_types = aabb::type_list<icosphere, torus_knot, noise_sphere, square>;
 
 template <class... Shapes>
 std::vector<shape_info> infos_of(aabb::type_list<Shapes...>) {

@@ -13,6 +13,7 @@ export module aabblab.scenes;
 import aabb.pipeline;
 import aabb.policy;
 import aabblab.files;
+export import :dropped_world;
 export import :pair_classes;
 export import :scene_choice;
 export import :spacing;
@@ -35,7 +36,7 @@ export namespace aabblab {
 
 /// A generated mesh as `aabblab list` shows it.
 struct shape_info {
-    std::string name;  ///< "icosphere", "torus_knot", "noise_sphere"
+    std::string name;  ///< "icosphere", "torus_knot", "noise_sphere", "square"
     std::string summary;
     std::vector<aabb::parameter_info> parameters;
 };

@@ -37,10 +37,10 @@ struct depth_of_vertex {
     vec3d normal;  // of length 1
 };
 
-/// Every vertex of a reported triangle of the second body below the plane of the triangle of the first, and those that
-/// touch it; a vertex that several pairs report as often.
+/// Every vertex of a reported triangle of the second body below the plane of the triangle of the first, at it, or no
+/// further above it than springs reach; a vertex that several pairs report as often.
 std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, const placed_mesh& first,
-                                       const placed_mesh& second) {
+                                       const placed_mesh& second, double rest) {
     std::vector<depth_of_vertex> all;
     for (const aabb::contact& c : contacts) {
         const aabb::triangle3d plane = first.triangle(c.triangle_a);
@@ -49,7 +49,7 @@ std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, 
         if (length == 0) continue;
         const aabb::triangle3d t = second.triangle(c.triangle_b);
         for (int i = 0; i < 3; ++i)
-            if (const double depth = -dot(normal, t[i] - plane[0]) / length; depth >= 0)
+            if (const double depth = -dot(normal, t[i] - plane[0]) / length; depth >= -rest)
                 all.push_back({second.mesh->triangles[c.triangle_b][static_cast<std::size_t>(i)], depth,
                                scaled(normal, 1 / length)});
     }
@@ -126,7 +126,7 @@ aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
 contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
                        const placed_mesh& second, const vec3d& approach) {
     if (law.geometry == contact_geometry::shared_volume) return pressure(law, contacts, first, second, approach);
-    std::vector<depth_of_vertex> depths = depths_of(contacts, first, second);
+    std::vector<depth_of_vertex> depths = depths_of(contacts, first, second, law.rest);
     return law.geometry == contact_geometry::deepest_vertex
                ? spring_at_deepest(law, depths, approach)
                : springs_at_each(law, std::move(depths), approach);

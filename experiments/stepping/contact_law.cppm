@@ -14,8 +14,8 @@ enum class contact_geometry : std::uint8_t {
     /// A linear spring and dashpot on the depth of the deepest vertex of the second body's triangles below the plane of
     /// the triangle of the first that each intersects, along that triangle's normal. One force for two bodies.
     deepest_vertex,
-    /// The same for each vertex of the second body that is found at or below the plane, with a spring that is
-    /// compressed by `rest` when the vertex touches: many contacts that share a load.
+    /// The same for each vertex of the second body, with springs that reach `rest` above the plane: many contacts that
+    /// share a load.
     each_vertex,
     /// A pressure on the surface of the second body inside the first. By Stokes' theorem the integral of its normal is
     /// ½ ∮ r × dr around the curve where the meshes cross, of which every pair of triangles has a segment: the force is
@@ -27,7 +27,7 @@ struct contact_law {
     contact_geometry geometry = contact_geometry::deepest_vertex;
     double stiffness = 0;  ///< N/m; of a shared volume N/m³
     double damping = 0;    ///< N s/m; of a shared volume N s/m⁴
-    double rest = 0;       ///< m
+    double rest = 0;       ///< by which a spring is compressed when its vertex touches, m
 };
 
 /// A mesh where it is: vertex x at R x + t.

@@ -21,16 +21,16 @@ stiff_row told(std::string subject, std::string quantity, double measured) {
 
 stiff_row within(std::string subject, std::string quantity, double measured, double expected, double share) {
     return {std::move(subject), std::move(quantity), measured,
-            fmt::format("{} within {:.3g} %", short_number(expected), 100 * share),
+            fmt::format("{} ± {:.3g} %", short_number(expected), 100 * share),
             std::abs(measured - expected) <= share * std::abs(expected)};
 }
 
 stiff_row at_most(std::string subject, std::string quantity, double measured, double limit) {
-    return {std::move(subject), std::move(quantity), measured, "at most " + short_number(limit), measured <= limit};
+    return {std::move(subject), std::move(quantity), measured, "≤ " + short_number(limit), measured <= limit};
 }
 
 stiff_row at_least(std::string subject, std::string quantity, double measured, double limit) {
-    return {std::move(subject), std::move(quantity), measured, "at least " + short_number(limit), measured >= limit};
+    return {std::move(subject), std::move(quantity), measured, "≥ " + short_number(limit), measured >= limit};
 }
 
 }  // namespace aabblab

@@ -50,6 +50,8 @@ public:
     virtual bool next(std::vector<pose>& poses) = 0;
     /// Whether vertices of this mesh move from frame to frame, so that trees and boxes of it must be fitted anew.
     [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
+    /// Whether what comes next hangs on contacts, so that a scene that hears of none is another.
+    [[nodiscard]] virtual bool reacts() const { return false; }
     /// Takes the contacts of the frame last played, sorted, before it is asked for the next: stepping in time begins
     /// here. A scene that is played without a search hears of none.
     virtual void take_contacts(std::span<const contact> /*contacts*/) {}

@@ -1,0 +1,55 @@
+module;
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+module aabblab.scenes;
+
+import aabb.geometry;
+import aabblab.stepping;
+import :dropped_world;
+import :random;
+import :rotation;
+
+namespace aabblab {
+
+stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> meshes,
+                                                 std::uint64_t seed) {
+    constexpr double gravity = 9.81;
+    constexpr double gap = 1.05;
+    constexpr double perturbation = 0.005;
+    stepped_world world;
+    world.meshes = std::move(meshes);
+    world.gravity = gravity;
+    world.bodies = {{}};
+    const aabb::box bounds = aabb::bounds_of(world.meshes[1]);
+    const double extent = longest_extent(bounds);
+    // A sphere that is pressed into a plane shares πRδ² with it, so its pressure p pushes as a spring of 2πRp does.
+    const double spring = gravity / (c.depth * extent);  // for 1 kg
+    const double area = std::numbers::pi * extent;       // 2πR
+    world.law = {contact_geometry::shared_volume, spring / area, 2 * c.loss * std::sqrt(spring) / area, 0};
+    std::uint32_t side = 1;
+    while (std::uint64_t{side} * side * side < c.objects) ++side;
+    random_source random(seed);
+    for (std::uint32_t i = 0; i < c.objects; ++i) {
+        const std::array<double, 3> cell = {double(i % side), double(i / side % side), double(i / side / side)};
+        aabb::vec3d place{};
+        for (int k = 0; k < 3; ++k)
+            place[k] = extent * (gap * cell[static_cast<std::size_t>(k)] + perturbation * random.within());
+        for (int k = 0; k < 2; ++k) place[k] -= extent * gap * (side - 1) / 2;
+        place[2] += extent * (c.height + 0.5);
+        const aabb::pose at = placed(centre_of(bounds), random_rotation(random), place);
+        world.bodies.push_back({.mesh = 1,
+                                .position = at.translation,
+                                .velocity = {0, 0, -c.speed},
+                                .mass = 1,
+                                .rotation = at.rotation});
+    }
+    return world;
+}
+
+}  // namespace aabblab

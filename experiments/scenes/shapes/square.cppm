@@ -1,0 +1,43 @@
+module;
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+
+module aabblab.scenes:square;
+
+import aabb.geometry;
+import aabb.policy;
+
+namespace aabblab {
+
+/// A square in z = 0 that faces up, cut into n² squares of two triangles: a floor.
+struct square {
+    static constexpr std::string_view name = "square";
+    static constexpr std::string_view summary = "a flat square of side 100 that faces up, as a floor";
+
+    struct config {
+        /// About how many: 2 n², the nearest from below.
+        std::uint32_t triangles = 2;
+    };
+    static constexpr std::tuple parameters{
+        aabb::integer_parameter{"triangles", &config::triangles, 2U, 100'000'000U, "about how many triangles"}};
+
+    [[nodiscard]] static aabb::mesh make(const config& c) {
+        constexpr float side = 100;
+        std::uint32_t n = 1;
+        while (2 * (n + 1ULL) * (n + 1ULL) <= c.triangles) ++n;
+        aabb::mesh m;
+        const auto at = [&](std::uint32_t i) { return side * (static_cast<float>(i) / static_cast<float>(n) - 0.5F); };
+        for (std::uint32_t y = 0; y <= n; ++y)
+            for (std::uint32_t x = 0; x <= n; ++x) m.vertices.push_back({at(x), at(y), 0});
+        for (std::uint32_t y = 0; y < n; ++y)
+            for (std::uint32_t x = 0; x < n; ++x) {
+                const std::uint32_t corner = y * (n + 1) + x;
+                m.triangles.push_back({corner, corner + 1, corner + n + 2});
+                m.triangles.push_back({corner, corner + n + 2, corner + n + 1});
+            }
+        return m;
+    }
+};
+
+}  // namespace aabblab

@@ -1,0 +1,49 @@
+module;
+#include <cstddef>
+#include <vector>
+
+/// Balls that fall in a lattice on a floor, with whoever finds their contacts.
+module aabblab.stiff:dropped_balls;
+
+import aabblab.play;
+import aabblab.stepping;
+import :simulation;
+
+namespace aabblab {
+
+struct trajectory {
+    std::vector<std::vector<double>> positions;  ///< of all bodies, after each step that is kept
+    double detection_ms = 0;
+    double energy_error = 0;  ///< the greatest of twenty looks, over the energy at the beginning
+    double depth = 0;         ///< the greatest of two balls, taken for spheres, in diameters
+};
+
+class dropped_balls {
+public:
+    /// @param side balls on an edge of the lattice
+    /// @param diameter m
+    dropped_balls(std::size_t side, double diameter);
+
+    /// What takes so long for balls of 1 m, scaled to these, s.
+    [[nodiscard]] double seconds(double of_large_ones) const;
+
+    /// @param kept positions are kept of every so many-th step
+    [[nodiscard]] trajectory play(const contender& who, const integrator_info& stepping, double step, std::size_t kept,
+                                  bool with_energy) const;
+
+    /// The greatest distance of a body from where it should be, in diameters, after each step that both kept; infinite
+    /// once a number is none.
+    [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& right) const;
+
+    /// Of a ball on the floor, 1/s.
+    [[nodiscard]] double frequency() const;
+
+private:
+    [[nodiscard]] double energy_of(simulation& balls) const;
+    [[nodiscard]] double greatest_depth(const std::vector<double>& position) const;
+
+    double diameter_;
+    stepped_world world_;
+};
+
+}  // namespace aabblab

@@ -1,0 +1,27 @@
+module;
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Compositions and engines whose effect on a trajectory is told.
+module aabblab.stiff:method;
+
+import aabblab.play;
+
+namespace aabblab {
+
+struct method {
+    std::string label;
+    contender who;
+};
+
+/// The default composition but for these strategies, as the command line takes them: "triangle moller:epsilon=none".
+[[nodiscard]] method composed(std::string_view changes);
+
+/// Every triangle test of the registry in each of its forms, and each engine that collides meshes.
+[[nodiscard]] std::vector<method> triangle_methods();
+/// Tree layouts, lists of neighbours that are searched for again in time, and lists that are not.
+[[nodiscard]] std::vector<method> tree_methods();
+[[nodiscard]] std::vector<method> list_methods();
+
+}  // namespace aabblab

@@ -1,0 +1,111 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+module aabblab.stiff;
+
+import :rules;
+import :shapes;
+import :simulation;
+import :study;
+import aabblab.figures;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double height = 5;         // m
+constexpr double mass = 10;          // kg
+constexpr double gravity = 9.81;     // m/s²
+// As soft as the ball's size allows: 71 mm deep, and 1 ms is 5 % of the contact time.
+constexpr double stiffness = 2e5;    // N/m
+constexpr double duration = 20;      // s
+
+stepped_world bouncing_balls() {
+    stepped_world world;
+    world.meshes = {floor_of(8), octahedron(0.1F)};
+    world.bodies = {{}};
+    // Not on the diagonal of the floor.
+    for (int x = 0; x < 7; ++x)
+        for (int y = 0; y < 7; ++y)
+            world.bodies.push_back({.mesh = 1, .position = {x - 3.1, 0.9 * y - 2.8, height}, .mass = mass});
+    world.law.stiffness = stiffness;
+    world.gravity = gravity;
+    return world;
+}
+
+/// What two simulators published for this test: the mean of the squared energy error over 20 s, J².
+struct published {
+    double step;
+    double ode;
+    double dart;
+};
+constexpr published results[] = {{1e-3, 185.027, 72274.4}, {1e-4, 1.85055, 483.166}};
+
+}  // namespace
+
+stiff_result play_bouncing(const stiff_setting& setting) {
+    stiff_result result;
+    const stepped_world world = bouncing_balls();
+    const double began = 49 * mass * gravity * height;
+    const double seconds = setting.quick ? 4 : duration;
+    figure plot{.name = "bouncing_energy",
+                .caption = "Energy of 49 balls that bounce without loss, over what they began with.",
+                .x = {"time (s)", false, {}},
+                .y = {"relative energy error", false, {}},
+                .lines = {},
+                .marks = {}};
+    for (const published& other : results) {
+        if (setting.quick && other.step < 1e-3) break;
+        for (const integrator_info& i : integrators()) {
+            if (i.adaptive || i.order == 5) continue;
+            simulation balls(world, setting.who, i);
+            const auto steps = static_cast<std::size_t>(std::llround(seconds / other.step));
+            double squares = 0;
+            double first = 0;
+            double last = 0;
+            series line{std::string(i.name) + ", " + short_number(other.step) + " s", series_style::line, {}};
+            for (std::size_t s = 0; s < steps; ++s) {
+                balls.advance(other.step);
+                const double error = balls.energy() / began - 1;
+                squares += error * error / static_cast<double>(steps);
+                if (s < steps / 4) first = std::max(first, error);
+                if (s >= steps - steps / 4) last = std::max(last, error);
+                if (s % (steps / 200) == 0) line.points.push_back({balls.state().time, error, error, error});
+                if (s % 1000 == 0) setting.progress(static_cast<double>(s) / static_cast<double>(steps));
+            }
+            const std::string subject = line.label;
+            if (i.order == 2) {
+                // Second order: the square of the step over the contact's own time, 1/ω.
+                const double limit = other.step * other.step * stiffness / mass;
+                result.rows.push_back(at_most(subject, "energy error, RMS", std::sqrt(squares), limit));
+                result.rows.push_back(at_most(subject, "energy creep, first quarter to last", last - first, 1e-3));
+            } else {
+                result.rows.push_back(told(subject, "energy error, RMS", std::sqrt(squares)));
+                result.rows.push_back(told(subject, "energy creep, first quarter to last", last - first));
+            }
+            plot.lines.push_back(std::move(line));
+        }
+        result.rows.push_back(told("published: ODE, " + short_number(other.step) + " s", "energy error, RMS",
+                                   std::sqrt(other.ode) / began));
+        result.rows.push_back(told("published: DART, " + short_number(other.step) + " s", "energy error, RMS",
+                                   std::sqrt(other.dart) / began));
+    }
+    result.figures.push_back(std::move(plot));
+    return result;
+}
+
+stiff_study bouncing_study() {
+    return {"bouncing",
+            "49 balls of 10 kg fall 5 m and bounce without loss for 20 s on springs of 2e5 N/m: energy that must not "
+            "creep; errors are relative to the energy at the beginning",
+            "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
+            "DART with impulses",
+            &play_bouncing};
+}
+
+}  // namespace aabblab

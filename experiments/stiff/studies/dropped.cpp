@@ -1,0 +1,135 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+module aabblab.stiff;
+
+import :dropped_balls;
+import :method;
+import :rules;
+import :study;
+import aabblab.figures;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+std::vector<method> all_methods() {
+    std::vector<method> all = triangle_methods();
+    for (const auto& more : {tree_methods(), list_methods()}) std::ranges::copy(more, std::back_inserter(all));
+    return all;
+}
+
+/// What each method does to the trajectory, with one step of time.
+void hold_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
+                  stiff_result& result) {
+    const integrator_info& verlet = *integrator_named("velocity_verlet");
+    const double step = balls.seconds(1e-3);
+    const trajectory right = balls.play(setting.who, verlet, step, 1, false);
+    figure plot{.name = "departure_" + size,
+                .caption = "How far balls of " + size + " are from where exact contacts take them, because of a triangle "
+                           "test, an engine or a stale list; what never departs is not drawn.",
+                .x = {"time (s)", false, {}},
+                .y = {"greatest distance over a ball's diameter", true, {}},
+                .lines = {},
+                .marks = {}};
+    const std::vector<method> all = all_methods();
+    for (std::size_t m = 0; m < all.size(); ++m) {
+        setting.progress(static_cast<double>(m) / static_cast<double>(all.size()));
+        const trajectory t = balls.play(all[m].who, verlet, step, 1, false);
+        const std::vector<double> far = balls.departures(t, right);
+        const auto first = std::ranges::find_if(far, [](double d) { return !(d <= 0); });
+        const std::string subject = all[m].label + ", " + size;
+        const double greatest = std::ranges::max(far);
+        if (all[m].who.exact && all[m].who.exact_boxes) {
+            result.rows.push_back(at_most(subject, "greatest departure (diameters)", greatest, 0));
+            continue;
+        }
+        result.rows.push_back(told(subject, "greatest departure (diameters)", greatest));
+        if (first == far.end()) continue;
+        result.rows.push_back(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
+        result.rows.push_back(told(subject, "greatest depth of two balls (diameters)", t.depth));
+        if (plot.lines.size() == 10) continue;
+        series line{all[m].label, series_style::line, {}};
+        for (std::size_t s = 0; s < far.size(); ++s)
+            line.points.push_back({step * static_cast<double>(s + 1), far[s], far[s], far[s]});
+        plot.lines.push_back(std::move(line));
+    }
+    result.rows.push_back(told("exact, " + size, "greatest depth of two balls (diameters)", right.depth));
+    if (!plot.lines.empty()) result.figures.push_back(std::move(plot));
+}
+
+/// Error over run time: each integrator over its step, and stale lists over how stale they are.
+void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
+    figure cost{.name = "error_over_time",
+                .caption = "Error of a trajectory over the time that detection takes for it: each integrator over its "
+                           "step, and a stale list over the frames from search to search, with steps of 1 ms.",
+                .x = {"detection (ms)", true, {}},
+                .y = {"greatest distance from the right place (diameters)", true, {}},
+                .lines = {},
+                .marks = {}};
+    const std::vector<double> all = setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
+    const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(all.front() / dt)); };
+    const integrator_info& verlet = *integrator_named("velocity_verlet");
+    const double finest = all.back() / 16;
+    const trajectory right = balls.play(setting.who, verlet, finest, kept(finest), false);
+    const auto error_of = [&](const trajectory& t) { return balls.departures(t, right).back(); };
+    for (const integrator_info& i : integrators()) {
+        if (i.adaptive || i.order == 5) continue;
+        series line{std::string(i.name), series_style::line, {}};
+        for (const double dt : all) {
+            const trajectory t = balls.play(setting.who, i, dt, kept(dt), true);
+            const double error = error_of(t);
+            line.points.push_back({t.detection_ms, error, error, error});
+            const std::string subject = std::string(i.name) + ", " + short_number(dt) + " s";
+            result.rows.push_back(told(subject, "trajectory error at the end (diameters)", error));
+            const double scaled = dt * balls.frequency();
+            if (i.order == 2)
+                result.rows.push_back(at_most(subject, "greatest energy error", t.energy_error, scaled * scaled));
+            else
+                result.rows.push_back(told(subject, "greatest energy error", t.energy_error));
+        }
+        cost.lines.push_back(std::move(line));
+    }
+    series stale{"velocity_verlet, neighbour_list:margin=0", series_style::line, {}};
+    for (const char* const every : {"8", "16", "32", "64"}) {
+        const method m = composed(std::string("prepare neighbour_list:margin=0,every=") + every);
+        const trajectory t = balls.play(m.who, verlet, 1e-3, kept(1e-3), false);
+        const double error = error_of(t);
+        stale.points.push_back({t.detection_ms, error, error, error});
+    }
+    cost.lines.push_back(std::move(stale));
+    result.figures.push_back(std::move(cost));
+}
+
+}  // namespace
+
+stiff_result play_dropped(const stiff_setting& setting) {
+    stiff_result result;
+    const std::size_t side = setting.quick ? 3 : 6;
+    const dropped_balls balls(side, 1);
+    hold_steps(balls, setting, result);
+    // The mean of the squared error over their run, J², of 34,454 J.
+    result.rows.push_back(told("published: ODE, 0.001 s", "energy error, RMS", std::sqrt(112.326) / 34454));
+    result.rows.push_back(told("published: Bullet, 0.001 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
+    hold_methods(balls, "1 m", setting, result);
+    hold_methods(dropped_balls(side, 0.01), "10 mm", setting, result);
+    return result;
+}
+
+stiff_study dropped_study() {
+    return {"dropped",
+            "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other without loss, pushed "
+            "by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
+            "the trajectory of exact contacts; energy within (dt·ω)² for an integrator of second order; SimBenchmark's "
+            "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
+            &play_dropped};
+}
+
+}  // namespace aabblab

@@ -1,0 +1,126 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+module aabblab.stiff;
+
+import :rules;
+import :shapes;
+import :study;
+import aabb.geometry;
+import aabb.pipeline;
+import aabblab.figures;
+import aabblab.play;
+
+namespace aabblab {
+
+namespace {
+
+constexpr float thickness = 0.01F;  // of the plate, m
+constexpr float radius = 0.05F;     // of the body
+constexpr double reach = double{thickness} + 2 * double{radius};  // on which the body touches the plate
+
+/// A body that flies down through a plate, past it with this way a frame, and begins somewhere within a frame.
+class shot {
+public:
+    shot(const contender& who, double way)
+        : plate_(slab(2, thickness)), body_(octahedron(radius)), way_(way),
+          global_(who.make_global(aabb::instrumentation::none)), local_(who.make_local(aabb::instrumentation::none)) {
+        for (const std::uint32_t id : {0U, 1U}) global_->insert(id);
+        local_->add_model(plate_);
+        local_->add_model(body_);
+    }
+
+    /// @param swept boxes hold the body from frame to frame, and what they find is looked at in between
+    [[nodiscard]] bool is_seen(double phase, bool swept) {
+        const double above = double{thickness} + way_;
+        for (double z = above - phase * way_; z > -above - 2 * double{radius}; z -= way_) {
+            if (!swept) {
+                if (boxes_meet(z, z) && meshes_meet(z)) return true;
+                continue;
+            }
+            if (!boxes_meet(z, z - way_)) continue;
+            // Steps that the body cannot jump over the plate with.
+            const auto parts = static_cast<int>(std::ceil(2 * way_ / reach));
+            for (int i = 0; i < parts; ++i)
+                if (meshes_meet(z - way_ * i / parts)) return true;
+        }
+        return false;
+    }
+
+private:
+    [[nodiscard]] aabb::box box_at(double z) const {
+        aabb::box b = aabb::bounds_of(body_);
+        b.min[2] = std::nextafter(static_cast<float>(b.min[2] + z), -1e9F);
+        b.max[2] = std::nextafter(static_cast<float>(b.max[2] + z), 1e9F);
+        return b;
+    }
+
+    [[nodiscard]] bool boxes_meet(double from, double to) {
+        const std::vector<aabb::box> boxes = {aabb::bounds_of(plate_), merged(box_at(from), box_at(to))};
+        std::vector<aabb::index_pair> pairs;
+        global_->update(boxes);
+        global_->search(pairs);
+        return !pairs.empty();
+    }
+
+    [[nodiscard]] bool meshes_meet(double z) {
+        aabb::pose at;
+        at.translation[2] = z;
+        return local_->first_pair(0, {}, 1, at).has_value();
+    }
+
+    aabb::mesh plate_;
+    aabb::mesh body_;
+    double way_;
+    std::unique_ptr<aabb::global_stage> global_;
+    std::unique_ptr<aabb::local_stage> local_;
+};
+
+}  // namespace
+
+stiff_result play_plate(const stiff_setting& setting) {
+    stiff_result result;
+    const std::size_t shots = setting.quick ? 200 : 2000;
+    figure plot{.name = "tunnelled",
+                .caption = "Share of shots that go through a plate unseen, over the way of a step.",
+                .x = {"way of a step over body and plate", true, {}},
+                .y = {"share tunnelled", false, {}},
+                .lines = {{"plain boxes", series_style::points, {}},
+                          {"swept boxes", series_style::points, {}},
+                          {"1 - reach / way", series_style::line, {}}},
+                .marks = {}};
+    for (const double ways : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
+        shot fired(setting.who, ways * reach);
+        const double expected = std::max(0.0, 1 - 1 / ways);
+        plot.lines[2].points.push_back({ways, expected, expected, expected});
+        for (const bool swept : {false, true}) {
+            std::size_t unseen = 0;
+            for (std::size_t s = 0; s < shots; ++s)
+                if (!fired.is_seen((static_cast<double>(s) + 0.5) / static_cast<double>(shots), swept)) ++unseen;
+            const double share = static_cast<double>(unseen) / static_cast<double>(shots);
+            plot.lines[swept ? 1 : 0].points.push_back({ways, share, share, share});
+            const std::string subject = "a step of " + short_number(ways) + " reaches, " + (swept ? "swept" : "plain");
+            stiff_row row = told(subject, "share tunnelled of " + std::to_string(shots), share);
+            row.rule = swept ? "0" : short_number(expected) + ", one shot more or less";
+            row.holds = std::abs(share - (swept ? 0 : expected)) <= (swept ? 0 : 1.01 / static_cast<double>(shots));
+            result.rows.push_back(std::move(row));
+        }
+    }
+    result.figures.push_back(std::move(plot));
+    return result;
+}
+
+stiff_study plate_study() {
+    return {"plate",
+            "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step; plain boxes "
+            "stand where a step ends, swept ones reach from step to step and are looked into in parts",
+            "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
+            &play_plate};
+}
+
+}  // namespace aabblab

@@ -1,0 +1,166 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.stiff;
+
+import :method;
+import :rules;
+import :shapes;
+import :study;
+import aabb.geometry;
+import aabb.pipeline;
+import aabblab.figures;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::uint32_t tips = 8;     // on each side of the upper mesh
+constexpr double distance = 0.25;     // from tip to tip; all lengths are in sizes of the meshes
+constexpr double rest = 1e-3;         // to which a spring is compressed that only touches
+constexpr int positions = 257;
+constexpr double way = 1.0 / 128;     // from one to the next
+
+/// Many teeth that stand on their tips, each a triangle, so that nothing but one pair or those of one edge tells of it.
+aabb::mesh comb() {
+    aabb::mesh all;
+    for (std::uint32_t i = 0; i < tips * tips; ++i) {
+        const auto x = static_cast<float>(distance * (i % tips - 0.5 * tips) - 1);
+        const auto y = static_cast<float>(distance * (i / tips - 0.5 * tips));
+        for (const aabb::vec3f& v : {aabb::vec3f{x, y, 0}, {x + 0.06F, y + 0.08F, 0.125F}, {x - 0.06F, y - 0.08F, 0.125F}})
+            all.vertices.push_back(v);
+        all.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return all;
+}
+
+/// How the two lie in their common frame, which decides what rounds.
+struct lie {
+    std::string name;
+    aabb::pose frame;  // of both
+    double size;       // m
+    double pressed;    // in sizes; below 0 above the other
+};
+
+/// A turn about (1, 1, 1) by an angle of cosine 0.8, so that no coordinate is favoured.
+aabb::pose oblique() {
+    const double third = 0.2 / 3;
+    const double sine = 0.6 / std::sqrt(3.0);
+    const double a = 0.8 + third;
+    const double b = third - sine;
+    const double c = third + sine;
+    return {{a, b, c, c, a, b, b, c, a}, {0, 0, 0}};
+}
+
+aabb::vec3d turned(const aabb::pose& p, const aabb::vec3d& v) {
+    aabb::vec3d w{};
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) w[i] += p.rotation[static_cast<std::size_t>(3 * i + j)] * v[j];
+    return w;
+}
+
+aabb::mesh lying(aabb::mesh m, const lie& l) {
+    for (aabb::vec3f& v : m.vertices) {
+        const aabb::vec3d w = turned(l.frame, {v[0] * l.size, v[1] * l.size, v[2] * l.size});
+        for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(w[k]);
+    }
+    return m;
+}
+
+/// The force along the normal at each position, over that of all tips at the depth to which they are pressed.
+std::vector<double> forces_of(const contender& who, const lie& l) {
+    const aabb::mesh lower = lying(floor_of(8, 16), l);
+    const aabb::mesh upper = lying(comb(), l);
+    const auto stage = who.make_local(aabb::instrumentation::none);
+    stage->add_model(lower);
+    stage->add_model(upper);
+    const contact_law law{contact_geometry::each_vertex, 1, 0, rest * l.size};
+    const aabb::vec3d normal = turned(l.frame, {0, 0, 1});
+    std::vector<double> forces;
+    for (int i = 0; i < positions; ++i) {
+        aabb::pose at;
+        at.translation = turned(l.frame, {way * i * l.size, 0, -l.pressed * l.size});
+        std::vector<aabb::index_pair> pairs;
+        stage->all_pairs(0, {}, 1, at, pairs);
+        std::ranges::sort(pairs);
+        std::vector<aabb::contact> contacts;
+        for (const aabb::index_pair& p : pairs) contacts.push_back({0, 1, p.a, p.b});
+        const contact_force found = force_of(law, contacts, {&lower, {}}, {&upper, at}, {0, 0, 0});
+        forces.push_back(dot(found.force, normal) / (tips * tips * (rest + l.pressed) * l.size));
+    }
+    return forces;
+}
+
+double greatest_jump(const std::vector<double>& forces) {
+    double greatest = 0;
+    for (std::size_t i = 1; i < forces.size(); ++i) greatest = std::max(greatest, std::abs(forces[i] - forces[i - 1]));
+    return greatest;
+}
+
+}  // namespace
+
+stiff_result play_sliding(const stiff_setting& setting) {
+    stiff_result result;
+    const std::vector<lie> lies = {{"lattice", {}, 1, 0},
+                                   {"oblique, 1 m", oblique(), 1, 1e-5},
+                                   {"oblique, 10 mm", oblique(), 0.01, 1e-5},
+                                   {"oblique, 0.1 mm", oblique(), 1e-4, 1e-5},
+                                   {"above, 1 m", oblique(), 1, -1e-5},
+                                   {"above, 10 mm", oblique(), 0.01, -1e-5},
+                                   {"above, 0.1 mm", oblique(), 1e-4, -1e-5}};
+    figure plot{.name = "sliding_force",
+                .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed by a "
+                           "100,000th, over the one that 64 teeth share; what keeps it is not drawn.",
+                .x = {"way over size", false, {}},
+                .y = {"force over the right one", false, {}},
+                .lines = {{"exact", series_style::level, {{0, 1, 1, 1}}}},
+                .marks = {}};
+    const std::vector<method> methods = triangle_methods();
+    std::size_t done = 0;
+    for (const lie& l : lies)
+        for (const method& m : methods) {
+            const std::vector<double> forces = forces_of(m.who, l);
+            const double jump = greatest_jump(forces);
+            const std::string subject = m.label + ", " + l.name;
+            const double least = std::ranges::min(forces);
+            const double greatest = std::ranges::max(forces);
+            if (l.pressed < 0) {
+                const std::string quantity = "greatest force before they touch";
+                result.rows.push_back(m.who.exact ? at_most(subject, quantity, greatest, 0)
+                                                  : told(subject, quantity, greatest));
+                continue;
+            }
+            const std::string jumps = "greatest jump of the force";
+            const std::string lost = "least force";
+            result.rows.push_back(m.who.exact ? at_most(subject, jumps, jump, 1e-3) : told(subject, jumps, jump));
+            result.rows.push_back(m.who.exact ? within(subject, lost, least, 1, 1e-3) : told(subject, lost, least));
+            if (l.size == 0.01 && least < 0.999 && plot.lines.size() < 10) {
+                series line{m.label, series_style::line, {}};
+                for (int i = 0; i < positions; ++i) {
+                    const double f = forces[static_cast<std::size_t>(i)];
+                    line.points.push_back({way * i, f, f, f});
+                }
+                plot.lines.push_back(std::move(line));
+            }
+            setting.progress(static_cast<double>(++done) / static_cast<double>(lies.size() * methods.size()));
+        }
+    result.figures.push_back(std::move(plot));
+    return result;
+}
+
+stiff_study sliding_study() {
+    return {"sliding",
+            "A mesh of 64 teeth, each a triangle, slides on its tips along a flat mesh, over its vertices and edges, as large as 1 m, "
+            "10 mm and 0.1 mm: each tip that is found to touch carries a 64th of the load; and a "
+            "100,000th of their size above it, where there is no load",
+            "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4", &play_sliding};
+}
+
+}  // namespace aabblab

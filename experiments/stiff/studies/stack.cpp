@@ -1,0 +1,94 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+module aabblab.stiff;
+
+import :rules;
+import :shapes;
+import :simulation;
+import :study;
+import aabblab.stepping;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double stiffness = 1e6;  // N/m
+constexpr double gravity = 9.81;   // m/s²
+constexpr double edge = 0.25;      // m
+constexpr std::size_t bodies = 10;
+
+/// Ten pyramids, each on the top of the one below, of masses that grow by one factor from 1 kg at the bottom to `ratio`
+/// at the top; with a dashpot that is critical for the slowest of their motions.
+stepped_world stack_of(double ratio) {
+    stepped_world world;
+    world.meshes = {floor_of(4), hanging_pyramid(edge, 2 * edge)};
+    world.bodies = {{}};
+    double all = 0;
+    for (std::size_t i = 0; i < bodies; ++i) {
+        const auto at = static_cast<double>(i);
+        const double mass = std::pow(ratio, at / (bodies - 1));
+        all += mass;
+        // Beside the diagonals.
+        world.bodies.push_back({.mesh = 1, .position = {0.05 + 0.002 * at, 0.01, edge * at}, .mass = mass});
+    }
+    world.law.stiffness = stiffness;
+    world.law.damping = 2 * std::sqrt(bodies * stiffness * all);
+    world.gravity = gravity;
+    return world;
+}
+
+/// How deep body i is in the one below, m.
+double depth_of(const motion_state& state, std::size_t i) {
+    const double below = i == 1 ? 0 : state.position[3 * (i - 1) + 2] + edge;
+    return below - state.position[3 * i + 2];
+}
+
+}  // namespace
+
+stiff_result play_stack(const stiff_setting& setting) {
+    stiff_result result;
+    for (const double ratio : {1.0, 10.0, 100.0, 1000.0}) {
+        const stepped_world world = stack_of(ratio);
+        for (const integrator_info& i : integrators()) {
+            // The dashpot lets explicit ones take steps of a quarter of m/c.
+            const double step = i.name == "velocity_verlet" ? 0.25 / world.law.damping : 0.05;
+            if (i.name != "bdf" && (i.name != "velocity_verlet" || ratio > (setting.quick ? 1 : 10))) continue;
+            simulation stack(world, setting.who, i, 1e-9);
+            double greatest = 0;
+            const double end = 2;
+            while (stack.state().time < end) {
+                stack.advance(step);
+                greatest = std::max(greatest, depth_of(stack.state(), 1));
+                setting.progress(stack.state().time / end);
+            }
+            double worst = 0;
+            double above = 0;
+            for (std::size_t b = bodies; b > 0; --b) {
+                above += world.bodies[b].mass;
+                worst = std::max(worst, std::abs(depth_of(stack.state(), b) * stiffness / (above * gravity) - 1));
+            }
+            const std::string subject = std::string(i.name) + ", masses 1 to " + short_number(ratio) + " kg";
+            result.rows.push_back(
+                within(subject, "greatest depth (m)", greatest, above * gravity / stiffness, 0.01));
+            result.rows.push_back(at_most(subject, "error of a depth at rest over mg/k", worst, 1e-3));
+            result.rows.push_back(told(subject, "detections", static_cast<double>(stack.detections())));
+        }
+    }
+    return result;
+}
+
+stiff_study stack_study() {
+    return {"stack",
+            "Ten bodies on each other, light under heavy, on springs of 1e6 N/m and dashpots that are critical for the "
+            "slowest motion: how deep each is in the one below after 2 s",
+            "mg/k, where m is all mass above; the scenes are Box2D's HighMassRatio1 and Jolt's HeavyOnLightTest, whose "
+            "iterative solvers let the stack sink",
+            &play_stack};
+}
+
+}  // namespace aabblab
