@@ -53,9 +53,14 @@ std::string unexpected(const CLI::App& program, const CLI::App& command, const s
 }  // namespace
 
 std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
-    const auto chosen = program.get_subcommands();
-    const CLI::App& command = chosen.empty() ? program : *chosen.front();
-    const std::string prefix = chosen.empty() ? "" : command.get_name() + ": ";
+    const CLI::App* innermost = &program;
+    std::string prefix;
+    while (!innermost->get_subcommands().empty()) {
+        innermost = innermost->get_subcommands().front();
+        prefix += (prefix.empty() ? "" : " ") + innermost->get_name();
+    }
+    if (!prefix.empty()) prefix += ": ";
+    const CLI::App& command = *innermost;
     // A typing error makes the parser miss what was meant, so it comes before what the parser says.
     if (const auto rest = command.remaining(); !rest.empty())
         return prefix + unexpected(program, command, rest.front());

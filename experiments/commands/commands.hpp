@@ -20,5 +20,7 @@ void add_reproduce(CLI::App& program, int& status);
 void add_run(CLI::App& program, int& status);
 void add_scene(CLI::App& program, int& status);
 void add_validate(CLI::App& program, int& status);
+void add_validate_extreme(CLI::App& validate, int& status);
+void add_validate_stiff(CLI::App& validate, int& status);
 
 }  // namespace aabblab

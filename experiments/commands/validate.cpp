@@ -11,7 +11,6 @@
 #include "output.hpp"
 
 #include "experiments.hpp"
-#include "validate.hpp"
 
 import aabb.base;
 import aabb.registry;
@@ -91,6 +90,14 @@ int validate(const validate_request& request) {
     return wrong == 0 ? 0 : 1;
 }
 
+/// A suite has no part in what stands before it, and it must not be lost in silence.
+void require_alone(const CLI::App& command, const CLI::App& suite) {
+    for (const CLI::Option* option : command.get_options())
+        if (option->count() > 0)
+            throw aabb::input_error("validate: " + option->get_name() + " has no part in '" + suite.get_name() +
+                                    "'; what it takes stands behind its name");
+}
+
 }  // namespace
 
 void add_validate(CLI::App& program, int& status) {
@@ -100,11 +107,14 @@ void add_validate(CLI::App& program, int& status) {
     command->add_option("CONFIG", request->config, "Config of the experiment (.toml); without one, every composition")
         ->type_name("");
     command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
-    // CLI11 calls this after a subcommand has been played, too.
-    command->callback([request, command, &status] {
+    command->callback([command, request, &status] {
         if (command->get_subcommands().empty()) status = validate(*request);
     });
+    command->require_subcommand(0, 1);
+    add_validate_extreme(*command, status);
     add_validate_stiff(*command, status);
+    for (CLI::App* suite : command->get_subcommands([](const CLI::App*) { return true; }))
+        suite->preparse_callback([command, suite](std::size_t) { require_alone(*command, *suite); });
 }
 
 }  // namespace aabblab

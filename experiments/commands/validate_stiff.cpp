@@ -12,8 +12,6 @@
 #include "commands.hpp"
 #include "output.hpp"
 
-#include "validate.hpp"
-
 import aabb.base;
 import aabb.policy;
 import aabblab.figures;

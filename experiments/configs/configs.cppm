@@ -11,6 +11,7 @@ module;
 /// Experiments as config files: which scenes, which compositions and engines, what to measure.
 export module aabblab.configs;
 
+import aabb.extreme;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
@@ -98,6 +99,14 @@ struct error_study {
 /// @throws aabb::input_error as `read_experiment`.
 [[nodiscard]] error_study read_error_study(const std::filesystem::path& file, experiment_size size);
 [[nodiscard]] error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size);
+
+/// Pairs of triangles with their answers: `[[case]]` with name, source, about, class, first, second, intersect and,
+/// where doubles differ, intersect_double.
+/// @throws aabb::input_error with file and line on malformed TOML, an unknown or missing key, a name that stands twice,
+/// what is no triangle, or a coordinate beyond the range of float.
+[[nodiscard]] std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file);
+/// The same from text. `file` is for messages.
+[[nodiscard]] std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, const std::string& file);
 
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
 /// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.

@@ -5,6 +5,8 @@ module;
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <numeric>
 #include <set>
@@ -142,10 +144,11 @@ const node* node::find(std::string_view wanted) const {
     return found == items.end() ? nullptr : &*found;
 }
 
-document::document(const std::string& text, std::string file) : file_(std::move(file)) {
-    if (text.size() > longest_config)
-        throw aabb::input_error(file_ + " is longer than " + std::to_string(longest_config) +
-                                " bytes, the most that a config may have");
+document::document(const std::string& text, std::string file, std::size_t most, std::string_view what)
+    : file_(std::move(file)) {
+    if (text.size() > most)
+        throw aabb::input_error(file_ + " is longer than " + std::to_string(most) + " bytes, the most that " +
+                                std::string(what) + " may have");
     if (const int line = line_of_long_key(text))
         fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
@@ -225,6 +228,19 @@ void document::require_few(int line, std::string_view of, std::span<const std::s
     if (all > static_cast<double>(most_products))
         fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(of) +
                        ", the most that a config may have");
+}
+
+std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what) {
+    if (!std::filesystem::exists(file))
+        throw aabb::input_error(file.string() + " is not there; expected " + std::string(what));
+    if (std::filesystem::is_directory(file))
+        throw aabb::input_error(file.string() + " is a folder; expected " + std::string(what));
+    std::ifstream in(file, std::ios::binary);
+    std::string text(most + 1, ' ');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    if (!in.good() && !in.eof()) throw aabb::input_error(file.string() + " cannot be read");
+    return text;
 }
 
 std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys) {

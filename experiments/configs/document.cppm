@@ -43,8 +43,11 @@ struct located_text {
 /// A config on its way from text to an experiment: makes its messages.
 class document {
 public:
+    /// @param most bytes that it may have
+    /// @param what it is, for messages
     /// @throws aabb::input_error with line and column on malformed TOML, or text longer or keys deeper than any config.
-    document(const std::string& text, std::string file);
+    document(const std::string& text, std::string file, std::size_t most = longest_config,
+             std::string_view what = "a config");
 
     [[nodiscard]] const node& root() const { return root_; }
     /// Of the config.
@@ -105,6 +108,11 @@ private:
 
 /// A key with what it multiplies by.
 using alternatives = std::pair<std::string, std::vector<located_text>>;
+
+/// What stands in a file, at most one byte more than it may have, which shows that it is too long.
+/// @param what it is, for messages
+/// @throws aabb::input_error where it is not there, is a folder or cannot be read.
+[[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what);
 
 /// How many alternatives each key has.
 [[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys);

@@ -140,20 +140,12 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
 
 /// What stands in a config.
 std::string text_of_config(const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) {
+    if (!std::filesystem::exists(file))
         for (const char* folder : {AABBLAB_CONFIGS, AABBLAB_CONFIGS "/errors"})
             if (const auto of_project = std::filesystem::path(folder) / file.filename();
                 std::filesystem::exists(of_project))
                 throw aabb::input_error(file.string() + " is not there; did you mean " + of_project.string() + "?");
-        throw aabb::input_error(file.string() + " is not there; expected a config");
-    }
-    if (std::filesystem::is_directory(file)) throw aabb::input_error(file.string() + " is a folder; expected a config");
-    std::ifstream in(file, std::ios::binary);
-    std::string text(longest_config + 1, ' ');  // one byte more shows that it is too long
-    in.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    if (!in.good() && !in.eof()) throw aabb::input_error(file.string() + " cannot be read");
-    return text;
+    return text_of_file(file, longest_config, "a config");
 }
 
 experiment read_experiment(const std::filesystem::path& file, experiment_size size) {

@@ -42,6 +42,9 @@ public:
             [&](const std::string& path) { return arguments{"compare", path, folder_.path()}; },
             [&](const std::string& path) { return arguments{"explain", path}; },
             [&](const std::string& path) { return arguments{"validate", path}; },
+            [&](const std::string& path) {
+                return arguments{"validate", "extreme", "--cases", path, "--out", folder_ / "x"};
+            },
             [&](const std::string& path) { return arguments{"run", path}; },
             [&](const std::string& path) { return arguments{"reproduce", "--judge", "--out", path}; },
             [&](const std::string& path) {

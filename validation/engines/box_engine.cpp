@@ -14,6 +14,7 @@ namespace aabb {
 
 void box_engine::update(std::span<const box> boxes) {
     frame_.begin();
+    require_ieee_arithmetic();
     objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
     if (objects_.any_departures() || !objects_.arrivals().empty()) {
@@ -28,6 +29,7 @@ void box_engine::update(std::span<const box> boxes) {
 
 void box_engine::search(std::vector<index_pair>& pairs) {
     frame_.require_taken();
+    require_ieee_arithmetic();
     append_whole(pairs, [&] { find(pairs); });
 }
 

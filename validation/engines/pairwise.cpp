@@ -59,6 +59,7 @@ private:
     };
 
     [[nodiscard]] static model model_of(const mesh& m) {
+        require_ieee_arithmetic();
         require_valid(m);
         model made{&m, bounds_of(m), {}, {}};
         for (std::uint32_t t = 0; t < m.triangle_count(); ++t) made.boxes.push_back(bounds_of(m.triangle(t)));
@@ -76,6 +77,7 @@ private:
     /// `emit` takes an intersecting pair and says whether to stop.
     template <class Emit>
     void decide(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b, Emit emit) const {
+        require_ieee_arithmetic();
         models_[model_a].fit.require();
         models_[model_b].fit.require();
         const model& a = models_[model_a];

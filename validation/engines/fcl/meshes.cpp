@@ -15,6 +15,7 @@ module;
 
 module aabb.engines;
 
+import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
@@ -37,6 +38,7 @@ public:
     void refit(std::uint32_t model) override {
         auto& [triangles, tree, fit] = models_[model];
         fit.renew([&] {
+            require_ieee_arithmetic();
             require_valid(*triangles);
             const std::vector<fcl::Vector3d> vertices = vertices_of(*triangles);
             // A tree whose refit broke off FCL would take for one in the midst of it, and write beyond its vertices.
@@ -79,6 +81,7 @@ private:
     }
 
     [[nodiscard]] static std::unique_ptr<fcl_tree> tree_of(const mesh& m) {
+        require_ieee_arithmetic();
         require_valid(m);
         const std::vector<fcl::Vector3d> vertices = vertices_of(m);
         std::vector<fcl::Triangle> triangles;
@@ -118,6 +121,7 @@ private:
     /// Without contact points each pair of triangles is reported once.
     [[nodiscard]] fcl::CollisionResultd collide(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                                 const pose& pose_b, std::size_t most) const {
+        require_ieee_arithmetic();
         models_[model_a].fit.require();
         models_[model_b].fit.require();
         fcl::CollisionRequestd request;

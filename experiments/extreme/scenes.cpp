@@ -1,0 +1,78 @@
+module;
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.extreme;
+
+import aabb.extreme;
+import aabb.geometry;
+import aabb.pipeline;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+/// Meshes of `aabblab data` with triangles of zero area.
+constexpr std::array<const char*, 2> degenerate_meshes = {"degtri_sliding.off", "mpi.off"};
+
+/// Pairs of a class: the first triangles are one mesh, the second the other, all in place.
+aabb::extreme_scene scene_of(const pair_class_info& info) {
+    constexpr std::size_t count = 40;
+    aabb::extreme_scene scene{.name = "pairs_" + std::string(info.name), .summary = std::string(info.summary)};
+    scene.make_meshes = [name = info.name]() -> std::unique_ptr<aabb::mesh_scene> {
+        std::vector<aabb::triangle_pair<float>> pairs(count);
+        pair_source<float>(name, 1).next(pairs);
+        std::vector<aabb::mesh> meshes(2);
+        const auto add = [](aabb::mesh& m, const aabb::triangle3f& t) {
+            const auto first = static_cast<std::uint32_t>(m.vertices.size());
+            m.vertices.insert(m.vertices.end(), {t[0], t[1], t[2]});
+            m.triangles.push_back({first, first + 1, first + 2});
+        };
+        for (const aabb::triangle_pair<float>& p : pairs) {
+            add(meshes[0], p.a);
+            add(meshes[1], p.b);
+        }
+        return std::make_unique<aabb::known_poses>(std::move(meshes), std::vector<std::vector<aabb::pose>>{{{}, {}}});
+    };
+    return scene;
+}
+
+/// A mesh in the place of its twin, then a hundredth of its extent beside it.
+aabb::extreme_scene scene_of(const std::string& file) {
+    aabb::extreme_scene scene{.name = file, .summary = "a real mesh with zero-area triangles, against itself"};
+    scene.make_meshes = [file]() -> std::unique_ptr<aabb::mesh_scene> {
+        aabb::mesh m = make_mesh(file).mesh;
+        const aabb::box bounds = bounds_of(m);
+        const int axis = longest_axis(bounds);
+        aabb::pose beside;
+        beside.translation[axis] = (double{bounds.max[axis]} - double{bounds.min[axis]}) / 100;
+        return std::make_unique<aabb::known_poses>(std::move(m),
+                                                   std::vector<std::vector<aabb::pose>>{{{}, {}}, {{}, beside}});
+    };
+    return scene;
+}
+
+}  // namespace
+
+extreme_list all_extreme_scenes(aabb::extreme_size size) {
+    extreme_list all{aabb::extreme_scenes(size), {}};
+    for (const pair_class_info& info : pair_classes()) all.scenes.push_back(scene_of(info));
+    std::string missing;
+    for (const std::string file : degenerate_meshes)
+        if (is_mesh(file, {}))
+            all.scenes.push_back(scene_of(file));
+        else
+            missing += (missing.empty() ? "" : " and ") + file;
+    if (!missing.empty()) all.notes.push_back("left out are " + missing + ", which ./aabblab data fetches");
+    if (!aabb::can_flush_denormals())
+        all.notes.emplace_back("left out are threads that flush denormals, which are not known on this processor");
+    return all;
+}
+
+}  // namespace aabblab

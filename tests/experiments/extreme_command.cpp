@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb.extreme;
+import aabblab.extreme;
+import aabblab.results;
+import aabblab.tables;
+
+namespace {
+
+/// Two triangles that intersect, with the answer that they do not.
+const std::string lie =
+    "[[case]]\nname = \"lie\"\nsource = \"s\"\nabout = \"a\"\nclass = \"crossing\"\n"
+    "first = [[0, 0, 0], [2, 0, 0], [0, 2, 0]]\nsecond = [[0.5, 0.5, -1], [0.5, 0.5, 1], [3, 3, 0]]\n"
+    "intersect = false\n";
+
+std::vector<aabblab::csv_record> records_of(const std::filesystem::path& file) {
+    return aabblab::read_csv(bytes_of_file(file), file.string()).records;
+}
+
+}  // namespace
+
+TEST_CASE("Scenes that are not answered as they must be stand in the table, and each contender in a sentence") {
+    std::vector<aabb::extreme_scene> scenes = aabb::extreme_scenes(aabb::extreme_size::small);
+    const auto keep = [](const aabb::extreme_scene& scene) {
+        return scene.name == "two_objects" || scene.name == "many_against_one" || scene.name == "beyond_float";
+    };
+    std::erase_if(scenes, [&](const aabb::extreme_scene& scene) { return !keep(scene); });
+    REQUIRE(scenes.size() == 3);
+    const auto rows_of = [&] { return aabblab::play_scenes(scenes, aabb::extreme_size::quick); };
+    CHECK(aabblab::failures_in(rows_of()).empty());
+    for (aabb::extreme_scene& scene : scenes) {
+        if (scene.name == "two_objects") scene.refusal = "box 7 is inverted";
+        if (scene.name == "many_against_one") scene.most_bytes = 1000;
+        scene.answered_in_double = false;
+    }
+    const std::vector<aabblab::extreme_row> rows = rows_of();
+    const std::vector<std::vector<std::string>> boxes = aabblab::scene_table(rows, aabblab::row_group::boxes).rows;
+    REQUIRE(boxes.size() == 1);
+    CHECK(boxes[0][0] == "two_objects");
+    CHECK(boxes[0][1].ends_with(" WRONG"));
+    CHECK(boxes[0][2] == "WRONG");
+    const aabblab::table meshes = aabblab::scene_table(rows, aabblab::row_group::meshes);
+    REQUIRE(meshes.rows.size() == 2);
+    CHECK(meshes.rows[0][1].ends_with(" WRONG"));
+    CHECK(meshes.rows[0][2] == "exact");
+    CHECK(meshes.rows[1][1].ends_with(" refused"));
+    // One that may err must refuse all the same.
+    CHECK(meshes.columns[4].name == "fcl");
+    CHECK(meshes.rows[1][4] == "WRONG");
+    const std::vector<std::string> failures = aabblab::failures_in(rows);
+    const auto has = [&](const std::string& sentence) {
+        return std::ranges::find(failures, sentence) != failures.end();
+    };
+    CHECK(has("brute_force on two_objects: answers, though it must refuse"));
+    CHECK(has("fcl on beyond_float: answers, though it must refuse"));
+    CHECK(std::ranges::any_of(failures, [](const std::string& sentence) {
+        return sentence.find(" on many_against_one: holds ") != std::string::npos;
+    }));
+}
+
+TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, and the program with status 1") {
+    const temporary_folder folder;
+    const std::string file = folder.write("c.toml", lie);
+    const std::filesystem::path out = folder / "results";
+    const program_result ran = run_program({"validate", "extreme", "--quick", "--cases", file, "--out", out});
+    CHECK(ran.status == 1);
+    CHECK(ran.err.find("aabblab: exact in double on lie: says that they intersect\n") != std::string::npos);
+    CHECK(ran.out.find("answers are not what they must be.\n") != std::string::npos);
+    // Nothing but the lie is wrong.
+    CHECK(ran.out.find("crossing      1      4 WRONG") != std::string::npos);
+    for (const std::string scene : {"lattice  ", "flushed_boxes", "same_place", "upward_meshes", "pairs_zero_area"})
+        CHECK(ran.out.find("\n" + scene) != std::string::npos);
+    CHECK(ran.out.find("\n  box_inverted: box 7 is inverted") != std::string::npos);
+    CHECK(ran.out.find("many_against_many, ") != std::string::npos);
+    std::istringstream lines(ran.out.substr(0, ran.out.find("\nRefused:")));
+    for (std::string line; std::getline(lines, line);) {
+        INFO(line);
+        CHECK(line.size() <= 80);
+    }
+
+    const std::vector<aabblab::csv_record> records = records_of(out / "extreme.csv");
+    REQUIRE(records.size() > 1000);
+    const std::vector<std::string>& header = records[0].fields;
+    const auto at = [&](const aabblab::csv_record& record, const std::string& name) {
+        const auto column = std::ranges::find(header, name);
+        REQUIRE(column != header.end());
+        return record.fields[static_cast<std::size_t>(column - header.begin())];
+    };
+    std::set<std::string> wrong;
+    std::size_t refused = 0;
+    for (const aabblab::csv_record& record : std::span(records).subspan(1)) {
+        REQUIRE(record.fields.size() == header.size());
+        if (at(record, "as_expected") == "no") wrong.insert(at(record, "scene"));
+        if (at(record, "answer") == "refused") {
+            ++refused;
+            CHECK_FALSE(at(record, "reason").empty());
+        }
+    }
+    CHECK(wrong == std::set<std::string>{"lie"});
+    CHECK(refused > 100);
+}
+
+TEST_CASE("What stands before or behind validate extreme and has no part in it is refused") {
+    const temporary_folder folder;
+    const std::string file = folder.write("c.toml", "[[case]]\nname = 1\n");
+    const auto said = [](const std::vector<std::string>& arguments) {
+        const program_result ran = run_program(arguments);
+        CHECK(ran.status == 2);
+        CHECK(is_one_sentence(ran.err));
+        return ran.err;
+    };
+    CHECK(said({"validate", "--quick", "extreme", "--cases", file}) ==
+          "aabblab: validate: --quick has no part in 'extreme'; what it takes stands behind its name\n");
+    CHECK(said({"validate", file, "extreme"}).starts_with("aabblab: validate: CONFIG has no part in 'extreme'"));
+    CHECK(said({"validate", "extreme", "--cases", file}) ==
+          "aabblab: " + file + ":2: name is a number; expected a name\n");
+    CHECK(said({"validate", "extreme", "--qiuck"}) ==
+          "aabblab: validate extreme: unknown option '--qiuck'; did you mean '--quick'?\n");
+    CHECK(said({"validate", "extreme", "more.toml"}).find("validate extreme: ") != std::string::npos);
+    const std::string help = run_program({"validate", "extreme", "--help"}).out;
+    CHECK(help.find("--cases FILE") != std::string::npos);
+    CHECK(help.find("\npairs_sliver ") != std::string::npos);
+    CHECK(run_program({"validate", "--help"}).out.find("  extreme ") != std::string::npos);
+}

@@ -1,0 +1,100 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+import aabb.base;
+import aabb.extreme;
+import aabblab.configs;
+import aabblab.extreme;
+
+namespace {
+
+std::string case_named(const std::string& name, const std::string& intersect) {
+    return "[[case]]\nname = \"" + name +
+           "\"\nsource = \"s\"\nabout = \"a\"\nclass = \"crossing\"\n"
+           "first = [[0, 0, 0], [2.0, 0, 0], [0, 2, 0]]\n"
+           "second = [[0.5, 0.5, -1], [0.5, 0.5, 1], [3, 3, 0]]\nintersect = " +
+           intersect + "\n";
+}
+
+std::string refusal_of(const std::string& text) {
+    try {
+        static_cast<void>(aabblab::parse_triangle_cases(text, "c.toml"));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+/// With this in place of the line of that key.
+std::string with_line(const std::string& key, const std::string& line) {
+    std::istringstream in(case_named("one", "true"));
+    std::string all;
+    for (std::string one; std::getline(in, one);) all += (one.starts_with(key + " ") ? line : one) + "\n";
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("A file of cases is read with every number as it stands") {
+    const std::string least = "second = [[5e-324, -0.0, 1e-45], [3.4028234663852886e+38, 0.1, 1], [3, 3, 0]]";
+    const std::vector<aabb::triangle_case> cases =
+        aabblab::parse_triangle_cases(with_line("second", least) + "intersect_double = false\n", "c.toml");
+    REQUIRE(cases.size() == 1);
+    CHECK(cases[0].name == "one");
+    CHECK(cases[0].source == "s");
+    CHECK(cases[0].about == "a");
+    CHECK(cases[0].kind == "crossing");
+    CHECK(cases[0].first[1][0] == 2);
+    CHECK(cases[0].second[0][0] == 5e-324);
+    CHECK(std::signbit(cases[0].second[0][1]));
+    CHECK(cases[0].second[0][2] == 1e-45);
+    CHECK(cases[0].second[1][0] == double{std::numeric_limits<float>::max()});
+    CHECK(cases[0].second[1][1] == 0.1);
+    CHECK(cases[0].intersect);
+    CHECK_FALSE(cases[0].intersect_double);
+    CHECK(aabblab::parse_triangle_cases(case_named("one", "true"), "c.toml")[0].intersect_double);
+}
+
+TEST_CASE("A bad file of cases gets one sentence with file and line") {
+    CHECK(refusal_of(case_named("one", "true") + case_named("two", "false")) == "accepted");
+    CHECK(refusal_of("") == "c.toml has no cases; expected [[case]]");
+    CHECK(refusal_of("[case]\n") == "c.toml:1: case must stand in double brackets: [[case]]");
+    CHECK(refusal_of("[[cases]]\n").starts_with("c.toml:1: unknown key 'cases'"));
+    CHECK(refusal_of("[[case]\n").starts_with("c.toml:1:"));
+    CHECK(refusal_of(with_line("about", "abuot = \"a\"")) ==
+          "c.toml:4: unknown key of [[case]] 'abuot'; did you mean 'about'?");
+    CHECK(refusal_of(with_line("about", "")) == "c.toml:1: this case has no about");
+    CHECK(refusal_of(with_line("source", "source = 3")) == "c.toml:3: source is a number; expected a name");
+    CHECK(refusal_of(with_line("intersect", "intersect = 1")) ==
+          "c.toml:8: intersect is a number; expected true or false");
+    const std::string corners = "first must be three corners of three coordinates each";
+    CHECK(refusal_of(with_line("first", "first = [[0, 0, 0], [1, 0, 0]]")) == "c.toml:6: " + corners);
+    CHECK(refusal_of(with_line("first", "first = [[0, 0, 0], [1, 0], [0, 1, 0]]")) == "c.toml:6: " + corners);
+    CHECK(refusal_of(with_line("first", "first = 3")) == "c.toml:6: " + corners);
+    CHECK(refusal_of(with_line("first", "first = [[0, 0, 0], [1, 0, '0'], [0, 1, 0]]")) ==
+          "c.toml:6: a coordinate of first is a name; expected a number");
+    for (const char* beyond : {"1e39", "inf", "-inf", "nan"})
+        CHECK(refusal_of(with_line("first", std::string("first = [[0, 0, 0], [1, 0, ") + beyond + "], [0, 1, 0]]"))
+                  .ends_with(", beyond the range of float"));
+    CHECK(refusal_of(case_named("one", "true") + case_named("one", "true")) ==
+          "c.toml:9: two cases have the name 'one'");
+}
+
+TEST_CASE("The project's own cases are answered rightly by all that must be exact") {
+    const std::vector<aabb::triangle_case> cases = aabblab::read_triangle_cases(AABBLAB_CASES);
+    REQUIRE(cases.size() >= 100);
+    const std::vector<aabblab::extreme_row> rows = aabblab::play_cases(cases);
+    for (const std::string& failure : aabblab::failures_in(rows)) FAIL_CHECK(failure);
+    std::set<std::string> exact_tests;
+    for (const aabblab::extreme_row& row : rows)
+        if (row.role == aabblab::contender_role::triangle_test && row.must_be_exact) exact_tests.insert(row.contender);
+    CHECK(exact_tests == std::set<std::string>{"epeck in double", "epeck in float", "epick in double", "epick in float",
+                                               "exact in double", "exact in float", "interval_arithmetic in double",
+                                               "interval_arithmetic in float"});
+    CHECK_FALSE(aabblab::inexact_case_table(rows).rows.empty());
+}

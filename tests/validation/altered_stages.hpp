@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
+import aabb.validation;
+
+// Imports modules, so it is included after every other header.
+
+namespace aabb {
+
+using pair_list = std::vector<index_pair>;
+
+/// Brute force, but what it finds is changed.
+class altered_boxes final : public global_stage {
+public:
+    explicit altered_boxes(std::function<void(pair_list&)> change) : change_(std::move(change)) {}
+    void insert(std::uint32_t id) override { whole_->insert(id); }
+    void remove(std::uint32_t id) override { whole_->remove(id); }
+    void update(std::span<const box> boxes) override { whole_->update(boxes); }
+    void search(pair_list& pairs) override {
+        whole_->search(pairs);
+        change_(pairs);
+    }
+    [[nodiscard]] work_counters counters() const override { return {}; }
+    [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"a", 40}, {"b", 2}}; }
+    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+
+private:
+    std::unique_ptr<global_stage> whole_ = make_box_engine("brute_force");
+    std::function<void(pair_list&)> change_;
+};
+
+/// The same of meshes, query by query; an empty function changes nothing.
+struct alterations {
+    std::function<void(pair_list&)> all_pairs = {};
+    std::function<void(std::optional<index_pair>&)> first_pair = {};
+    std::uint64_t more_counted = 0;
+    std::function<void(pair_list&)> self_pairs = {};
+};
+
+class altered_meshes final : public local_stage {
+public:
+    explicit altered_meshes(alterations made) : made_(std::move(made)) {}
+    std::uint32_t add_model(const mesh& m) override { return whole_->add_model(m); }
+    void all_pairs(std::uint32_t a, const pose& pose_a, std::uint32_t b, const pose& pose_b,
+                   pair_list& pairs) override {
+        whole_->all_pairs(a, pose_a, b, pose_b, pairs);
+        if (made_.all_pairs) made_.all_pairs(pairs);
+    }
+    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t a, const pose& pose_a, std::uint32_t b,
+                                                       const pose& pose_b) override {
+        auto first = whole_->first_pair(a, pose_a, b, pose_b);
+        if (made_.first_pair) made_.first_pair(first);
+        return first;
+    }
+    [[nodiscard]] std::uint64_t count_pairs(std::uint32_t a, const pose& pose_a, std::uint32_t b,
+                                            const pose& pose_b) override {
+        return whole_->count_pairs(a, pose_a, b, pose_b) + made_.more_counted;
+    }
+    void self_pairs(std::uint32_t model, pair_list& pairs) override {
+        whole_->self_pairs(model, pairs);
+        if (made_.self_pairs) made_.self_pairs(pairs);
+    }
+    void refit(std::uint32_t model) override { whole_->refit(model); }
+    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const override { return std::nullopt; }
+    [[nodiscard]] work_counters counters() const override { return {}; }
+    [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
+    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+
+private:
+    std::unique_ptr<local_stage> whole_ = make_mesh_engine("brute_force");
+    alterations made_;
+};
+
+}  // namespace aabb

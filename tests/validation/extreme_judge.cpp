@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cfenv>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "altered_stages.hpp"
+
+import aabb.base;
+import aabb.counters;
+import aabb.extreme;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.pipeline;
+import aabb.validation;
+
+using namespace aabb;
+
+namespace {
+
+extreme_judge judge_of(const std::string& name) {
+    std::vector<extreme_scene> all = extreme_scenes(extreme_size::small);
+    const auto found = std::ranges::find(all, name, &extreme_scene::name);
+    REQUIRE(found != all.end());
+    return extreme_judge(*found);
+}
+
+judgement judged(const extreme_judge& judge, std::function<void(pair_list&)> change) {
+    return judge.judge([change = std::move(change)]() -> std::unique_ptr<global_stage> {
+        return std::make_unique<altered_boxes>(change);
+    });
+}
+
+judgement judged(const extreme_judge& judge, const alterations& made) {
+    return judge.judge([&made]() -> std::unique_ptr<local_stage> { return std::make_unique<altered_meshes>(made); });
+}
+
+void refuse() {
+    throw input_error("not today");
+}
+
+}  // namespace
+
+TEST_CASE("the judge catches a global search that loses, invents, repeats, refuses or breaks off") {
+    const extreme_judge judge = judge_of("two_objects");
+    const judgement exact = judged(judge, [](pair_list&) {});
+    CHECK(exact.said == verdict::exact);
+    CHECK(exact.bytes == 42);
+    const judgement lost = judged(judge, [](pair_list& pairs) { pairs.pop_back(); });
+    CHECK(lost.said == verdict::wrong);
+    CHECK(lost.missing == 3);
+    CHECK(lost.reason == "frame 0: the pair 0 1 is missing");
+    const judgement more = judged(judge, [](pair_list& pairs) { pairs.push_back({0, 7}); });
+    CHECK(more.said == verdict::wrong);
+    CHECK(more.invented == 3);
+    CHECK(more.reason == "frame 0: the pair 0 7 is reported, but not once in the exact answer");
+    const judgement twice = judged(judge, [](pair_list& pairs) { pairs.push_back(pairs[0]); });
+    CHECK(twice.said == verdict::wrong);
+    CHECK(twice.invented == 3);
+    const judgement refused = judged(judge, [](pair_list&) { refuse(); });
+    CHECK(refused.said == verdict::refused);
+    CHECK(refused.reason == "not today");
+    for (const judgement& made : {lost, more, twice, refused}) CHECK_FALSE(is_as_expected(judge.scene(), made));
+    CHECK(is_as_expected(judge.scene(), exact));
+    // One that need not be exact may be wrong.
+    CHECK(is_as_expected(judge.scene(), lost, false));
+    const judgement broken = judged(judge, [](pair_list&) { throw std::runtime_error("no more"); });
+    CHECK(broken.said == verdict::wrong);
+    CHECK(broken.reason == "breaks off: no more");
+}
+
+TEST_CASE("the judge hears of a pair that is lost in a later frame only") {
+    const extreme_judge judge = judge_of("all_leave");
+    int searches = 0;
+    const judgement made = judged(judge, [&](pair_list& pairs) {
+        if (++searches == 6) pairs.pop_back();
+    });
+    CHECK(searches == 6);
+    CHECK(made.missing == 1);
+    CHECK(made.reason.starts_with("frame 5: the pair "));
+}
+
+TEST_CASE("the judge catches a local detection that is wrong in any query") {
+    const extreme_judge judge = judge_of("touch_at_faces");
+    CHECK(judged(judge, alterations{}).said == verdict::exact);
+    const judgement lost = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.pop_back(); }});
+    CHECK(lost.missing == 2);
+    CHECK(lost.invented == 0);
+    CHECK(lost.reason.starts_with("frame 0: the pair "));
+    // What touches in a face is coplanar or touching, and nothing is lost in moving it.
+    std::size_t classified = 0;
+    for (const std::size_t count : lost.classes.missing) classified += count;
+    CHECK(classified == 2);
+    const judgement twice = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.push_back(pairs[0]); }});
+    CHECK(twice.invented == 2);
+    const judgement none = judged(judge, {.first_pair = [](auto& first) { first.reset(); }});
+    CHECK(none.reason == "frame 0: first_pair finds none, but there is one");
+    const judgement other = judged(judge, {.first_pair = [](auto& first) { first = {0, 4711}; }});
+    CHECK(other.reason == "frame 0: first_pair finds 0 4711, which do not intersect");
+    const judgement counted = judged(judge, {.more_counted = 1});
+    CHECK(counted.reason.starts_with("frame 0: count_pairs says "));
+    const judgement itself = judged(judge, {.self_pairs = [](pair_list& pairs) { pairs.pop_back(); }});
+    CHECK(itself.reason.starts_with("self_pairs: the pair "));
+    const judgement refused = judged(judge, {.all_pairs = [](pair_list&) { refuse(); }});
+    CHECK(refused.said == verdict::refused);
+    for (const judgement& made : {lost, twice, none, other, counted, itself, refused})
+        CHECK_FALSE(is_as_expected(judge.scene(), made));
+}
+
+TEST_CASE("whoever answers where all must refuse is wrong, and so is another reason") {
+    extreme_scene scene = judge_of("two_objects").scene();
+    scene.refusal = "box 7";
+    const extreme_judge judge(scene);
+    CHECK(judged(judge, [](pair_list&) {}).reason == "answers, though it must refuse");
+    const judgement other = judged(judge, [](pair_list&) { refuse(); });
+    CHECK(other.said == verdict::refused);
+    CHECK_FALSE(is_as_expected(scene, other));
+    CHECK_FALSE(is_as_expected(scene, other, false));
+    CHECK(is_as_expected(scene, judged(judge, [](pair_list&) { throw input_error("box 7 is odd"); })));
+}
+
+TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it is") {
+    if (!can_flush_denormals()) SKIP("denormals are not flushed here");
+    // A stage that asks nothing of the arithmetic in its searches.
+    class careless final : public global_stage {
+    public:
+        void insert(std::uint32_t) override {}
+        void remove(std::uint32_t) override {}
+        void update(std::span<const box>) override { require_ieee_arithmetic(); }
+        void search(pair_list&) override {}
+        [[nodiscard]] work_counters counters() const override { return {}; }
+        [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
+        [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    };
+    for (const char* name : {"flushed_boxes", "upward_boxes"}) {
+        const extreme_judge judge = judge_of(name);
+        const judgement made =
+            judge.judge([]() -> std::unique_ptr<global_stage> { return std::make_unique<careless>(); });
+        CHECK(made.said == verdict::wrong);
+        CHECK(made.reason == "search answers, though it must refuse");
+    }
+}
+
+TEST_CASE("other arithmetic is that of a thread of its own") {
+    const volatile double least = 5e-324;
+    const volatile double one = 1;
+    bool flushed = false;
+    bool upward = false;
+    if (can_flush_denormals()) in_arithmetic(arithmetic::denormals_flushed, [&] { flushed = least * one == 0; });
+    CHECK(flushed == can_flush_denormals());
+    in_arithmetic(arithmetic::rounded_upward, [&] { upward = one + least != 1; });
+    CHECK(upward);
+    CHECK(least * one != 0);
+    CHECK(one + least == 1);
+    CHECK_THROWS_AS(in_arithmetic(arithmetic::ieee, refuse), input_error);
+}
+
+TEST_CASE("more memory than a scene states is wrong") {
+    extreme_scene scene;
+    scene.most_bytes = 100;
+    judgement made;
+    made.bytes = 100;
+    require_stated_memory(scene, made);
+    CHECK(made.said == verdict::exact);
+    made.bytes = 101;
+    require_stated_memory(scene, made);
+    CHECK(made.said == verdict::wrong);
+    CHECK(made.reason == "holds 101 bytes, more than the 100 that are stated");
+}
+
+TEST_CASE("the exact answer is that of the definition") {
+    known_boxes boxes({{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{1.5F, 0, 0}, {3, 3, 3}}},
+                       {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{1.5F, 0, 0}, {3, 3, 3}}}},
+                      {{1, 1, 0}, {0, 1, 1}});
+    const exact_boxes exact = exact_boxes_of(boxes);
+    REQUIRE(exact.size() == 2);
+    CHECK(exact[0].pairs == pair_list{{0, 1}});
+    CHECK(exact[1].pairs == pair_list{{1, 2}});
+    CHECK(exact[0].arrivals == std::vector<std::uint32_t>{0, 1});
+    CHECK(exact[1].arrivals == std::vector<std::uint32_t>{2});
+    CHECK(exact[1].departures == std::vector<std::uint32_t>{0});
+    // Three triangles of each cube end in that corner.
+    const auto touching = judge_of("touch_at_vertices").scene();
+    const auto meshes = touching.make_meshes();
+    const exact_meshes answer = exact_meshes_of(*meshes, extreme_query::all_pairs);
+    REQUIRE(answer.frames.size() == 2);
+    for (const exact_mesh_frame& frame : answer.frames) {
+        REQUIRE(frame.objects.size() == 1);
+        CHECK(frame.objects[0].meet);
+    }
+    CHECK(answer.frames[0].objects[0].pairs.size() == 9);
+}
+
+TEST_CASE("every scene is another, and half of its answers are not trivial") {
+    std::set<std::string> names;
+    std::size_t with_pairs = 0;
+    for (const extreme_scene& scene : extreme_scenes(extreme_size::small)) {
+        CHECK(names.insert(scene.name).second);
+        CHECK(scene.name.size() <= 20);
+        CHECK_FALSE(scene.summary.empty());
+        CHECK((scene.make_boxes != nullptr) != (scene.make_meshes != nullptr));
+        if (!scene.make_boxes) continue;
+        const auto boxes = scene.make_boxes();
+        for (const exact_box_frame& frame : exact_boxes_of(*boxes))
+            if (frame.pairs.size() > 20) ++with_pairs;
+    }
+    CHECK(with_pairs > 40);
+}
+
+TEST_CASE("a case is played in every order of its corners and of the two") {
+    const triangle_case one{.name = "a",
+                            .source = "",
+                            .about = "",
+                            .kind = "",
+                            .first = {{{0, 0, 0}, {1, 0, 0}, {0, 0.1, 0}}},
+                            .second = {{{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}},
+                            .intersect = false,
+                            .intersect_double = false};
+    const std::vector<triangle_pair<float>> all = every_order<float>(one);
+    CHECK(all.size() == 72);
+    CHECK(every_order<double>(one)[0].a[2][1] == 0.1);
+    CHECK(all[0].a[2][1] == 0.1F);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) CHECK_FALSE((all[i].a == all[j].a && all[i].b == all[j].b));
+}

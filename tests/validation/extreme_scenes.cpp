@@ -1,0 +1,69 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../compositions.hpp"
+
+import aabb.extreme;
+import aabb.pipeline;
+import aabb.registry;
+import aabb.validation;
+
+using namespace aabb;
+
+namespace {
+
+std::vector<extreme_judge> judges() {
+    std::vector<extreme_judge> all;
+    for (extreme_scene& scene : extreme_scenes(extreme_size::small)) all.emplace_back(std::move(scene));
+    return all;
+}
+
+void require_expected(const extreme_scene& scene, const judgement& made, bool must_be_exact = true) {
+    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(made.said)] << " " << made.reason);
+    CHECK(is_as_expected(scene, made, must_be_exact));
+}
+
+}  // namespace
+
+TEST_CASE("every global search is exact on every extreme scene, or refuses what must be refused") {
+    std::vector<aabb::composition> compositions = all_global_compositions();
+    // Cells of 3 in worlds of any size no machine can hold.
+    std::erase_if(compositions, [](const aabb::composition& c) {
+        return c[strategy_kind::partition] == strategy_choice{"uniform_grid", {{"cell_size", "3"}}};
+    });
+    REQUIRE(compositions.size() > 50);
+    for (const extreme_judge& judge : judges()) {
+        if (!judge.scene().make_boxes) continue;
+        for (const engine_info& engine : engines()) {
+            if (!engine.searches_boxes) continue;
+            INFO(engine.name);
+            require_expected(judge.scene(), judge.judge([&] { return make_box_engine(engine.name); }));
+        }
+        for (const aabb::composition& c : compositions) {
+            INFO(text_of_global(c));
+            require_expected(judge.scene(), judge.judge([&] { return global_of(c); }));
+        }
+    }
+}
+
+TEST_CASE("every local detection is exact on every extreme scene, or refuses what must be refused") {
+    for (const extreme_judge& judge : judges()) {
+        if (!judge.scene().make_meshes) continue;
+        for (const engine_info& engine : engines()) {
+            if (!engine.collides_meshes) continue;
+            INFO(engine.name);
+            require_expected(judge.scene(), judge.judge([&] { return make_mesh_engine(engine.name); }), engine.exact);
+        }
+        for (const aabb::composition& c : all_local_compositions()) {
+            if (!is_exact_locally(c)) continue;
+            INFO(text_of_local(c));
+            judgement made = judge.judge([&] { return local_of(c); });
+            require_stated_memory(judge.scene(), made);
+            require_expected(judge.scene(), made);
+        }
+    }
+}

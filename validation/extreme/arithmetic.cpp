@@ -1,0 +1,54 @@
+module;
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
+#include <cassert>
+#include <cfenv>
+#include <exception>
+#include <functional>
+#include <thread>
+
+module aabb.extreme;
+
+import :arithmetic;
+
+namespace aabb {
+
+namespace {
+
+void flush_denormals() {
+#ifdef __SSE2__
+    // Of SSE's control register: results that are denormal become zero, operands that are denormal count as zero.
+    constexpr unsigned flush_to_zero = 1U << 15;
+    constexpr unsigned denormals_are_zero = 1U << 6;
+    _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
+#endif
+}
+
+}  // namespace
+
+bool can_flush_denormals() noexcept {
+#ifdef __SSE2__
+    return true;
+#else
+    return false;
+#endif
+}
+
+void in_arithmetic(arithmetic kind, const std::function<void()>& work) {
+    assert(kind != arithmetic::denormals_flushed || can_flush_denormals());
+    std::exception_ptr thrown;
+    std::thread([&] {
+        if (kind == arithmetic::denormals_flushed) flush_denormals();
+        if (kind == arithmetic::rounded_upward) std::fesetround(FE_UPWARD);
+        try {
+            work();
+        } catch (...) {
+            thrown = std::current_exception();
+        }
+    }).join();
+    if (thrown) std::rethrow_exception(thrown);
+}
+
+}  // namespace aabb

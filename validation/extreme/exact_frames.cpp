@@ -1,0 +1,106 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+module aabb.extreme;
+
+import aabb.engines;
+import aabb.geometry;
+import aabb.pipeline;
+import :exact_frames;
+import :scene;
+
+namespace aabb {
+
+namespace {
+
+/// Two closed boxes overlap where on every axis some number lies in both intervals.
+bool share_a_point(const box& a, const box& b) {
+    for (int k = 0; k < 3; ++k) {
+        const bool meet =
+            (a.min[k] <= b.min[k] && b.min[k] <= a.max[k]) || (b.min[k] <= a.min[k] && a.min[k] <= b.max[k]);
+        if (!meet) return false;
+    }
+    return true;
+}
+
+void add_changes(exact_box_frame& frame, std::vector<std::uint8_t>& was, const std::vector<std::uint8_t>& is) {
+    was.resize(is.size(), 0);
+    for (std::uint32_t object = 0; object < is.size(); ++object)
+        if (is[object] && !was[object])
+            frame.arrivals.push_back(object);
+        else if (!is[object] && was[object])
+            frame.departures.push_back(object);
+    was = is;
+}
+
+/// Every two triangles, the second one's mesh carried by `to_a`, until `take` says that it has enough.
+template <class Take>
+void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a, Take take) {
+    for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
+        const triangle3f carried = to_a(b.triangle(t));
+        for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
+            if (exactly_intersect(a.triangle(s), carried) && take(index_pair{s, t})) return;
+    }
+}
+
+exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
+                               extreme_query asked) {
+    exact_objects made{objects.a, objects.b, {}, false};
+    const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
+    const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
+    for_each_true_pair(a, b, {poses[objects.a], poses[objects.b], bounds_of(b)}, [&](index_pair pair) {
+        made.meet = true;
+        if (asked != extreme_query::first_pair) made.pairs.push_back(pair);
+        return asked == extreme_query::first_pair;
+    });
+    std::ranges::sort(made.pairs);
+    return made;
+}
+
+}  // namespace
+
+exact_boxes exact_boxes_of(box_scene& scene) {
+    exact_boxes all;
+    std::vector<std::uint8_t> before;
+    for (exact_box_frame frame; scene.next(frame.boxes); frame = {}) {
+        std::vector<std::uint8_t> present(scene.present().begin(), scene.present().end());
+        if (present.empty()) present.assign(frame.boxes.size(), 1);
+        add_changes(frame, before, present);
+        for (std::uint32_t a = 0; a < frame.boxes.size(); ++a)
+            for (std::uint32_t b = a + 1; b < frame.boxes.size(); ++b)
+                if (present[a] && present[b] && share_a_point(frame.boxes[a], frame.boxes[b]))
+                    frame.pairs.push_back({a, b});
+        all.push_back(frame);
+    }
+    return all;
+}
+
+exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query asked) {
+    exact_meshes all;
+    for (exact_mesh_frame frame; scene.next(frame.poses); frame = {}) {
+        for (std::uint32_t a = 0; a < frame.poses.size(); ++a)
+            for (std::uint32_t b = a + 1; b < frame.poses.size(); ++b)
+                frame.objects.push_back(exact_objects_of(scene, frame.poses, {a, b}, asked));
+        all.frames.push_back(frame);
+    }
+    if (scene.meshes.size() != 1 || asked != extreme_query::all_pairs) return all;
+    const mesh& m = scene.meshes[0];
+    for (std::uint32_t a = 0; a < m.triangle_count(); ++a)
+        for (std::uint32_t b = a + 1; b < m.triangle_count(); ++b)
+            if (exactly_intersect(m.triangle(a), m.triangle(b))) all.self_pairs.push_back({a, b});
+    return all;
+}
+
+bool is_true_pair(const mesh_scene& scene, const exact_mesh_frame& frame, const exact_objects& objects,
+                  const index_pair& pair) {
+    const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
+    const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
+    if (pair.a >= a.triangle_count() || pair.b >= b.triangle_count()) return false;
+    const relative_pose to_a(frame.poses[objects.a], frame.poses[objects.b], bounds_of(b));
+    return exactly_intersect(a.triangle(pair.a), to_a(b.triangle(pair.b)));
+}
+
+}  // namespace aabb

@@ -1,0 +1,35 @@
+module;
+#include <cstdint>
+#include <vector>
+
+export module aabb.extreme:known_scenes;
+
+import :scene;
+
+export namespace aabb {
+
+/// `small` has fewer coincident triangles, for tests and a first look; all else is the same.
+enum class extreme_size : std::uint8_t { small, quick, full };
+
+/// Every extreme scene that needs no file and no generator, the same on every machine; scenes of boxes first. Those in
+/// which denormals are flushed are left out where that cannot be done.
+[[nodiscard]] std::vector<extreme_scene> extreme_scenes(extreme_size size);
+
+}  // namespace aabb
+
+// What the list is made of, a file each.
+namespace aabb {
+
+[[nodiscard]] std::vector<extreme_scene> box_shape_scenes();
+[[nodiscard]] std::vector<extreme_scene> box_place_scenes();
+[[nodiscard]] std::vector<extreme_scene> box_change_scenes();
+[[nodiscard]] std::vector<extreme_scene> touching_mesh_scenes();
+[[nodiscard]] std::vector<extreme_scene> coincident_triangle_scenes(extreme_size size);
+[[nodiscard]] std::vector<extreme_scene> thin_triangle_scenes();
+[[nodiscard]] std::vector<extreme_scene> mesh_scale_scenes();
+[[nodiscard]] std::vector<extreme_scene> pose_limit_scenes();
+[[nodiscard]] std::vector<extreme_scene> bad_box_scenes();
+[[nodiscard]] std::vector<extreme_scene> bad_mesh_scenes();
+[[nodiscard]] std::vector<extreme_scene> other_arithmetic_scenes();
+
+}  // namespace aabb
