@@ -20,9 +20,9 @@ needs=(
     'nlohmann-json3-dev           json-devel               <nlohmann/json.hpp>'
     'libxxhash-dev                xxhash-devel             <xxhash.h>'
 )
-# The same of what each engine needs, as its own line says. Where that is not to be had the engine is left out.
-mapfile -t engine_needs < <(sed -nE 's/^aabblab_engine\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\1 \2 \3/p' \
-    "$root/validation/engines/CMakeLists.txt")
+# The same of what each engine and integrator needs, as its own line says. Where that is not to be had it is left out.
+mapfile -t optional_needs < <(sed -nE 's/^aabblab_(engine|integrator)\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\2 \3 \4/p' \
+    "$root/validation/engines/CMakeLists.txt" "$root/experiments/stepping/CMakeLists.txt")
 [[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=(
     'clang-format-19   -  clang-format-19'
     'clang-tidy-19     -  clang-tidy-19'
@@ -234,7 +234,7 @@ note_lacking() {
     if [[ $fedora == - ]]; then unpackaged+=("$what"); else rpms+=("${names[@]}"); fi
 }
 
-# Sets `compiler`, or ends with all that is missing. Without what only engines need there is a build all the same.
+# Sets `compiler`, or ends with all that is missing. Without what only they need there is a build all the same.
 find_tools() {
     local lacking=() missing=() rpms=() unpackaged=() need essential
     for compiler in clang++-{19..29} clang++ ''; do
@@ -242,9 +242,9 @@ find_tools() {
     done
     for need in "${needs[@]}"; do note_lacking "$need"; done
     essential=${#lacking[@]}
-    for need in "${engine_needs[@]}"; do note_lacking "$need"; done
+    for need in "${optional_needs[@]}"; do note_lacking "$need"; done
     ((essential == 0)) || fail_lacking "$(no_installing) here is missing" "${lacking[@]}"
-    ((${#lacking[@]} == 0)) || say "engines that need $(listed "${lacking[@]}") are left out"
+    ((${#lacking[@]} == 0)) || say "engines and integrators that need $(listed "${lacking[@]}") are left out"
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
@@ -252,7 +252,7 @@ find_tools() {
 # Debian's packages of what the build needs. Those of gnuplot exclude each other, and any of them will do.
 build_packages() {
     local debian what need
-    for need in "${needs[@]}" "${engine_needs[@]}"; do
+    for need in "${needs[@]}" "${optional_needs[@]}"; do
         read -r debian _ what <<<"$need"
         if [[ $what != gnuplot ]] || ! has gnuplot; then printf '%s\n' "${debian//,/$'\n'}"; fi
     done

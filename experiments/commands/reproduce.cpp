@@ -17,6 +17,7 @@
 #include "process.hpp"
 
 #include "error_studies.hpp"
+#include "suite_report.hpp"
 
 import aabb.base;
 import aabblab.claims;
@@ -105,6 +106,25 @@ std::filesystem::path folder_of_study(const std::filesystem::path& folder, const
     return folder / "errors" / study.name;
 }
 
+/// The suites of `validate` that stand in the report.
+std::filesystem::path file_of_suite(const std::filesystem::path& folder, const std::string& suite) {
+    return folder / suite / "report.json";
+}
+
+/// @returns what is not as it must be
+std::vector<std::string> play_suites(const std::filesystem::path& folder, bool quick) {
+    std::vector<std::string> failures;
+    const auto keep = [&](const std::string& suite, const suite_report& report) {
+        keep_report(file_of_suite(folder, suite), report);
+        failures.insert(failures.end(), report.failures.begin(), report.failures.end());
+    };
+    note("the extreme scenes");
+    keep("extreme", play_extreme_suite(folder / "extreme", usual_cases(), quick, false));
+    note("the stiff scenes");
+    keep("stiff", play_stiff_suite(folder / "stiff", {}, quick, false));
+    return failures;
+}
+
 /// Plays every experiment of the paper, and keeps what is wrong as soon as it is found.
 void measure(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
@@ -129,6 +149,7 @@ void measure(const std::filesystem::path& folder, bool quick) {
                          study.name));
         add(measure_study(study, folder_of_study(folder, study), printed::nothing));
     }
+    add(play_suites(folder, quick));
 }
 
 /// Error against run time, from the results of the studies that are there.
@@ -166,6 +187,34 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
     return section;
 }
 
+/// Of a suite, where it was played.
+std::optional<report_section> suite_section(const std::filesystem::path& folder, const std::string& suite,
+                                            const std::string& title, const std::string& about) {
+    if (!std::filesystem::exists(file_of_suite(folder, suite))) return std::nullopt;
+    suite_report report = kept_report(file_of_suite(folder, suite));
+    report_section section{suite, title, {about}, std::move(report.figures), {}};
+    for (captioned_table& t : report.tables) section.tables.push_back({t.name, t.caption, std::move(t.content)});
+    std::ranges::move(report.paragraphs, std::back_inserter(section.paragraphs));
+    return section;
+}
+
+/// What the reports have behind the claims.
+std::vector<report_section> sections_of(const std::filesystem::path& folder, bool quick) {
+    std::vector<report_section> sections;
+    if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
+        sections.push_back(std::move(errors));
+    if (auto extreme =
+            suite_section(folder, "extreme", "Extreme scenes",
+                          "Beyond the paper: every composition and engine where exactness is hardest, exact, "
+                          "refused with the reason, or wrong."))
+        sections.push_back(*std::move(extreme));
+    if (auto stiff = suite_section(folder, "stiff", "Stiff scenes",
+                                   "Beyond the paper: bodies stepped in time, pushed by the contacts that are found, "
+                                   "and held against closed forms and published results."))
+        sections.push_back(*std::move(stiff));
+    return sections;
+}
+
 /// The verdicts as a terminal shows them.
 std::string verdict_text(const reproduction& all) {
     std::string text;
@@ -187,11 +236,9 @@ int reproduce(const reproduce_request& request) {
     if (!request.judge) measure(folder, request.quick);
     const std::vector<std::string> failures = kept_failures(folder);
     const reproduction all = judged(measurements(folder));
-    std::vector<report_section> sections{errors_section(folder, request.quick)};
-    if (sections[0].figures.empty()) sections.clear();
-    write_reproduction(folder, all, sections, failures);
+    write_reproduction(folder, all, sections_of(folder, request.quick), failures);
     print(verdict_text(all));
-    if (!failures.empty()) print(fmt::format("\n{} compositions were wrong; they have no times:\n", failures.size()));
+    if (!failures.empty()) print(fmt::format("\n{} answers were wrong; they have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
     print("\nThe report is " + visible((folder / "report.html").string()) + "\n");
     return failures.empty() ? 0 : 1;

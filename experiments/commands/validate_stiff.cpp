@@ -1,9 +1,10 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 
 #include "commands.hpp"
 #include "output.hpp"
+
+#include "suite_report.hpp"
 
 import aabb.base;
 import aabb.policy;
@@ -54,19 +57,20 @@ std::string wrapped(const std::string& text) {
 }
 
 /// A table for each quantity.
-std::string tables_of(const stiff_result& result) {
-    std::vector<std::string> quantities;
-    for (const stiff_row& r : result.rows)
-        if (std::ranges::find(quantities, r.quantity) == quantities.end()) quantities.push_back(r.quantity);
-    std::string text;
-    for (const std::string& quantity : quantities) {
-        table t{{{quantity, false}, {"measured"}, {"expected", false}, {"", false}}, {}};
-        for (const stiff_row& r : result.rows)
-            if (r.quantity == quantity)
-                t.rows.push_back({r.subject, fmt::format("{:.4g}", r.measured), r.rule, std::string(verdict_of(r))});
-        text += to_text(t) + "\n";
+std::vector<captioned_table> tables_of(const stiff_study& study, const stiff_result& result) {
+    std::vector<captioned_table> all;
+    for (const stiff_row& r : result.rows) {
+        const std::string caption = fmt::format("{}: {}", study.name, r.quantity);
+        auto found = std::ranges::find(all, caption, &captioned_table::caption);
+        if (found == all.end()) {
+            const std::string name = fmt::format("{}_{}", study.name, all.size() + 1);
+            all.push_back({name, caption, {{{r.quantity, false}, {"measured"}, {"expected", false}, {"", false}}, {}}});
+            found = all.end() - 1;
+        }
+        found->content.rows.push_back(
+            {r.subject, fmt::format("{:.4g}", r.measured), r.rule, std::string(verdict_of(r))});
     }
-    return text;
+    return all;
 }
 
 /// Those of these names, all where none is given.
@@ -86,39 +90,60 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
 int validate_stiff(const stiff_request& request) {
     outlive_reader();
     const std::filesystem::path folder = request.out.value_or(request.quick ? "results/stiff-quick" : "results/stiff");
+    const suite_report report = play_stiff_suite(folder, request.studies, request.quick, true);
+    print(report.failures.empty() ? "Everything is as expected.\n"
+                                  : std::to_string(report.failures.size()) + " values are not as expected.\n");
+    print("Every number is in " + visible((folder / "stiff.csv").string()) + ",\nevery plot in " +
+          visible((folder / "figures").string()) + "\n");
+    return report.failures.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+suite_report play_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies, bool quick,
+                              bool shown) {
+    const std::vector<stiff_study> chosen = chosen_studies(studies);
     std::filesystem::create_directories(folder);
     for (const std::string_view name : left_out_integrators())
         note("the integrator " + std::string(name) + " is left out of this build: its library was not found");
-    table all{{{"study", false}, {"what", false}, {"quantity", false}, {"measured"}, {"expected", false}, {"verdict", false}},
+    suite_report report;
+    table all{{{"study", false},
+               {"subject", false},
+               {"quantity", false},
+               {"measured"},
+               {"expected", false},
+               {"verdict", false}},
               {}};
-    std::size_t failed = 0;
-    for (const stiff_study& study : chosen_studies(request.studies)) {
-        progress shown("playing " + std::string(study.name), 1000);
-        const stiff_result result =
-            study.play({request.quick, usual_contender(), [&](double share) {
-                            shown.at(static_cast<std::size_t>(1000 * share));
-                        }});
-        shown.hide();
-        print(fmt::format("{}\n\n{}", wrapped(fmt::format("{}: {}. Expected: {}.", study.name, study.about,
-                                                         study.reference)),
-                          tables_of(result)));
-        flush_output();
+    for (const stiff_study& study : chosen) {
+        stiff_result result;
+        {
+            progress done("playing " + std::string(study.name), 1000);
+            result = study.play(
+                {quick, usual_contender(), [&](double share) { done.at(static_cast<std::size_t>(1000 * share)); }});
+        }
+        report.paragraphs.push_back(fmt::format("{}: {}. Expected: {}.", study.name, study.about, study.reference));
+        const std::vector<captioned_table> tables = tables_of(study, result);
+        if (shown) {
+            print(wrapped(report.paragraphs.back()) + "\n\n");
+            for (const captioned_table& t : tables) print(to_text(t.content) + "\n");
+            flush_output();
+        }
         for (const stiff_row& r : result.rows) {
-            failed += r.holds ? 0 : 1;
             all.rows.push_back({std::string(study.name), r.subject, r.quantity, fmt::format("{}", r.measured), r.rule,
                                 std::string(verdict_of(r))});
+            if (!r.holds)
+                report.failures.push_back(
+                    fmt::format("{}: {}: {} is {:.4g}, not {}", study.name, r.subject, r.quantity, r.measured, r.rule));
         }
         // What is finished stays, whatever happens afterwards.
         write_file(folder / "stiff.csv", to_csv(all));
         draw(folder / "figures", result.figures);
+        std::ranges::copy(tables, std::back_inserter(report.tables));
+        std::ranges::copy(result.figures, std::back_inserter(report.figures));
     }
-    print(failed == 0 ? "Everything is as expected.\n" : std::to_string(failed) + " are not as expected.\n");
-    print("Every number is in " + visible((folder / "stiff.csv").string()) + ",\nevery plot in " +
-          visible((folder / "figures").string()) + "\n");
-    return failed == 0 ? 0 : 1;
+    for (const std::string& sentence : report.failures) note(sentence);
+    return report;
 }
-
-}  // namespace
 
 void add_validate_stiff(CLI::App& validate, int& status) {
     auto* command = validate.add_subcommand(

@@ -17,8 +17,7 @@ import :rotation;
 
 namespace aabblab {
 
-stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> meshes,
-                                                 std::uint64_t seed) {
+stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> meshes, std::uint64_t seed) {
     constexpr double gravity = 9.81;
     constexpr double gap = 1.05;
     constexpr double perturbation = 0.005;
@@ -43,11 +42,8 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
         for (int k = 0; k < 2; ++k) place[k] -= extent * gap * (side - 1) / 2;
         place[2] += extent * (c.height + 0.5);
         const aabb::pose at = placed(centre_of(bounds), random_rotation(random), place);
-        world.bodies.push_back({.mesh = 1,
-                                .position = at.translation,
-                                .velocity = {0, 0, -c.speed},
-                                .mass = 1,
-                                .rotation = at.rotation});
+        world.bodies.push_back(
+            {.mesh = 1, .position = at.translation, .velocity = {0, 0, -c.speed}, .mass = 1, .rotation = at.rotation});
     }
     return world;
 }

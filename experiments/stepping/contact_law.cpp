@@ -127,9 +127,8 @@ contact_force force_of(const contact_law& law, std::span<const aabb::contact> co
                        const placed_mesh& second, const vec3d& approach) {
     if (law.geometry == contact_geometry::shared_volume) return pressure(law, contacts, first, second, approach);
     std::vector<depth_of_vertex> depths = depths_of(contacts, first, second, law.rest);
-    return law.geometry == contact_geometry::deepest_vertex
-               ? spring_at_deepest(law, depths, approach)
-               : springs_at_each(law, std::move(depths), approach);
+    return law.geometry == contact_geometry::deepest_vertex ? spring_at_deepest(law, depths, approach)
+                                                            : springs_at_each(law, std::move(depths), approach);
 }
 
 }  // namespace aabblab

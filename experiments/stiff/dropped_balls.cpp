@@ -87,8 +87,8 @@ double dropped_balls::greatest_depth(const std::vector<double>& p) const {
     double least = diameter_;
     for (std::size_t i = 1; 3 * i < p.size(); ++i)
         for (std::size_t j = i + 1; 3 * j < p.size(); ++j)
-            least = std::min(least, std::hypot(p[3 * i] - p[3 * j], p[3 * i + 1] - p[3 * j + 1],
-                                               p[3 * i + 2] - p[3 * j + 2]));
+            least = std::min(least,
+                             std::hypot(p[3 * i] - p[3 * j], p[3 * i + 1] - p[3 * j + 1], p[3 * i + 2] - p[3 * j + 2]));
     return 1 - least / diameter_;
 }
 

@@ -37,14 +37,15 @@ std::vector<method> triangle_methods() {
     for (const aabb::engine_info& engine : aabb::engines())
         // brute_force decides on triangles as cgal does, and takes longer.
         if (engine.collides_meshes && engine.name != "brute_force")
-            if (std::optional<contender> who = contender_of(engine, true)) all.push_back({engine.name, *std::move(who)});
+            if (std::optional<contender> who = contender_of(engine, true))
+                all.push_back({engine.name, *std::move(who)});
     return all;
 }
 
 std::vector<method> tree_methods() {
     std::vector<method> all;
-    for (const char* const tree : {"tree compressed", "tree quantized:bits=16", "tree quantized:bits=8",
-                                   "tree quantized:bits=4"})
+    for (const char* const tree :
+         {"tree compressed", "tree quantized:bits=16", "tree quantized:bits=8", "tree quantized:bits=4"})
         all.push_back(composed(tree));
     return all;
 }

@@ -2,17 +2,29 @@ module;
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 module aabblab.stiff;
 
 import :rules;
+import :study;
+import aabb.base;
 
 namespace aabblab {
 
 std::string short_number(double value) {
     return fmt::format("{:.4g}", value);
+}
+
+void unless_it_gives_up(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
+    try {
+        part();
+    } catch (const aabb::input_error& error) {
+        result.rows.push_back({error.what(), "gives up: " + std::string(integrator), 1, "never", false});
+    }
 }
 
 stiff_row told(std::string subject, std::string quantity, double measured) {

@@ -8,7 +8,8 @@ import aabb.geometry;
 
 namespace aabblab {
 
-/// Eight triangles on the lowest of their six vertices, which is the origin: depths below a floor have all their digits.
+/// Eight triangles on the lowest of their six vertices, which is the origin: depths below a floor have all their
+/// digits.
 [[nodiscard]] aabb::mesh octahedron(float radius);
 /// A square in z = 0 around the origin, facing up, cut into n × n squares of two triangles.
 [[nodiscard]] aabb::mesh floor_of(float side, std::uint32_t n = 1);

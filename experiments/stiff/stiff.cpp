@@ -20,9 +20,8 @@ stiff_study dropped_study();
 stiff_study sliding_study();
 
 std::span<const stiff_study> stiff_studies() {
-    static const std::array all = {ball_bounces_study(), stability_study(), overdamped_study(),
-                                   bouncing_study(),     stack_study(),     plate_study(),
-                                   dropped_study(), sliding_study()};
+    static const std::array all = {ball_bounces_study(), stability_study(), overdamped_study(), bouncing_study(),
+                                   stack_study(),        plate_study(),     dropped_study(),    sliding_study()};
     return all;
 }
 

@@ -6,7 +6,6 @@ module;
 
 export module aabblab.stiff:study;
 
-
 import aabblab.figures;
 import aabblab.play;
 

@@ -5,8 +5,10 @@
 unset AABBLAB_PRESET AABBLAB_INSTALL AABBLAB_LINT AABBLAB_DATA
 mkdir checkout bin sources
 cp -r "$root/aabblab" "$root/CMakePresets.json" "$root/cmake" checkout/
-mkdir -p checkout/validation/engines
-cp "$root/validation/engines/CMakeLists.txt" checkout/validation/engines/
+for folder in validation/engines experiments/stepping; do
+    mkdir -p "checkout/$folder"
+    cp "$root/$folder/CMakeLists.txt" "checkout/$folder/"
+done
 sed -i "s|/etc/os-release|$work/os-release|g; s|/etc/apt/sources.list.d|$work/sources|g" checkout/cmake/setup.bash
 holds 'the system is made up' grep -q "$work/os-release" checkout/cmake/setup.bash
 holds 'so are its package sources' grep -q "$work/sources" checkout/cmake/setup.bash

@@ -20,8 +20,8 @@ import :rotation;
 
 namespace aabblab {
 
-/// Balls that fall on a floor and on each other, stepped in time by semi-implicit Euler: what is found in one frame moves
-/// them to the next. The first mesh is the floor, the second the ball.
+/// Balls that fall on a floor and on each other, stepped in time by semi-implicit Euler: what is found in one frame
+/// moves them to the next. The first mesh is the floor, the second the ball.
 class dropped final : public aabb::mesh_scene {
 public:
     static constexpr std::string_view name = "dropped";
@@ -69,8 +69,7 @@ public:
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames_) return false;
         if (frame_++ > 0)
-            for (std::size_t i = 0; i < state_.position.size(); ++i)
-                state_.position[i] += step_ * state_.velocity[i];
+            for (std::size_t i = 0; i < state_.position.size(); ++i) state_.position[i] += step_ * state_.velocity[i];
         world_.place(state_.position, poses);
         return true;
     }

@@ -124,8 +124,11 @@ private:
 }  // namespace
 
 integrator_info bdf_integrator() {
-    return {"bdf", "backward differences of orders 1 to 5 with Newton's method, for stiff systems (SUNDIALS' CVODE)", true,
-            5, std::numeric_limits<double>::infinity(),
+    return {"bdf",
+            "backward differences of orders 1 to 5 with Newton's method, for stiff systems (SUNDIALS' CVODE)",
+            true,
+            5,
+            std::numeric_limits<double>::infinity(),
             [](double tolerance) -> std::unique_ptr<integrator> { return std::make_unique<bdf>(tolerance); }};
 }
 

@@ -30,8 +30,12 @@ private:
 }  // namespace
 
 integrator_info symplectic_euler_integrator() {
-    return {"symplectic_euler", "semi-implicit Euler: a step with the old velocity, then the force there (Boost.odeint)",
-            false, 1, 2, [](double) -> std::unique_ptr<integrator> { return std::make_unique<symplectic_euler>(); }};
+    return {"symplectic_euler",
+            "semi-implicit Euler: a step with the old velocity, then the force there (Boost.odeint)",
+            false,
+            1,
+            2,
+            [](double) -> std::unique_ptr<integrator> { return std::make_unique<symplectic_euler>(); }};
 }
 
 }  // namespace aabblab

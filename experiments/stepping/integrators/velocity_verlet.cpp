@@ -28,7 +28,11 @@ private:
 }  // namespace
 
 integrator_info velocity_verlet_integrator() {
-    return {"velocity_verlet", "central differences with the velocity at full steps (Boost.odeint)", false, 2, 2,
+    return {"velocity_verlet",
+            "central differences with the velocity at full steps (Boost.odeint)",
+            false,
+            2,
+            2,
             [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
 }
 

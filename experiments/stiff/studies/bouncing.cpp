@@ -18,12 +18,12 @@ namespace aabblab {
 
 namespace {
 
-constexpr double height = 5;         // m
-constexpr double mass = 10;          // kg
-constexpr double gravity = 9.81;     // m/s²
+constexpr double height = 5;      // m
+constexpr double mass = 10;       // kg
+constexpr double gravity = 9.81;  // m/s²
 // As soft as the ball's size allows: 71 mm deep, and 1 ms is 5 % of the contact time.
-constexpr double stiffness = 2e5;    // N/m
-constexpr double duration = 20;      // s
+constexpr double stiffness = 2e5;  // N/m
+constexpr double duration = 20;    // s
 
 stepped_world bouncing_balls() {
     stepped_world world;
@@ -100,12 +100,13 @@ stiff_result play_bouncing(const stiff_setting& setting) {
 }
 
 stiff_study bouncing_study() {
-    return {"bouncing",
-            "49 balls of 10 kg fall 5 m and bounce without loss for 20 s on springs of 2e5 N/m: energy that must not "
-            "creep; errors are relative to the energy at the beginning",
-            "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
-            "DART with impulses",
-            &play_bouncing};
+    return {
+        "bouncing",
+        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s on springs of 2e5 N/m: energy that must not "
+        "creep; errors are relative to the energy at the beginning",
+        "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
+        "DART with impulses",
+        &play_bouncing};
 }
 
 }  // namespace aabblab

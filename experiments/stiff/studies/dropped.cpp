@@ -33,7 +33,8 @@ void hold_methods(const dropped_balls& balls, const std::string& size, const sti
     const double step = balls.seconds(1e-3);
     const trajectory right = balls.play(setting.who, verlet, step, 1, false);
     figure plot{.name = "departure_" + size,
-                .caption = "How far balls of " + size + " are from where exact contacts take them, because of a triangle "
+                .caption = "How far balls of " + size +
+                           " are from where exact contacts take them, because of a triangle "
                            "test, an engine or a stale list; what never departs is not drawn.",
                 .x = {"time (s)", false, {}},
                 .y = {"greatest distance over a ball's diameter", true, {}},
@@ -68,8 +69,9 @@ void hold_methods(const dropped_balls& balls, const std::string& size, const sti
 /// Error over run time: each integrator over its step, and stale lists over how stale they are.
 void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
     figure cost{.name = "error_over_time",
-                .caption = "Error of a trajectory over the time that detection takes for it: each integrator over its "
-                           "step, and a stale list over the frames from search to search, with steps of 1 ms.",
+                .caption =
+                    "Error of a trajectory over the time that detection takes for it: each integrator over its "
+                    "step, and a stale list over the frames from search to search, with steps of 1 ms.",
                 .x = {"detection (ms)", true, {}},
                 .y = {"greatest distance from the right place (diameters)", true, {}},
                 .lines = {},
@@ -124,12 +126,14 @@ stiff_result play_dropped(const stiff_setting& setting) {
 }
 
 stiff_study dropped_study() {
-    return {"dropped",
-            "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other without loss, pushed "
-            "by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
-            "the trajectory of exact contacts; energy within (dt·ω)² for an integrator of second order; SimBenchmark's "
-            "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
-            &play_dropped};
+    return {
+        "dropped",
+        "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other without loss, "
+        "pushed "
+        "by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
+        "the trajectory of exact contacts; energy within (dt·ω)² for an integrator of second order; SimBenchmark's "
+        "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
+        &play_dropped};
 }
 
 }  // namespace aabblab

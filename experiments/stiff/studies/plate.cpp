@@ -20,16 +20,19 @@ namespace aabblab {
 
 namespace {
 
-constexpr float thickness = 0.01F;  // of the plate, m
-constexpr float radius = 0.05F;     // of the body
+constexpr float thickness = 0.01F;                                // of the plate, m
+constexpr float radius = 0.05F;                                   // of the body
 constexpr double reach = double{thickness} + 2 * double{radius};  // on which the body touches the plate
 
 /// A body that flies down through a plate, past it with this way a frame, and begins somewhere within a frame.
 class shot {
 public:
     shot(const contender& who, double way)
-        : plate_(slab(2, thickness)), body_(octahedron(radius)), way_(way),
-          global_(who.make_global(aabb::instrumentation::none)), local_(who.make_local(aabb::instrumentation::none)) {
+        : plate_(slab(2, thickness)),
+          body_(octahedron(radius)),
+          way_(way),
+          global_(who.make_global(aabb::instrumentation::none)),
+          local_(who.make_local(aabb::instrumentation::none)) {
         for (const std::uint32_t id : {0U, 1U}) global_->insert(id);
         local_->add_model(plate_);
         local_->add_model(body_);
@@ -116,11 +119,12 @@ stiff_result play_plate(const stiff_setting& setting) {
 }
 
 stiff_study plate_study() {
-    return {"plate",
-            "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step; plain boxes "
-            "stand where a step ends, swept ones reach from step to step and are looked into in parts",
-            "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
-            &play_plate};
+    return {
+        "plate",
+        "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step; plain boxes "
+        "stand where a step ends, swept ones reach from step to step and are looked into in parts",
+        "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
+        &play_plate};
 }
 
 }  // namespace aabblab

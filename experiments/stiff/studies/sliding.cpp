@@ -22,11 +22,11 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::uint32_t tips = 8;     // on each side of the upper mesh
-constexpr double distance = 0.25;     // from tip to tip; all lengths are in sizes of the meshes
-constexpr double rest = 1e-3;         // to which a spring is compressed that only touches
+constexpr std::uint32_t tips = 8;  // on each side of the upper mesh
+constexpr double distance = 0.25;  // from tip to tip; all lengths are in sizes of the meshes
+constexpr double rest = 1e-3;      // to which a spring is compressed that only touches
 constexpr int positions = 257;
-constexpr double way = 1.0 / 128;     // from one to the next
+constexpr double way = 1.0 / 128;  // from one to the next
 
 /// Many teeth that stand on their tips, each a triangle, so that nothing but one pair or those of one edge tells of it.
 aabb::mesh comb() {
@@ -34,7 +34,8 @@ aabb::mesh comb() {
     for (std::uint32_t i = 0; i < tips * tips; ++i) {
         const auto x = static_cast<float>(distance * (i % tips - 0.5 * tips) - 1);
         const auto y = static_cast<float>(distance * (i / tips - 0.5 * tips));
-        for (const aabb::vec3f& v : {aabb::vec3f{x, y, 0}, {x + 0.06F, y + 0.08F, 0.125F}, {x - 0.06F, y - 0.08F, 0.125F}})
+        for (const aabb::vec3f& v :
+             {aabb::vec3f{x, y, 0}, {x + 0.06F, y + 0.08F, 0.125F}, {x - 0.06F, y - 0.08F, 0.125F}})
             all.vertices.push_back(v);
         all.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
@@ -116,8 +117,9 @@ stiff_result play_sliding(const stiff_setting& setting) {
                                    {"above, 10 mm", oblique(), 0.01, -1e-5},
                                    {"above, 0.1 mm", oblique(), 1e-4, -1e-5}};
     figure plot{.name = "sliding_force",
-                .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed by a "
-                           "100,000th, over the one that 64 teeth share; what keeps it is not drawn.",
+                .caption =
+                    "The force between two meshes of 10 mm that slide along each other, oblique and pressed by a "
+                    "100,000th, over the one that 64 teeth share; what keeps it is not drawn.",
                 .x = {"way over size", false, {}},
                 .y = {"force over the right one", false, {}},
                 .lines = {{"exact", series_style::level, {{0, 1, 1, 1}}}},
@@ -157,7 +159,8 @@ stiff_result play_sliding(const stiff_setting& setting) {
 
 stiff_study sliding_study() {
     return {"sliding",
-            "A mesh of 64 teeth, each a triangle, slides on its tips along a flat mesh, over its vertices and edges, as large as 1 m, "
+            "A mesh of 64 teeth, each a triangle, slides on its tips along a flat mesh, over its vertices and edges, "
+            "as large as 1 m, "
             "10 mm and 0.1 mm: each tip that is found to touch carries a 64th of the load; and a "
             "100,000th of their size above it, where there is no load",
             "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4", &play_sliding};

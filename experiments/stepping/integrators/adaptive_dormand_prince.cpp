@@ -1,0 +1,50 @@
+module;
+#include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+module aabblab.stepping;
+
+import :first_order;
+
+namespace aabblab {
+
+namespace {
+
+class adaptive_dormand_prince final : public integrator {
+public:
+    explicit adaptive_dormand_prince(double tolerance) : tolerance_(tolerance) {}
+
+    void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
+        namespace odeint = boost::numeric::odeint;
+        using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;
+        first_order_system system(acceleration, state);
+        odeint::integrate_adaptive(odeint::make_controlled<stepper>(tolerance_, tolerance_), system, system.both(),
+                                   state.time, state.time + step, step);
+        system.store(state);
+        state.time += step;
+    }
+
+private:
+    double tolerance_;
+};
+
+}  // namespace
+
+integrator_info adaptive_dormand_prince_integrator() {
+    return {"adaptive_dormand_prince",
+            "the same with steps of its own choice, after a tolerance (Boost.odeint)",
+            true,
+            5,
+            std::numeric_limits<double>::infinity(),
+            [](double tolerance) -> std::unique_ptr<integrator> {
+                return std::make_unique<adaptive_dormand_prince>(tolerance);
+            }};
+}
+
+}  // namespace aabblab

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "../validation/altered_stages.hpp"
+
+import aabblab.play;
+import aabblab.stiff;
+
+namespace {
+
+aabblab::stiff_result played(std::string_view name, const aabblab::contender& who) {
+    const auto study = std::ranges::find(aabblab::stiff_studies(), name, &aabblab::stiff_study::name);
+    REQUIRE(study != aabblab::stiff_studies().end());
+    return study->play({.quick = true, .who = who});
+}
+
+std::string wrong_in(const aabblab::stiff_result& result) {
+    std::string all;
+    for (const aabblab::stiff_row& r : result.rows)
+        if (!r.holds)
+            all += r.subject + ": " + r.quantity + " is " + std::to_string(r.measured) + ", not " + r.rule + "\n";
+    return all;
+}
+
+/// The usual one, but each so many-th detection finds nothing.
+aabblab::contender forgetful(std::size_t every) {
+    aabblab::contender who = aabblab::usual_contender();
+    who.make_local = [every](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
+        return std::make_unique<aabb::altered_meshes>(
+            aabb::alterations{.all_pairs = [every, calls = std::size_t{0}](aabb::pair_list& pairs) mutable {
+                if (++calls % every == 0) pairs.clear();
+            }});
+    };
+    return who;
+}
+
+}  // namespace
+
+TEST_CASE("every study of the stiff suite comes out as expected") {
+    for (const std::string_view name : {"ball_bounces", "stability", "overdamped", "stack", "plate", "sliding"}) {
+        const aabblab::stiff_result result = played(name, aabblab::usual_contender());
+        INFO(name);
+        REQUIRE(result.rows.size() > 5);
+        REQUIRE(wrong_in(result) == "");
+        // Something is expected of the half of them, or nothing is tested.
+        REQUIRE(std::ranges::count_if(result.rows, [](const auto& r) { return !r.rule.empty(); }) > 3);
+    }
+}
+
+TEST_CASE("a contact that is dropped every thousandth step turns verdicts") {
+    const std::string wrong = wrong_in(played("stability", forgetful(1000)));
+    REQUIRE(wrong.find("velocity_verlet, dt·ω 0.05: energy drift") != std::string::npos);
+    REQUIRE(wrong.find("dormand_prince, dt·ω 0.05: energy drift") != std::string::npos);
+    // Within a single contact of 63 steps it shows only when it comes more often.
+    REQUIRE(wrong_in(played("ball_bounces", forgetful(1000))) == "");
+    REQUIRE(wrong_in(played("ball_bounces", forgetful(40))).find("trajectory error") != std::string::npos);
+}
+
+TEST_CASE("who finds no contact lets bodies through") {
+    aabblab::contender blind = aabblab::usual_contender();
+    blind.make_local = [](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
+        return std::make_unique<aabb::altered_meshes>(
+            aabb::alterations{.all_pairs = [](aabb::pair_list& pairs) { pairs.clear(); },
+                              .first_pair = [](std::optional<aabb::index_pair>& pair) { pair.reset(); }});
+    };
+    REQUIRE(wrong_in(played("ball_bounces", blind)).find("restitution") != std::string::npos);
+    REQUIRE(wrong_in(played("plate", blind)).find("swept: share tunnelled") != std::string::npos);
+}
