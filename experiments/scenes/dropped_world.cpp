@@ -32,9 +32,9 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     const double area = std::numbers::pi * extent;       // 2πR
     world.law = {contact_geometry::shared_volume, spring / area, 2 * c.loss * std::sqrt(spring) / area, 0};
     std::uint32_t side = 1;
-    while (std::uint64_t{side} * side * side < c.objects) ++side;
+    while (std::uint64_t{side} * side * side < c.balls) ++side;
     random_source random(seed);
-    for (std::uint32_t i = 0; i < c.objects; ++i) {
+    for (std::uint32_t i = 0; i < c.balls; ++i) {
         const std::array<double, 3> cell = {double(i % side), double(i / side % side), double(i / side / side)};
         aabb::vec3d place{};
         for (int k = 0; k < 3; ++k)

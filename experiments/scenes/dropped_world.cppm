@@ -13,7 +13,7 @@ export namespace aabblab {
 /// way of its own: SimBenchmark's 666 test (leggedrobotics/SimBenchmark), with meshes for spheres. Lengths are in
 /// longest extents of the ball, which are in metres.
 struct dropped_config {
-    std::uint32_t objects = 216;
+    std::uint32_t balls = 216;
     double height = 0.5;   ///< of the lowest ball above the floor
     double speed = 0;      ///< downwards at the beginning, m/s
     double depth = 0.001;  ///< to which one ball's weight presses it into the floor: the less, the stiffer

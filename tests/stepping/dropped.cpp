@@ -13,7 +13,7 @@ import aabblab.stepping;
 namespace {
 
 const aabblab::scene_choice few_balls{
-    "dropped", {{"objects", "8"}, {"frames", "150"}, {"height", "0.05"}, {"speed", "3"}, {"depth", "0.002"}}, {}, 3};
+    "dropped", {{"balls", "8"}, {"frames", "150"}, {"height", "0.05"}, {"speed", "3"}, {"depth", "0.002"}}, {}, 3};
 
 /// Where an integrator looks.
 class looked_at final : public aabb::mesh_scene {
@@ -64,7 +64,7 @@ TEST_CASE("the scene dropped is what symplectic_euler makes of its world") {
     });
 
     const aabblab::stepped_world world =
-        aabblab::dropped_world({.objects = 8, .height = 0.05, .speed = 3, .depth = 0.002},
+        aabblab::dropped_world({.balls = 8, .height = 0.05, .speed = 3, .depth = 0.002},
                                {scene.meshes()->meshes[0], scene.meshes()->meshes[1]}, 3);
     auto* const looked = new looked_at(world);
     aabblab::motion_state state = world.start();

@@ -31,7 +31,7 @@ public:
     static constexpr std::size_t most_meshes = 2;
 
     struct config {
-        std::uint32_t objects = 216;
+        std::uint32_t balls = 216;
         std::uint32_t frames = 1000;
         double step = 0.001;
         double height = 0.5;
@@ -41,7 +41,7 @@ public:
         scaling normalise = scaling::yes;
     };
     static constexpr std::tuple parameters{
-        aabb::integer_parameter{"objects", &config::objects, 0U, 0x7ffffffeU, "how many balls"},
+        aabb::integer_parameter{"balls", &config::balls, 0U, 0x7ffffffeU, "how many balls"},
         aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"},
         aabb::number_parameter{"step", &config::step, 0.0, 1e6, "of time from frame to frame, in seconds"},
         aabb::number_parameter{"height", &config::height, 0.0, 1e6, "of the lowest ball above the floor, in extents",
@@ -57,7 +57,7 @@ public:
         : frames_(std::size_t{c.frames} + 1), step_(c.step) {
         if (given.size() != 2) throw aabb::input_error("dropped needs two meshes: a floor and a ball");
         if (c.normalise == scaling::yes) normalise(given[1]);
-        world_ = dropped_world({c.objects, c.height, c.speed, c.depth, c.loss}, std::move(given), seed);
+        world_ = dropped_world({c.balls, c.height, c.speed, c.depth, c.loss}, std::move(given), seed);
         state_ = world_.start();
         acceleration_.resize(state_.position.size());
         meshes = world_.meshes;
