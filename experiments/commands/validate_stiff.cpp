@@ -149,7 +149,10 @@ void add_validate_stiff(CLI::App& validate, int& status) {
     auto* command = validate.add_subcommand(
         "stiff", "Bodies stepped in time through detection, held against closed forms and published results");
     auto request = std::make_shared<stiff_request>();
-    command->add_option("STUDY", request->studies, "Some of the studies by name; without, all of them")->type_name("");
+    std::string names;
+    for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);
+    command->add_option("STUDY", request->studies, "Some of the studies, without any all of them: " + names)
+        ->type_name("");
     command->add_option("--out", request->out, "Folder of table and plots (default results/stiff)")->type_name("DIR");
     command->add_flag("--quick", request->quick, "Fewer and shorter, for a first look");
     command->callback([request, &status] { status = validate_stiff(*request); });

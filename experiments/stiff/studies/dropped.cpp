@@ -27,12 +27,12 @@ std::vector<method> all_methods() {
 }
 
 /// What each method does to the trajectory, with one step of time.
-void hold_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
-                  stiff_result& result) {
+void hold_methods(const dropped_balls& balls, const std::string& file, const std::string& size,
+                  const stiff_setting& setting, stiff_result& result) {
     const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double step = balls.seconds(1e-3);
     const trajectory right = balls.play(setting.who, verlet, step, 1, false);
-    figure plot{.name = "departure_" + size,
+    figure plot{.name = "departure_" + file,
                 .caption = "How far balls of " + size +
                            " are from where exact contacts take them, because of a triangle "
                            "test, an engine or a stale list; what never departs is not drawn.",
@@ -120,8 +120,8 @@ stiff_result play_dropped(const stiff_setting& setting) {
     // The mean of the squared error over their run, J², of 34,454 J.
     result.rows.push_back(told("published: ODE, 0.001 s", "energy error, RMS", std::sqrt(112.326) / 34454));
     result.rows.push_back(told("published: Bullet, 0.001 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
-    hold_methods(balls, "1 m", setting, result);
-    hold_methods(dropped_balls(side, 0.01), "10 mm", setting, result);
+    hold_methods(balls, "1_m", "1 m", setting, result);
+    hold_methods(dropped_balls(side, 0.01), "10_mm", "10 mm", setting, result);
     return result;
 }
 

@@ -129,7 +129,8 @@ stiff_result play_stability(const stiff_setting& setting) {
                 if (i.adaptive) {
                     result.rows.push_back(told(subject, "energy drift", drift));
                 } else if (i.order < 5) {
-                    result.rows.push_back(at_most(subject, "energy drift, without sign", std::abs(drift), 0.05));
+                    result.rows.push_back(
+                        at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
                     const double lost = std::pow(kept_by_dormand_prince(scaled),
                                                  0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled) -

@@ -88,8 +88,7 @@ stiff_study stack_study() {
     return {"stack",
             "Ten bodies on each other, light under heavy, on springs of 1e6 N/m and dashpots that are critical for the "
             "slowest motion: how deep each is in the one below after 2 s",
-            "mg/k, where m is all mass above; the scenes are Box2D's HighMassRatio1 and Jolt's HeavyOnLightTest, whose "
-            "iterative solvers let the stack sink",
+            "mg/k, where m is all mass above; after the scenes HighMassRatio1 of Box2D and HeavyOnLightTest of Jolt",
             &play_stack};
 }
 
