@@ -35,7 +35,7 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     while (std::uint64_t{side} * side * side < c.balls) ++side;
     random_source random(seed);
     for (std::uint32_t i = 0; i < c.balls; ++i) {
-        const std::array<double, 3> cell = {double(i % side), double(i / side % side), double(i / side / side)};
+        const std::array cell = {i % side, i / side % side, i / side / side};
         aabb::vec3d place{};
         for (int k = 0; k < 3; ++k)
             place[k] = extent * (gap * cell[static_cast<std::size_t>(k)] + perturbation * random.within());

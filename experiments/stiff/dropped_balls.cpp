@@ -35,10 +35,9 @@ aabb::mesh ball_of(double diameter) {
 dropped_balls::dropped_balls(std::size_t side, double diameter) : diameter_(diameter) {
     // The last half of a diameter; what is before it has a closed form.
     const double fallen = 4.5 * diameter;
-    world_ = dropped_world({.balls = static_cast<std::uint32_t>(side * side * side),
-                            .height = 0.5,
-                            .speed = std::sqrt(2 * 9.81 * fallen)},
-                           {make_mesh("square").mesh, ball_of(diameter)}, 1);
+    world_ = dropped_world(
+        {.balls = static_cast<std::uint32_t>(side * side * side), .height = 0.5, .speed = std::sqrt(2 * 9.81 * fallen)},
+        {make_mesh("square").mesh, ball_of(diameter)}, 1);
 }
 
 double dropped_balls::seconds(double of_large_ones) const {

@@ -32,8 +32,9 @@ constexpr double way = 1.0 / 128;  // from one to the next
 aabb::mesh comb() {
     aabb::mesh all;
     for (std::uint32_t i = 0; i < tips * tips; ++i) {
+        const std::uint32_t row = i / tips;
         const auto x = static_cast<float>(distance * (i % tips - 0.5 * tips) - 1);
-        const auto y = static_cast<float>(distance * (i / tips - 0.5 * tips));
+        const auto y = static_cast<float>(distance * (row - 0.5 * tips));
         for (const aabb::vec3f& v :
              {aabb::vec3f{x, y, 0}, {x + 0.06F, y + 0.08F, 0.125F}, {x - 0.06F, y - 0.08F, 0.125F}})
             all.vertices.push_back(v);
