@@ -18,6 +18,7 @@ import aabb.registry;
 import aabb.validation;
 import aabblab.metrics;
 import aabblab.scenes;
+import aabblab.stepping;
 
 namespace aabblab {
 
@@ -59,6 +60,9 @@ nlohmann::ordered_json everything() {
                                         {"engine", t.engine},
                                         {"exact", t.exact},
                                         {"parameters", to_json(t.parameters)}});
+    for (const integrator_info& i : integrators())
+        all["integrators"].push_back(
+            {{"name", i.name}, {"summary", i.summary}, {"order", i.order}, {"adaptive", i.adaptive}});
     for (const auto& s : scene_kinds())
         all["scenes"].push_back({{"name", s.name},
                                  {"summary", s.summary},
@@ -132,6 +136,10 @@ void print_text() {
         all.entry(t.name, t.summary);
         all.parameters(t.parameters);
     }
+    all.heading("integrators, of validate stiff");
+    for (const integrator_info& i : integrators()) all.entry(i.name, i.summary);
+    for (const std::string_view name : left_out_integrators())
+        all.entry(name, "left out: its library was not found when this was built");
     all.heading("scenes");
     for (const auto& s : scene_kinds()) {
         all.entry(s.name, s.summary);

@@ -238,7 +238,8 @@ int reproduce(const reproduce_request& request) {
     const reproduction all = judged(measurements(folder));
     write_reproduction(folder, all, sections_of(folder, request.quick), failures);
     print(verdict_text(all));
-    if (!failures.empty()) print(fmt::format("\n{} answers were wrong; they have no times:\n", failures.size()));
+    if (!failures.empty())
+        print(fmt::format("\n{} answers were wrong; compositions among them have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
     print("\nThe report is " + visible((folder / "report.html").string()) + "\n");
     return failures.empty() ? 0 : 1;

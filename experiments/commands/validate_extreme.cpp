@@ -68,6 +68,8 @@ suite_report play_extreme_suite(const std::filesystem::path& folder, const std::
     const extreme_list list = all_extreme_scenes(size);
     for (const std::string& sentence : list.notes) note(sentence);
     std::vector<extreme_row> rows = play_scenes(list.scenes, size);
+    // What is finished stays, whatever happens afterwards.
+    write_file(folder / "extreme.csv", to_csv(extreme_rows(rows)));
     for (extreme_row& row : play_cases(hard)) rows.push_back(std::move(row));
     suite_report report;
     report.tables = tables_of(rows);

@@ -93,7 +93,7 @@ int validate_stiff(const stiff_request& request) {
     const suite_report report = play_stiff_suite(folder, request.studies, request.quick, true);
     print(report.failures.empty() ? "Everything is as expected.\n"
                                   : std::to_string(report.failures.size()) + " values are not as expected.\n");
-    print("Every number is in " + visible((folder / "stiff.csv").string()) + ",\nevery plot in " +
+    print("Every number is in " + visible(folder.string()) + ", a file a study,\nevery plot in " +
           visible((folder / "figures").string()) + "\n");
     return report.failures.empty() ? 0 : 1;
 }
@@ -107,13 +107,6 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
     for (const std::string_view name : left_out_integrators())
         note("the integrator " + std::string(name) + " is left out of this build: its library was not found");
     suite_report report;
-    table all{{{"study", false},
-               {"subject", false},
-               {"quantity", false},
-               {"measured"},
-               {"expected", false},
-               {"verdict", false}},
-              {}};
     for (const stiff_study& study : chosen) {
         stiff_result result;
         {
@@ -128,15 +121,17 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
             for (const captioned_table& t : tables) print(to_text(t.content) + "\n");
             flush_output();
         }
+        table rows{{{"subject", false}, {"quantity", false}, {"measured"}, {"expected", false}, {"verdict", false}},
+                   {}};
         for (const stiff_row& r : result.rows) {
-            all.rows.push_back({std::string(study.name), r.subject, r.quantity, fmt::format("{}", r.measured), r.rule,
-                                std::string(verdict_of(r))});
+            rows.rows.push_back(
+                {r.subject, r.quantity, fmt::format("{}", r.measured), r.rule, std::string(verdict_of(r))});
             if (!r.holds)
                 report.failures.push_back(
                     fmt::format("{}: {}: {} is {:.4g}, not {}", study.name, r.subject, r.quantity, r.measured, r.rule));
         }
-        // What is finished stays, whatever happens afterwards.
-        write_file(folder / "stiff.csv", to_csv(all));
+        // What is finished stays, whatever happens afterwards; other studies' files do too.
+        write_file(folder / (std::string(study.name) + ".csv"), to_csv(rows));
         draw(folder / "figures", result.figures);
         std::ranges::copy(tables, std::back_inserter(report.tables));
         std::ranges::copy(result.figures, std::back_inserter(report.figures));

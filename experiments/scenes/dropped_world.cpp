@@ -29,8 +29,8 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     const double extent = longest_extent(bounds);
     // A sphere that is pressed into a plane shares πRδ² with it, so its pressure p pushes as a spring of 2πRp does.
     const double spring = gravity / (c.depth * extent);  // for 1 kg
-    const double area = std::numbers::pi * extent;       // 2πR
-    world.law = {contact_geometry::shared_volume, spring / area, 2 * c.loss * std::sqrt(spring) / area, 0};
+    const double girth = std::numbers::pi * extent;      // 2πR
+    world.law = {contact_geometry::shared_volume, spring / girth, 2 * c.loss * std::sqrt(spring) / girth, 0};
     std::uint32_t side = 1;
     while (std::uint64_t{side} * side * side < c.balls) ++side;
     random_source random(seed);

@@ -60,7 +60,6 @@ void add_spring(contact_force& sum, const contact_law& law, const depth_of_verte
     const double compressed = at.depth + law.rest;
     const double push = law.stiffness * compressed - law.damping * dot(at.normal, approach);
     for (int k = 0; k < 3; ++k) sum.force[k] += push * at.normal[k];
-    sum.depth = std::max(sum.depth, at.depth);
     sum.energy += law.stiffness * compressed * compressed / 2;
 }
 

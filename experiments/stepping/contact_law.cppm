@@ -8,10 +8,11 @@ import aabb.geometry;
 
 export namespace aabblab {
 
-/// How two bodies push each other, from nothing but the triangles that were found to intersect: a pair that was missed
-/// or invented changes the force.
+/// How two bodies push each other, from nothing but the triangles that were found to intersect, so that forces hang on
+/// what is found. A pair that was invented adds a vertex that springs reach, but no segment to a curve.
 enum class contact_geometry : std::uint8_t {
-    /// A linear spring and dashpot on the depth of the deepest vertex of the second body's triangles below the plane of
+    /// A linear spring and dashpot, which may pull too, on the depth of the deepest vertex of the second body's
+    /// triangles below the plane of
     /// the triangle of the first that each intersects, along that triangle's normal. One force for two bodies.
     deepest_vertex,
     /// The same for each vertex of the second body, with springs that reach `rest` above the plane: many contacts that
@@ -25,8 +26,8 @@ enum class contact_geometry : std::uint8_t {
 
 struct contact_law {
     contact_geometry geometry = contact_geometry::deepest_vertex;
-    double stiffness = 0;  ///< N/m; of a shared volume N/m³
-    double damping = 0;    ///< N s/m; of a shared volume N s/m⁴
+    double stiffness = 0;  ///< N/m; of a shared volume a pressure, N/m²
+    double damping = 0;    ///< N s/m; of a shared volume N s/m³
     double rest = 0;       ///< by which a spring is compressed when its vertex touches, m
 };
 
@@ -42,7 +43,6 @@ struct placed_mesh {
 /// What two bodies do to each other.
 struct contact_force {
     aabb::vec3d force = {0, 0, 0};  ///< on the second body, N; the first gets the opposite
-    double depth = 0;               ///< of the deepest vertex, m; 0 of a shared volume
     double energy = 0;              ///< in springs, J; 0 of a shared volume, which only `overlap_volume` knows
 };
 

@@ -48,7 +48,7 @@ void dynamics::accelerate(std::span<const double> position, std::span<const doub
     std::ranges::fill(acceleration, 0.0);
     for (std::size_t i = 0; i < bodies.size(); ++i)
         if (std::isfinite(bodies[i].mass)) acceleration[3 * i + 2] = -world_.gravity;
-    spring_energy_ = depth_ = 0;
+    spring_energy_ = 0;
     for (auto from = contacts.begin(); from != contacts.end();) {
         const std::uint32_t a = from->a;
         const std::uint32_t b = from->b;
@@ -62,7 +62,6 @@ void dynamics::accelerate(std::span<const double> position, std::span<const doub
             acceleration[std::size_t{3} * b + axis] += found.force[k] / bodies[b].mass;
         }
         spring_energy_ += found.energy;
-        depth_ = std::max(depth_, found.depth);
         from = to;
     }
 }

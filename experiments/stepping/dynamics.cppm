@@ -41,9 +41,8 @@ public:
     void accelerate(std::span<const double> position, std::span<const double> velocity,
                     std::span<const aabb::contact> contacts, std::span<double> acceleration);
 
-    /// Of the last call: in springs, J; the greatest depth of a vertex, m.
+    /// In springs at the last call, J.
     [[nodiscard]] double spring_energy() const { return spring_energy_; }
-    [[nodiscard]] double depth() const { return depth_; }
 
     /// Of motion and height, J, above z = 0.
     [[nodiscard]] double mechanical_energy(const motion_state& state) const;
@@ -52,7 +51,6 @@ private:
     const stepped_world& world_;
     std::vector<aabb::pose> poses_;
     double spring_energy_ = 0;
-    double depth_ = 0;
 };
 
 }  // namespace aabblab

@@ -15,6 +15,7 @@ export namespace aabblab {
 using acceleration_of = std::function<void(const std::vector<double>& position, const std::vector<double>& velocity,
                                            std::vector<double>& acceleration)>;
 
+/// Follows one trajectory: after the first call the state is the one that it left, and the acceleration the same.
 class integrator {
 public:
     integrator() = default;
@@ -33,8 +34,8 @@ struct integrator_info {
     std::string_view summary;
     bool adaptive;  ///< it chooses its own steps, after a tolerance
     int order;
-    /// The greatest step times angular frequency with which an undamped oscillation does not grow; infinite where there
-    /// is none.
+    /// The greatest step times angular frequency with which an undamped oscillation does not grow; infinite for one
+    /// that chooses its own steps.
     double stable_below;
     std::unique_ptr<integrator> (*make)(double tolerance);  ///< the tolerance is of adaptive ones
 };

@@ -5,6 +5,7 @@ module;
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@ module aabblab.stiff;
 
 import :dropped_balls;
 import :simulation;
+import aabb.base;
 import aabb.geometry;
 import aabblab.play;
 import aabblab.scenes;
@@ -54,14 +56,22 @@ trajectory dropped_balls::play(const contender& who, const integrator_info& step
     simulation balls(world_, who, stepping);
     const double began = dynamics(world_).mechanical_energy(balls.state());
     const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
+    std::vector<double> squares;
     const std::size_t looks = std::max<std::size_t>(steps / 20, 1);
     for (std::size_t s = 1; s <= steps; ++s) {
-        balls.advance(step);
+        try {
+            balls.advance(step);
+        } catch (const aabb::input_error&) {
+            break;  // beyond all poses
+        }
         if (s % kept == 0) t.positions.push_back(balls.state().position);
         if (s % looks != 0) continue;
         t.depth = std::max(t.depth, greatest_depth(balls.state().position));
-        if (with_energy) t.energy_error = std::max(t.energy_error, std::abs(energy_of(balls) / began - 1));
+        if (with_energy) squares.push_back(std::pow(energy_of(balls) / began - 1, 2));
     }
+    if (with_energy)
+        t.energy_error =
+            std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size()));
     t.detection_ms = balls.detection_ms();
     return t;
 }
@@ -93,14 +103,13 @@ double dropped_balls::greatest_depth(const std::vector<double>& p) const {
 
 std::vector<double> dropped_balls::departures(const trajectory& t, const trajectory& right) const {
     std::vector<double> all;
-    for (std::size_t s = 0; s < std::min(t.positions.size(), right.positions.size()); ++s) {
+    for (std::size_t s = 0; s < t.positions.size(); ++s) {
         double greatest = 0;
-        for (std::size_t i = 0; i < t.positions[s].size(); ++i) {
-            const double far = std::abs(t.positions[s][i] - right.positions[s][i]) / diameter_;
-            greatest = std::isnan(far) ? std::numeric_limits<double>::infinity() : std::max(greatest, far);
-        }
+        for (std::size_t i = 0; i < t.positions[s].size(); ++i)
+            greatest = std::max(greatest, std::abs(t.positions[s][i] - right.positions[s][i]) / diameter_);
         all.push_back(greatest);
     }
+    all.resize(right.positions.size(), std::numeric_limits<double>::infinity());
     return all;
 }
 

@@ -14,7 +14,7 @@ namespace aabblab {
 struct trajectory {
     std::vector<std::vector<double>> positions;  ///< of all bodies, after each step that is kept
     double detection_ms = 0;
-    double energy_error = 0;  ///< the greatest of twenty looks, over the energy at the beginning
+    double energy_error = 0;  ///< the root of the mean square of twenty looks, over the energy at the beginning
     double depth = 0;         ///< the greatest of two balls, taken for spheres, in diameters
 };
 
@@ -32,7 +32,7 @@ public:
                                   bool with_energy) const;
 
     /// The greatest distance of a body from where it should be, in diameters, after each step that both kept; infinite
-    /// once a number is none.
+    /// once it ended before the other.
     [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& right) const;
 
     /// Of a ball on the floor, 1/s.

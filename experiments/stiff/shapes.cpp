@@ -1,11 +1,13 @@
 module;
 #include <array>
 #include <cstdint>
+#include <string>
 
 module aabblab.stiff;
 
 import :shapes;
 import aabb.geometry;
+import aabblab.scenes;
 
 namespace aabblab {
 
@@ -15,17 +17,11 @@ aabb::mesh octahedron(float radius) {
             {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}}};
 }
 
-aabb::mesh floor_of(float side, std::uint32_t n) {
-    aabb::mesh m;
-    const auto at = [&](std::uint32_t i) { return side * (static_cast<float>(i) / static_cast<float>(n) - 0.5F); };
-    for (std::uint32_t y = 0; y <= n; ++y)
-        for (std::uint32_t x = 0; x <= n; ++x) m.vertices.push_back({at(x), at(y), 0});
-    for (std::uint32_t y = 0; y < n; ++y)
-        for (std::uint32_t x = 0; x < n; ++x) {
-            const std::uint32_t corner = y * (n + 1) + x;
-            m.triangles.push_back({corner, corner + 1, corner + n + 2});
-            m.triangles.push_back({corner, corner + n + 2, corner + n + 1});
-        }
+aabb::mesh floor_of(double side, std::uint32_t n) {
+    aabb::mesh m = make_mesh("square:triangles=" + std::to_string(2 * n * n)).mesh;
+    const double scale = side / (double{m.vertices.back()[0]} - double{m.vertices.front()[0]});
+    for (aabb::vec3f& v : m.vertices)
+        for (float& coordinate : v.at) coordinate = static_cast<float>(coordinate * scale);
     return m;
 }
 

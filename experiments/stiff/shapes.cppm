@@ -12,7 +12,7 @@ namespace aabblab {
 /// digits.
 [[nodiscard]] aabb::mesh octahedron(float radius);
 /// A square in z = 0 around the origin, facing up, cut into n × n squares of two triangles.
-[[nodiscard]] aabb::mesh floor_of(float side, std::uint32_t n = 1);
+[[nodiscard]] aabb::mesh floor_of(double side, std::uint32_t n = 1);
 /// A pyramid on its apex, which is the origin, with a square top that faces up.
 [[nodiscard]] aabb::mesh hanging_pyramid(float height, float side);
 /// A box around the origin.

@@ -27,7 +27,7 @@ public:
     [[nodiscard]] std::uint64_t detections() const { return detections_; }
     [[nodiscard]] double detection_ms() const { return detection_ms_; }
 
-    /// What is found where the bodies are now, sorted.
+    /// What is found where the bodies are now, sorted; looked for only where the integrator did not end there.
     [[nodiscard]] std::span<const aabb::contact> contacts();
     /// Of motion, height and springs, J; of a shared volume without its pressure.
     [[nodiscard]] double energy();
@@ -46,6 +46,7 @@ private:
     acceleration_of acceleration_;
     motion_state state_;
     std::vector<double> ignored_;
+    std::vector<double> looked_at_;  // last
     std::uint64_t detections_ = 0;
     double detection_ms_ = 0;
 };

@@ -3,14 +3,17 @@ module;
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <boost/numeric/odeint/util/odeint_error.hpp>
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 module aabblab.stepping;
 
 import :first_order;
+import aabb.base;
 
 namespace aabblab {
 
@@ -24,8 +27,13 @@ public:
         namespace odeint = boost::numeric::odeint;
         using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;
         first_order_system system(acceleration, state);
-        odeint::integrate_adaptive(odeint::make_controlled<stepper>(tolerance_, tolerance_), system, system.both(),
-                                   state.time, state.time + step, step);
+        try {
+            odeint::integrate_adaptive(odeint::make_controlled<stepper>(tolerance_, tolerance_), system, system.both(),
+                                       state.time, state.time + step, step);
+        } catch (const odeint::odeint_error& error) {
+            throw aabb::input_error("adaptive_dormand_prince gives up after " + std::to_string(state.time) +
+                                    " s: " + error.what());
+        }
         system.store(state);
         state.time += step;
     }

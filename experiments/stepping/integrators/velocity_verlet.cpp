@@ -28,12 +28,13 @@ private:
 }  // namespace
 
 integrator_info velocity_verlet_integrator() {
-    return {"velocity_verlet",
-            "central differences with the velocity at full steps (Boost.odeint)",
-            false,
-            2,
-            2,
-            [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
+    return {
+        "velocity_verlet",
+        "central differences; of first order where forces hang on velocity, which it sees a step late (Boost.odeint)",
+        false,
+        2,
+        2,
+        [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
 }
 
 }  // namespace aabblab

@@ -63,37 +63,40 @@ stiff_result play_bouncing(const stiff_setting& setting) {
         if (setting.quick && other.step < 1e-3) break;
         for (const integrator_info& i : integrators()) {
             if (i.adaptive || i.order == 5) continue;
-            simulation balls(world, setting.who, i);
-            const auto steps = static_cast<std::size_t>(std::llround(seconds / other.step));
-            double squares = 0;
-            double first = 0;
-            double last = 0;
-            series line{std::string(i.name) + ", " + short_number(other.step) + " s", series_style::line, {}};
-            for (std::size_t s = 0; s < steps; ++s) {
-                balls.advance(other.step);
-                const double error = balls.energy() / began - 1;
-                squares += error * error / static_cast<double>(steps);
-                if (s < steps / 4) first = std::max(first, error);
-                if (s >= steps - steps / 4) last = std::max(last, error);
-                if (s % (steps / 200) == 0) line.points.push_back({balls.state().time, error, error, error});
-                if (s % 1000 == 0) setting.progress(static_cast<double>(s) / static_cast<double>(steps));
-            }
-            const std::string subject = line.label;
-            if (i.order == 2) {
-                // Second order: the square of the step over the contact's own time, 1/ω.
-                const double limit = other.step * other.step * stiffness / mass;
-                result.rows.push_back(at_most(subject, "energy error, RMS", std::sqrt(squares), limit));
-                result.rows.push_back(at_most(subject, "energy creep, first quarter to last", last - first, 1e-3));
-            } else {
-                result.rows.push_back(told(subject, "energy error, RMS", std::sqrt(squares)));
-                result.rows.push_back(told(subject, "energy creep, first quarter to last", last - first));
-            }
-            plot.lines.push_back(std::move(line));
+            unless_it_gives_up(result, i.name, [&] {
+                simulation balls(world, setting.who, i);
+                const auto steps = static_cast<std::size_t>(std::llround(seconds / other.step));
+                double squares = 0;
+                double first = 0;
+                double last = 0;
+                series line{std::string(i.name) + ", " + short_number(other.step) + " s", series_style::line, {}};
+                for (std::size_t s = 0; s < steps; ++s) {
+                    balls.advance(other.step);
+                    const double error = balls.energy() / began - 1;
+                    squares += error * error / static_cast<double>(steps);
+                    if (s < steps / 4) first += 4 * error / static_cast<double>(steps);
+                    if (s >= steps - steps / 4) last += 4 * error / static_cast<double>(steps);
+                    if (s % (steps / 200) == 0) line.points.push_back({balls.state().time, error, error, error});
+                    if (s % 1000 == 0) setting.progress(static_cast<double>(s) / static_cast<double>(steps));
+                }
+                const std::string subject = line.label;
+                if (i.order == 2) {
+                    // Second order: the square of the step over the contact's own time, 1/ω.
+                    const double limit = other.step * other.step * stiffness / mass;
+                    result.rows.push_back(at_most(subject, "energy error, RMS", std::sqrt(squares), limit));
+                    result.rows.push_back(
+                        at_most(subject, "energy creep, first quarter to last", std::abs(last - first), limit / 10));
+                } else {
+                    result.rows.push_back(told(subject, "energy error, RMS", std::sqrt(squares)));
+                    result.rows.push_back(told(subject, "energy creep, first quarter to last", std::abs(last - first)));
+                }
+                plot.lines.push_back(std::move(line));
+            });
         }
-        result.rows.push_back(told("published: ODE, " + short_number(other.step) + " s", "energy error, RMS",
+        result.rows.push_back(told("published: ODE, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
                                    std::sqrt(other.ode) / began));
-        result.rows.push_back(told("published: DART, " + short_number(other.step) + " s", "energy error, RMS",
-                                   std::sqrt(other.dart) / began));
+        result.rows.push_back(told("published: DART, " + short_number(other.step) + " s, over 20 s",
+                                   "energy error, RMS", std::sqrt(other.dart) / began));
     }
     result.figures.push_back(std::move(plot));
     return result;
@@ -102,7 +105,8 @@ stiff_result play_bouncing(const stiff_setting& setting) {
 stiff_study bouncing_study() {
     return {
         "bouncing",
-        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s on springs of 2e5 N/m: energy that must not "
+        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 with --quick) on springs of 2e5 N/m: energy "
+        "that must not "
         "creep; errors are relative to the energy at the beginning",
         "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
         "DART with impulses",
