@@ -38,10 +38,17 @@ std::string unknown_option(const CLI::App& command, const std::string& argument)
     return aabb::unknown_name("option", argument.substr(0, argument.find('=')), option_names(command));
 }
 
+/// "validate extreme"
+std::string full_name(const CLI::App& command) {
+    const CLI::App* const above = command.get_parent();
+    return above != nullptr && above->get_parent() != nullptr ? full_name(*above) + " " + command.get_name()
+                                                              : command.get_name();
+}
+
 std::string unexpected(const CLI::App& program, const CLI::App& command, const std::string& argument) {
     if (argument.size() > 1 && argument[0] == '-') return unknown_option(command, argument);
     if (&command != &program)
-        return "unexpected argument '" + argument + "'; see aabblab " + command.get_name() + " --help";
+        return "unexpected argument '" + argument + "'; see aabblab " + full_name(command) + " --help";
     std::vector<std::string> names = command_names(program);
     const std::vector<std::string> of_script = {"test", "data", "benchmark", "paper"};
     if (std::ranges::find(of_script, argument) != of_script.end())

@@ -102,7 +102,10 @@ void add_validate_extreme(CLI::App& validate, int& status) {
     auto request = std::make_shared<extreme_request>();
     command->add_option("--cases", request->cases, "Pairs of triangles (default validation/cases/triangles.toml)")
         ->type_name("FILE");
-    command->add_option("--out", request->out, "Folder of extreme.csv (default results/extreme)")->type_name("DIR");
+    command
+        ->add_option("--out", request->out,
+                     "Folder of extreme.csv (default results/extreme, with --quick results/extreme-quick)")
+        ->type_name("DIR");
     command->add_flag("--quick", request->quick, "Default parameters only, and fewer coincident triangles");
     command->callback([request, &status] { status = validate_extreme(*request); });
 }

@@ -118,7 +118,7 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
         const std::vector<captioned_table> tables = tables_of(study, result);
         if (shown) {
             print(wrapped(report.paragraphs.back()) + "\n\n");
-            for (const captioned_table& t : tables) print(to_text(t.content) + "\n");
+            for (const captioned_table& t : tables) print(to_text(t.content, output_width()) + "\n");
             flush_output();
         }
         table rows{{{"subject", false}, {"quantity", false}, {"measured"}, {"expected", false}, {"verdict", false}},
@@ -148,7 +148,10 @@ void add_validate_stiff(CLI::App& validate, int& status) {
     for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);
     command->add_option("STUDY", request->studies, "Some of the studies, without any all of them: " + names)
         ->type_name("");
-    command->add_option("--out", request->out, "Folder of table and plots (default results/stiff)")->type_name("DIR");
+    command
+        ->add_option("--out", request->out,
+                     "Folder of tables and plots (default results/stiff, with --quick results/stiff-quick)")
+        ->type_name("DIR");
     command->add_flag("--quick", request->quick, "Fewer and shorter, for a first look");
     command->callback([request, &status] { status = validate_stiff(*request); });
 }

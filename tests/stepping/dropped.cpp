@@ -2,7 +2,11 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
+
+#include "../experiments/program.hpp"
+#include "../experiments/temporary_folder.hpp"
 
 import aabb;
 import aabb.registry;
@@ -52,6 +56,28 @@ TEST_CASE("dropped balls fall, meet and stay above the floor, whoever finds thei
         if (first.empty()) first = poses;
         REQUIRE(poses == first);
     }
+}
+
+TEST_CASE("an inexact composition is timed on the motion that it makes itself") {
+    const temporary_folder folder;
+    const auto config = folder.write("lost.toml", R"(name = "lost"
+seed = 3
+[[scene]]
+kind = "dropped"
+balls = 8
+frames = 150
+height = 0.05
+speed = 3
+depth = 0.002
+[compose]
+prepare = ["none", { name = "neighbour_list", margin = 0, every = 64 }]
+[measure]
+repeats = 2
+)");
+    const program_result played = run_program({"run", config.string(), "--out", (folder / "out").string()});
+    INFO(played.err);
+    REQUIRE(played.status == 0);
+    REQUIRE(played.out.find("neighbour_list:margin=0,every=64") != std::string::npos);
 }
 
 TEST_CASE("the scene dropped is what symplectic_euler makes of its world") {

@@ -11,6 +11,7 @@ module;
 
 module aabb.extreme;
 
+import aabb.engines;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.truth;
@@ -87,7 +88,9 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
 
 void play(const extreme_scene& scene, const exact_meshes& exact, local_stage& stage, judgement& made) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
-    pipeline both(*meshes, stage);
+    // Its candidates hang on the boxes of posed meshes alone.
+    const std::unique_ptr<global_stage> boxes = make_box_engine("brute_force");
+    pipeline both(*meshes, *boxes, stage);
     std::vector<pose> poses;
     for (std::size_t frame = 0; meshes->next(poses); ++frame) {
         both.update(poses);

@@ -3,6 +3,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -14,6 +15,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabblab.files;
 import aabblab.stepping;
 import :dropped_world;
 import :rotation;
@@ -56,6 +58,8 @@ public:
     dropped(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
         : frames_(std::size_t{c.frames} + 1), step_(c.step) {
         if (given.size() != 2) throw aabb::input_error("dropped needs two meshes: a floor and a ball");
+        require_memory("dropped with " + std::to_string(c.balls) + " balls",
+                       c.balls * (sizeof(body) + sizeof(aabb::pose) + 9 * sizeof(double) + sizeof(std::uint32_t)));
         if (c.normalise == scaling::yes) normalise(given[1]);
         world_ = dropped_world({c.balls, c.height, c.speed, c.depth, c.loss}, std::move(given), seed);
         state_ = world_.start();
