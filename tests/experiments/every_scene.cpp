@@ -43,7 +43,7 @@ TEST_CASE("every exact local composition is exact on every scene of meshes, and 
         aabblab::scene_choice scene{
             info.name, {{"frames", "3"}}, {"icosphere:triangles=320", "torus_knot:triangles=600"}, 3};
         if (info.name == "mesh_swarm") scene.settings.push_back({"objects", "12"});
-        if (info.name == "dropped") scene.settings.insert(scene.settings.end(), {{"balls", "12"}, {"height", "0"}});
+        if (info.name == "dropped") scene.settings.insert(scene.settings.end(), {{"balls", "4"}, {"height", "0"}});
         const aabblab::scene_validation all = aabblab::validate_scene(scene, contenders);
         REQUIRE(all.contenders.size() == contenders.size());
         REQUIRE(all.contenders[0].contacts.value() > 100);

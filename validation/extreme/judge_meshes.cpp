@@ -88,21 +88,26 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
 
 void play(const extreme_scene& scene, const exact_meshes& exact, local_stage& stage, judgement& made) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
-    // Its candidates hang on the boxes of posed meshes alone.
+    // Candidates are those whose boxes overlap, so that a box too small loses pairs. What must be refused meets as it
+    // is.
     const std::unique_ptr<global_stage> boxes = make_box_engine("brute_force");
-    pipeline both(*meshes, *boxes, stage);
+    std::optional<pipeline> both;
+    if (scene.refusal.empty())
+        both.emplace(*meshes, *boxes, stage);
+    else
+        both.emplace(*meshes, stage);
     std::vector<pose> poses;
     for (std::size_t frame = 0; meshes->next(poses); ++frame) {
-        both.update(poses);
+        both->update(poses);
         if (!scene.refusal.empty()) {
             // What is wrong with two poses together is found where they meet.
-            both.search();
-            both.detect();
-            if (!both.contacts().empty()) make_wrong(made, "finds pairs, though it must refuse");
+            both->search();
+            both->detect();
+            if (!both->contacts().empty()) make_wrong(made, "finds pairs, though it must refuse");
             continue;
         }
         const shown_frame shown{*meshes, exact.frames[frame], "frame " + std::to_string(frame)};
-        if (scene.asked == extreme_query::all_pairs) judge_all_pairs(shown, both, made);
+        if (scene.asked == extreme_query::all_pairs) judge_all_pairs(shown, *both, made);
         for (const exact_objects& objects : shown.exact.objects) {
             if (scene.asked != extreme_query::first_pair) judge_count(shown, objects, stage, made);
             judge_first(shown, objects, stage, made);
