@@ -66,7 +66,8 @@ trajectory dropped_balls::play(const contender& who, const integrator_info& step
         }
         if (s % kept == 0) t.positions.push_back(balls.state().position);
         if (s % looks != 0) continue;
-        t.depth = std::max(t.depth, greatest_depth(balls.state().position));
+        t.times.push_back(balls.state().time);
+        t.depths.push_back(greatest_depth(balls.state().position));
         if (with_energy) squares.push_back(std::pow(energy_of(balls) / began - 1, 2));
     }
     if (with_energy)

@@ -15,7 +15,8 @@ struct trajectory {
     std::vector<std::vector<double>> positions;  ///< of all bodies, after each step that is kept
     double detection_ms = 0;
     double energy_error = 0;  ///< the root of the mean square of twenty looks, over the energy at the beginning
-    double depth = 0;         ///< the greatest of two balls, taken for spheres, in diameters
+    /// How deep two balls are in each other at most, taken for spheres, in diameters, at twenty times.
+    std::vector<double> times, depths;
 };
 
 class dropped_balls {

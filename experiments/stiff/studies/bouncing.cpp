@@ -85,7 +85,7 @@ stiff_result play_bouncing(const stiff_setting& setting) {
                     const double limit = other.step * other.step * stiffness / mass;
                     result.rows.push_back(at_most(subject, "energy error, RMS", std::sqrt(squares), limit));
                     result.rows.push_back(
-                        at_most(subject, "energy creep, first quarter to last", std::abs(last - first), limit / 10));
+                        at_most(subject, "energy creep, first quarter to last", std::abs(last - first), limit / 4));
                 } else {
                     result.rows.push_back(told(subject, "energy error, RMS", std::sqrt(squares)));
                     result.rows.push_back(told(subject, "energy creep, first quarter to last", std::abs(last - first)));

@@ -27,6 +27,13 @@ std::vector<method> all_methods() {
     return all;
 }
 
+series depth_line(const std::string& label, const trajectory& t) {
+    series line{label, series_style::line, {}};
+    for (std::size_t i = 0; i < t.times.size(); ++i)
+        line.points.push_back({t.times[i], t.depths[i], t.depths[i], t.depths[i]});
+    return line;
+}
+
 /// What each method does to the trajectory, with one step of time.
 void hold_methods(const dropped_balls& balls, const std::string& file, const std::string& size,
                   const stiff_setting& setting, stiff_result& result) {
@@ -37,13 +44,21 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
         .name = "departure_" + file,
         .caption = "How far balls of " + size +
                    " are from where exact contacts take them, because of a triangle "
-                   "test, an engine or a stale list; what never departs is not drawn, and of others no more than ten.",
+                   "test, an engine or a stale list; what never departs is not drawn, and of others no more than nine.",
         .x = {"time (s)", false, {}},
         .y = {"greatest distance over a ball's diameter", true, {}},
         .lines = {},
         .marks = {}};
+    figure depth{.name = "depth_" + file,
+                 .caption = "How deep balls of " + size +
+                            " are in each other at most, with exact contacts and with those "
+                            "of the methods that depart.",
+                 .x = {"time (s)", false, {}},
+                 .y = {"greatest depth over a ball's diameter", false, {}},
+                 .lines = {depth_line("exact", right)},
+                 .marks = {}};
     const std::vector<method> all = all_methods();
-    constexpr std::size_t most_drawn = 10;
+    constexpr std::size_t most_drawn = 9;
     for (std::size_t m = 0; m < all.size(); ++m) {
         setting.progress(static_cast<double>(m) / static_cast<double>(all.size()));
         const trajectory t = balls.play(all[m].who, verlet, step, 1, false);
@@ -58,15 +73,19 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
         result.rows.push_back(told(subject, "greatest departure (diameters)", greatest));
         if (first == far.end()) continue;
         result.rows.push_back(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
-        result.rows.push_back(told(subject, "greatest depth of two balls (diameters)", t.depth));
+        result.rows.push_back(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
         if (plot.lines.size() == most_drawn) continue;
         series line{all[m].label, series_style::line, {}};
         for (std::size_t s = 0; s < far.size(); ++s)
             line.points.push_back({step * static_cast<double>(s + 1), far[s], far[s], far[s]});
         plot.lines.push_back(std::move(line));
+        depth.lines.push_back(depth_line(all[m].label, t));
     }
-    result.rows.push_back(told("exact, " + size, "greatest depth of two balls (diameters)", right.depth));
-    if (!plot.lines.empty()) result.figures.push_back(std::move(plot));
+    result.rows.push_back(
+        told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(right.depths)));
+    if (plot.lines.empty()) return;
+    result.figures.push_back(std::move(plot));
+    result.figures.push_back(std::move(depth));
 }
 
 /// Error over run time: each integrator over its step, and stale lists over how stale they are.
