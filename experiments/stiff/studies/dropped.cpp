@@ -39,7 +39,7 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
                   const stiff_setting& setting, stiff_result& result) {
     const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double step = balls.seconds(1e-3);
-    const trajectory right = balls.play(setting.who, verlet, step, 1, false);
+    const trajectory right = balls.play(setting.who, verlet, step, 1, true);
     figure plot{
         .name = "departure_" + file,
         .caption = "How far balls of " + size +
@@ -61,7 +61,7 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
     constexpr std::size_t most_drawn = 9;
     for (std::size_t m = 0; m < all.size(); ++m) {
         setting.progress(static_cast<double>(m) / static_cast<double>(all.size()));
-        const trajectory t = balls.play(all[m].who, verlet, step, 1, false);
+        const trajectory t = balls.play(all[m].who, verlet, step, 1, true);
         const std::vector<double> far = balls.departures(t, right);
         const auto first = std::ranges::find_if(far, [](double d) { return !(d <= 0); });
         const std::string subject = all[m].label + ", " + size;
@@ -74,6 +74,7 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
         if (first == far.end()) continue;
         result.rows.push_back(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
         result.rows.push_back(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
+        result.rows.push_back(told(subject, "energy error, RMS", t.energy_error));
         if (plot.lines.size() == most_drawn) continue;
         series line{all[m].label, series_style::line, {}};
         for (std::size_t s = 0; s < far.size(); ++s)
@@ -83,6 +84,7 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
     }
     result.rows.push_back(
         told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(right.depths)));
+    result.rows.push_back(told("exact, " + size, "energy error, RMS", right.energy_error));
     if (plot.lines.empty()) return;
     result.figures.push_back(std::move(plot));
     result.figures.push_back(std::move(depth));
