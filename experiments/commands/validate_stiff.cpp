@@ -47,9 +47,8 @@ std::string wrapped(const std::string& text) {
     for (std::size_t from = 0; from < text.size();) {
         const std::size_t to = std::min(text.find(' ', from), text.size());
         const std::string word = text.substr(from, to - from);
-        const std::size_t wide = word.size();
-        if (width > 0) lines += width + 1 + wide > most ? "\n" : " ";
-        width = width > 0 && width + 1 + wide <= most ? width + 1 + wide : wide;
+        if (width > 0) lines += width + 1 + word.size() > most ? "\n" : " ";
+        width = width > 0 && width + 1 + word.size() <= most ? width + 1 + word.size() : word.size();
         lines += word;
         from = to + 1;
     }

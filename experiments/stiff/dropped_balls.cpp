@@ -4,7 +4,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -46,10 +45,6 @@ double dropped_balls::seconds(double of_large_ones) const {
     return of_large_ones * std::sqrt(diameter_);
 }
 
-double dropped_balls::frequency() const {
-    return std::sqrt(world_.law.stiffness * std::numbers::pi * diameter_);
-}
-
 trajectory dropped_balls::play(const contender& who, const integrator_info& stepping, double step, std::size_t kept,
                                bool with_energy) const {
     trajectory t;
@@ -62,7 +57,8 @@ trajectory dropped_balls::play(const contender& who, const integrator_info& step
         try {
             balls.advance(step);
         } catch (const aabb::input_error&) {
-            break;  // beyond all poses
+            if (t.depths.empty()) throw;
+            break;
         }
         if (s % kept == 0) t.positions.push_back(balls.state().position);
         if (s % looks != 0) continue;
@@ -104,7 +100,7 @@ double dropped_balls::greatest_depth(const std::vector<double>& p) const {
 
 std::vector<double> dropped_balls::departures(const trajectory& t, const trajectory& right) const {
     std::vector<double> all;
-    for (std::size_t s = 0; s < t.positions.size(); ++s) {
+    for (std::size_t s = 0; s < std::min(t.positions.size(), right.positions.size()); ++s) {
         double greatest = 0;
         for (std::size_t i = 0; i < t.positions[s].size(); ++i)
             greatest = std::max(greatest, std::abs(t.positions[s][i] - right.positions[s][i]) / diameter_);

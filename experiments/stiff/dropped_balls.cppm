@@ -28,16 +28,15 @@ public:
     /// What takes so long for balls of 1 m, scaled to these, s.
     [[nodiscard]] double seconds(double of_large_ones) const;
 
+    /// Ends early where bodies come beyond all poses.
     /// @param kept positions are kept of every so many-th step
+    /// @throws aabb::input_error where it ends before the first of its twenty looks.
     [[nodiscard]] trajectory play(const contender& who, const integrator_info& stepping, double step, std::size_t kept,
                                   bool with_energy) const;
 
     /// The greatest distance of a body from where it should be, in diameters, after each step that both kept; infinite
     /// once it ended before the other.
     [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& right) const;
-
-    /// Of a ball on the floor, 1/s.
-    [[nodiscard]] double frequency() const;
 
 private:
     [[nodiscard]] double energy_of(simulation& balls) const;

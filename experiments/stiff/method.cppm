@@ -20,8 +20,9 @@ struct method {
 
 /// Every triangle test of the registry in each of its forms, and each engine that collides meshes.
 [[nodiscard]] std::vector<method> triangle_methods();
-/// Tree layouts, lists of neighbours that are searched for again in time, and lists that are not.
+/// Every way in which a tree may be stored smaller.
 [[nodiscard]] std::vector<method> tree_methods();
+/// Lists of neighbours that are searched for again in time, and lists that are not.
 [[nodiscard]] std::vector<method> list_methods();
 
 }  // namespace aabblab

@@ -128,7 +128,6 @@ TEST_CASE("whoever answers where all must refuse is wrong, and so is another rea
 }
 
 TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it is") {
-    if (!can_flush_denormals()) SKIP("denormals are not flushed here");
     // A stage that asks nothing of the arithmetic in its searches.
     class careless final : public global_stage {
     public:
@@ -140,7 +139,10 @@ TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it
         [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
         [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
     };
-    for (const char* name : {"flushed_boxes", "upward_boxes"}) {
+    // Of the scenes that this processor has.
+    std::vector<const char*> names = {"upward_boxes"};
+    if (can_flush_denormals()) names.push_back("flushed_boxes");
+    for (const char* name : names) {
         const extreme_judge judge = judge_of(name);
         const judgement made =
             judge.judge([]() -> std::unique_ptr<global_stage> { return std::make_unique<careless>(); });

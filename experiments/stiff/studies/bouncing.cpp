@@ -106,8 +106,7 @@ stiff_study bouncing_study() {
     return {
         "bouncing",
         "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 with --quick) on springs of 2e5 N/m: energy "
-        "that must not "
-        "creep; errors are relative to the energy at the beginning",
+        "that must not creep; errors are relative to the energy at the beginning",
         "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
         "DART with impulses",
         &play_bouncing};

@@ -156,8 +156,7 @@ stiff_study dropped_study() {
     return {
         "dropped",
         "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other without loss, "
-        "pushed "
-        "by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
+        "pushed by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
         "the trajectory of exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
         "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
         &play_dropped};

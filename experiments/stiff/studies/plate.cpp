@@ -123,8 +123,7 @@ stiff_study plate_study() {
         "plate",
         "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step; plain boxes "
         "stand where a step ends; swept ones reach from step to step, and where they meet the step is looked into in "
-        "parts "
-        "that no body jumps over",
+        "parts that no body jumps over",
         "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
         &play_plate};
 }

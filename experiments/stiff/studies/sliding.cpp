@@ -129,6 +129,7 @@ stiff_result play_sliding(const stiff_setting& setting) {
     std::size_t done = 0;
     for (const lie& l : lies)
         for (const method& m : methods) {
+            setting.progress(static_cast<double>(done++) / static_cast<double>(lies.size() * methods.size()));
             const std::vector<double> forces = forces_of(m.who, l);
             const double jump = greatest_jump(forces);
             const std::string subject = m.label + ", " + l.name;
@@ -152,7 +153,6 @@ stiff_result play_sliding(const stiff_setting& setting) {
                 }
                 plot.lines.push_back(std::move(line));
             }
-            setting.progress(static_cast<double>(++done) / static_cast<double>(lies.size() * methods.size()));
         }
     result.figures.push_back(std::move(plot));
     return result;
@@ -161,8 +161,7 @@ stiff_result play_sliding(const stiff_setting& setting) {
 stiff_study sliding_study() {
     return {"sliding",
             "A mesh of 64 teeth, each a triangle, slides on its tips along a flat mesh, over its vertices and edges, "
-            "as large as 1 m, "
-            "10 mm and 0.1 mm: each tip that is found to touch carries a 64th of the load; and a "
+            "as large as 1 m, 10 mm and 0.1 mm: each tip that is found to touch carries a 64th of the load; and a "
             "100,000th of their size above it, where there is no load",
             "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4", &play_sliding};
 }
