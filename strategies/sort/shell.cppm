@@ -24,14 +24,17 @@ public:
     static constexpr std::string_view summary =
         "Shell sort, the improved method: insertion sort over gaps that shrink to 1";
 
-    enum class gap_sequence : std::uint8_t { shell, ciura, tokuda };
+    enum class gap_sequence : std::uint8_t { shell, ciura, tokuda, ciura_eight, four_one };
     struct config {
         /// shell: n/2, n/4, … 1 (Shell 1959). ciura: measured best up to 701 (Ciura 2001), beyond it each 2.25 times
-        /// the one before. tokuda: (9 (9/4)^k - 4) / 5, rounded up (Tokuda 1992).
+        /// the one before. tokuda: (9 (9/4)^k - 4) / 5, rounded up (Tokuda 1992). These grow in number with the list,
+        /// so that even a sorted one takes O(N log N) comparisons. Two do not: ciura_eight, what Ciura published and no
+        /// more; four_one, 4 and 1.
         gap_sequence gaps = gap_sequence::ciura;
     };
     static constexpr std::tuple parameters{choice_parameter{
-        "gaps", &config::gaps, std::array<std::string_view, 3>{"shell", "ciura", "tokuda"}, "the sequence of gaps"}};
+        "gaps", &config::gaps, std::array<std::string_view, 5>{"shell", "ciura", "tokuda", "ciura_eight", "four_one"},
+        "the sequence of gaps; ciura_eight and four_one have eight and two, however long the list"}};
 
     shell_sort() = default;
     explicit shell_sort(const config& c) : config_(c) {}
@@ -42,7 +45,7 @@ public:
             for (std::size_t gap = list.size() / 2; gap > 0; gap /= 2) pass(list, gap, counters);
             return;
         }
-        const table& gaps = config_.gaps == gap_sequence::ciura ? ciura : tokuda;
+        const std::span<const std::size_t> gaps = ascending(config_.gaps);
         for (std::size_t i = gaps.size(); i-- > 0;)
             if (gaps[i] < list.size()) pass(list, gaps[i], counters);
     }
@@ -51,9 +54,10 @@ private:
     /// Ascending; the last gap is beyond half of any list of 2^32 entries.
     using table = std::array<std::size_t, 28>;
 
+    static constexpr std::size_t ciura_published = 8;
     static constexpr table ciura = [] {
         table gaps{1, 4, 10, 23, 57, 132, 301, 701};
-        for (std::size_t i = 8; i < gaps.size(); ++i) gaps[i] = gaps[i - 1] * 9 / 4;
+        for (std::size_t i = ciura_published; i < gaps.size(); ++i) gaps[i] = gaps[i - 1] * 9 / 4;
         return gaps;
     }();
 
@@ -69,6 +73,16 @@ private:
     }();
     static_assert(tokuda[1] == 4 && tokuda[2] == 9 && tokuda[3] == 20 && tokuda[4] == 46 && tokuda[8] == 1182);
     static_assert(ciura.back() >= std::size_t{1} << 31 && tokuda.back() >= std::size_t{1} << 31);
+
+    /// Of every sequence that does not hang on the length of the list.
+    [[nodiscard]] static constexpr std::span<const std::size_t> ascending(gap_sequence gaps) noexcept {
+        switch (gaps) {
+            case gap_sequence::tokuda: return tokuda;
+            case gap_sequence::ciura_eight: return std::span(ciura).first(ciura_published);
+            case gap_sequence::four_one: return std::span(ciura).first(2);
+            default: return ciura;
+        }
+    }
 
     template <CounterPolicy Counters>
     static constexpr void pass(std::span<projection> list, std::size_t gap, Counters& counters) {

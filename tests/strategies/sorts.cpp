@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -59,8 +61,11 @@ std::vector<projection> list_of(const std::vector<float>& keys) {
 
 TEST_CASE("every sort sorts and loses nothing") {
     check_all(sorts{});
-    for (const char* gaps : {"shell", "ciura", "tokuda"})
-        check_sorts(shell_sort(configured<shell_sort>(std::vector<setting>{{"gaps", gaps}})));
+    const auto& gaps = std::get<0>(shell_sort::parameters);
+    for (const std::string_view choice : gaps.names) {
+        const auto config = configured<shell_sort>(std::vector<setting>{{std::string(gaps.name), std::string(choice)}});
+        check_sorts(shell_sort(config));
+    }
 }
 
 TEST_CASE("insertion sort moves and compares as its inversions say") {
@@ -96,23 +101,27 @@ TEST_CASE("insertion sort tells of each inversion once") {
     }));
 }
 
-TEST_CASE("the gap sequences are the published ones: comparisons on a sorted list of 1000") {
+TEST_CASE("the gap sequences are the published ones: comparisons on a sorted list") {
     // A pass over gap g compares each of the n - g entries once.
-    const auto comparisons = [](const char* gaps) {
+    const auto comparisons = [](const char* gaps, int n = 1000) {
         std::vector<float> keys;
-        for (int i = 0; i < 1000; ++i) keys.push_back(static_cast<float>(i));
+        for (int i = 0; i < n; ++i) keys.push_back(static_cast<float>(i));
         auto list = list_of(keys);
         work_counters counted;
         shell_sort(configured<shell_sort>(std::vector<setting>{{"gaps", gaps}})).sort(std::span(list), counted);
         CHECK(counted[work::moves] == 0);
         return counted[work::comparisons];
     };
-    const auto expected = [](const std::vector<std::uint64_t>& gaps) {
+    const auto expected = [](const std::vector<std::uint64_t>& gaps, std::uint64_t n = 1000) {
         std::uint64_t all = 0;
-        for (const std::uint64_t gap : gaps) all += 1000 - gap;
+        for (const std::uint64_t gap : gaps) all += n - gap;
         return all;
     };
     CHECK(comparisons("shell") == expected({500, 250, 125, 62, 31, 15, 7, 3, 1}));
     CHECK(comparisons("ciura") == expected({701, 301, 132, 57, 23, 10, 4, 1}));
     CHECK(comparisons("tokuda") == expected({525, 233, 103, 46, 20, 9, 4, 1}));
+    // On longer lists the others get further gaps; these do not.
+    CHECK(comparisons("ciura", 5000) == expected({3548, 1577, 701, 301, 132, 57, 23, 10, 4, 1}, 5000));
+    CHECK(comparisons("ciura_eight", 5000) == expected({701, 301, 132, 57, 23, 10, 4, 1}, 5000));
+    CHECK(comparisons("four_one", 5000) == expected({4, 1}, 5000));
 }
