@@ -54,6 +54,18 @@ mesh receding(std::uint32_t n) {
     return m;
 }
 
+/// Slivers from the origin, each a little shorter than the one before and its centroid in its own middle: a midpoint
+/// split peels them off one by one.
+mesh nested(std::uint32_t n) {
+    mesh m;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const auto length = static_cast<float>(2 * (n - i));
+        m.vertices.insert(m.vertices.end(), {{0, 0, 0}, {length, 0, 0}, {length / 2, 0, 0}});
+        m.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return m;
+}
+
 /// The first n triangles of a sheet, for every small n.
 mesh strip(std::uint32_t n) {
     mesh m = sheet(10);
@@ -62,7 +74,8 @@ mesh strip(std::uint32_t n) {
 }
 
 std::vector<mesh> meshes() {
-    std::vector<mesh> all = {sheet(9), sheet(40), many_equal(3), many_equal(1000), receding(61), receding(500)};
+    std::vector<mesh> all = {sheet(9),     sheet(40),     many_equal(3), many_equal(1000),
+                             receding(61), receding(500), nested(300)};
     for (std::uint32_t n = 1; n <= 40; ++n) all.push_back(strip(n));
     return all;
 }
@@ -86,8 +99,10 @@ std::size_t tree_bytes_of(const local_stage& stage) {
     return all;
 }
 
-std::size_t bytes_of_tree(const char* tree, const mesh& m, const char* build = "median") {
-    const auto stage = local_of(composed({{strategy_kind::build, build}, {strategy_kind::tree, tree}}));
+std::size_t bytes_of_tree(const char* tree, const mesh& m, const strategy_choice& build = {"median", {}}) {
+    composition c = composed({{strategy_kind::tree, tree}});
+    c[strategy_kind::build] = build;
+    const auto stage = local_of(c);
     stage->add_model(m);
     return tree_bytes_of(*stage);
 }
@@ -160,9 +175,11 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
         INFO(text_of_local(tree));
         const mesh points = receding(300);
         const mesh equal = many_equal(60);
+        const mesh slivers = nested(300);
         const auto stage = local_of(tree);
         stage->add_model(points);
         stage->add_model(equal);
+        stage->add_model(slivers);
         std::vector<index_pair> pairs;
         stage->self_pairs(1, pairs);
         CHECK(pairs.size() == 60 * 59 / 2);
@@ -172,6 +189,11 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
         // Of the points on the ray from the origin, those that are no further than 1 lie in the triangle's edge.
         const auto near = std::ranges::count_if(points.vertices, [](const vec3f& p) { return p[0] <= 1; });
         CHECK(stage->count_pairs(0, {}, 1, {}) == static_cast<std::uint64_t>(60 * near));
+        // All begin in the corner of every triangle.
+        CHECK(stage->count_pairs(1, {}, 2, {}) == 60 * 300);
+        pairs.clear();
+        stage->self_pairs(2, pairs);
+        CHECK(pairs.size() == 300 * 299 / 2);
     }
 }
 
@@ -216,7 +238,7 @@ TEST_CASE("layouts take the bytes that the paper says, or less") {
         CHECK(bytes_of_tree("leafless", m) == 32 * (n - 1));
         CHECK(bytes_of_tree("shared_planes", m) == 37 * n - 33 + 24);
         CHECK(bytes_of_tree("compressed_literal", m) == 21 * (n - 1) + 24);
-        for (const char* build : {"median", "mean", "sah"}) {
+        for (const strategy_choice& build : all_choices(strategy_kind::build)) {
             // Even: half as many nodes hold two leaves, 8 bytes; the others 33. Odd: one leaf stands beside a node.
             const std::size_t pairs = n / 2;
             CHECK(bytes_of_tree("compressed", m, build) == 8 * pairs + 33 * (n - 1 - pairs) + 24);
@@ -233,6 +255,14 @@ TEST_CASE("builds split where they say") {
     };
     CHECK(survey("median", receding(61)).depth == 6);
     CHECK(survey("mean", receding(61)).depth > 15);
+    CHECK(survey("midpoint", nested(61)).depth == 60);
+    // The middle of the box lies between the first two points, the mean and the median further on.
+    mesh points;
+    for (const float x : {0.0F, 6.0F, 9.0F, 9.5F, 10.0F}) points.vertices.push_back({x, 0, 0});
+    for (std::uint32_t i = 0; i < points.vertices.size(); ++i) points.triangles.push_back({i, i, i});
+    const auto left_end = [&](const auto& build) { return build.build(points, leaf_pairing::any)[1].bounds.max[0]; };
+    CHECK(left_end(midpoint_build()) == 0);
+    CHECK(left_end(mean_build()) == 6);
     // Work that the heuristic is made for: two clusters of different sizes.
     mesh clusters;
     for (std::uint32_t i = 0; i < 300; ++i) {
