@@ -16,6 +16,7 @@ import aabb.pipeline;
 import aabb.build.median;
 import aabb.tree.canonical;
 import aabb.triangle.exact;
+import aabblab.rotated_boxes;
 import aabblab.scenes;
 
 export namespace aabblab {
@@ -55,6 +56,8 @@ public:
     [[nodiscard]] inline const aabb::model<walked_tree>& a() const noexcept { return a_; }
     [[nodiscard]] inline const aabb::model<walked_tree>& b() const noexcept { return b_; }
     [[nodiscard]] inline const aabb::relative_pose& to_a() const noexcept { return to_a_; }
+
+    [[nodiscard]] inline const rotated_boxes& rotated() const noexcept { return rotated_; }
 
     /// Leaves of A, each with the node of B, a leaf or not, that it is tested against when it is reached; and of B.
     [[nodiscard]] inline const std::vector<reached_leaf>& leaves_of_a() const noexcept { return leaves_of_a_; }
@@ -126,6 +129,7 @@ private:
     aabb::model<walked_tree> b_{scene_->meshes[1], aabb::median_build()};
     std::vector<aabb::pose> poses_ = first_poses(*scene_);
     aabb::relative_pose to_a_{poses_[0], poses_[1], b_.bounds()};
+    rotated_boxes rotated_{poses_[0], poses_[1], b_.bounds()};
     std::vector<node_pair> open_;
     std::vector<reached_leaf> leaves_of_a_;
     std::vector<reached_leaf> leaves_of_b_;
