@@ -70,10 +70,12 @@ inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     std::erase_if(all, [&](const aabb::composition& c) { return !refusal_of(c, stage).empty(); });
     return all;
 }
-/// The exact ones.
+/// The exact ones that play scenes of boxes.
 inline std::vector<aabb::composition> all_global_compositions() {
     std::vector<aabb::composition> all = all_compositions(aabb::stage::global_search);
-    std::erase_if(all, [](const aabb::composition& c) { return !is_exact(c, aabb::stage::global_search); });
+    std::erase_if(all, [](const aabb::composition& c) {
+        return !is_exact(c, aabb::stage::global_search) || !needs_meshes(c).empty();
+    });
     return all;
 }
 inline std::vector<aabb::composition> all_local_compositions() {

@@ -71,8 +71,10 @@ std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_
         for (const aabb::composition& c : all) std::ranges::move(with_named_values(c, stage), std::back_inserter(more));
         all = std::move(more);
     }
-    std::erase_if(all,
-                  [&](const aabb::composition& c) { return !is_exact(c, stage) || !refusal_of(c, stage).empty(); });
+    // Scenes of meshes have a global search of their own.
+    std::erase_if(all, [&](const aabb::composition& c) {
+        return !is_exact(c, stage) || !refusal_of(c, stage).empty() || !needs_meshes(c).empty();
+    });
     return all;
 }
 

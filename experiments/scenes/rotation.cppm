@@ -65,8 +65,8 @@ struct quaternion {
     return double{b.max[k]} - double{b.min[k]};
 }
 
-/// Moves the mesh's box to the origin and scales its longest extent to 1; each vertex is rounded to float once.
-inline void normalise(aabb::mesh& m) {
+/// Moves the mesh's box to the origin and scales its longest extent; each vertex is rounded to float once.
+inline void normalise(aabb::mesh& m, double wanted = 1) {
     const aabb::box bounds = aabb::bounds_of(m);
     const aabb::vec3d centre = centre_of(bounds);
     const double extent = longest_extent(bounds);
@@ -74,7 +74,7 @@ inline void normalise(aabb::mesh& m) {
     for (aabb::vec3f& v : m.vertices)
         for (int k = 0; k < 3; ++k) {
             // A vertex that no triangle uses may lie anywhere; it stays finite.
-            const double scaled = (double{v[k]} - centre[k]) / extent;
+            const double scaled = (double{v[k]} - centre[k]) / extent * wanted;
             v[k] = static_cast<float>(std::fmin(std::fmax(scaled, -0x1p100), 0x1p100));
         }
 }

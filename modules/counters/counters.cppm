@@ -19,7 +19,7 @@ enum class work : std::uint8_t {
     subset_copies,       ///< entries of boxes in subsets of the partition
     segments_wanted,     ///< into which an axial cut was to cut its axes, summed over the axes
     segments_got,        ///< and into which it did
-    pieces,              ///< boxes that split_large made of the objects it split
+    pieces,              ///< that split_large made of boxes, split_mesh of meshes, of those that it split
     node_visits,         ///< pairs of tree nodes taken from the stack
     triangle_box_tests,  ///< tests of a leaf's triangle against a box
     triangle_tests,      ///< tests of two triangles

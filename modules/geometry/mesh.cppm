@@ -55,4 +55,13 @@ inline void require_valid(const mesh& m) {
             throw input_error("vertex " + std::to_string(v) + " has a coordinate that is not finite");
 }
 
+/// Refuses a mesh that deforms and is no longer one of so many triangles.
+/// @throws input_error as `require_valid`, and with both numbers.
+inline void require_still_valid(const mesh& m, std::size_t triangles) {
+    require_valid(m);
+    if (m.triangles.size() != triangles)
+        throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles) +
+                          ", now there are " + std::to_string(m.triangles.size()));
+}
+
 }  // namespace aabb

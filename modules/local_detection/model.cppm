@@ -1,6 +1,5 @@
 module;
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,10 +33,7 @@ public:
     void refit(std::vector<box>& boxes) {
         fit_.renew([&] {
             require_ieee_arithmetic();
-            require_valid(*mesh_);
-            if (mesh_->triangles.size() != triangles_)
-                throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles_) +
-                                  ", now there are " + std::to_string(mesh_->triangles.size()));
+            require_still_valid(*mesh_, triangles_);
             tree_.refit(*mesh_, boxes);
         });
     }

@@ -12,6 +12,7 @@ export module aabb.pipeline:stage;
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
+import :scene;
 
 // The two stages as a program sees them. Each is composed statically behind one call a frame (global search) or one
 // call a pair of meshes (local detection); between them stands a buffer of candidate pairs.
@@ -23,6 +24,10 @@ struct part_bytes {
     std::size_t bytes;
 };
 
+/// Into which parts meshes are divided: by mesh, the triangles of each part. Every triangle stands in one of them; a
+/// mesh of less than two parts stays whole.
+using mesh_division = std::vector<std::vector<std::vector<std::uint32_t>>>;
+
 /// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
 /// every later frame, by an input_error; a search that throws appends nothing.
 class global_stage {
@@ -31,6 +36,11 @@ public:
     global_stage(const global_stage&) = delete;
     global_stage& operator=(const global_stage&) = delete;
     virtual ~global_stage() = default;
+
+    /// How a pipeline is to divide the meshes of its scene, so that what comes to this stage is parts in place of whole
+    /// objects; empty, as of most stages, where all stay whole. Asked once, before anything comes.
+    /// @throws input_error on meshes that `require_valid` refuses.
+    [[nodiscard]] virtual mesh_division divide(const mesh_scene& /*scene*/) { return {}; }
 
     /// An object comes (its id must not be present) or goes (its id must be). Boxes of others take no part.
     virtual void insert(std::uint32_t id) = 0;

@@ -1,7 +1,6 @@
 module;
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,6 +17,7 @@ import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
 import aabb.prepare.mean_extent;
+import aabb.prepare.pieces;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -46,7 +46,6 @@ public:
     [[nodiscard]] std::vector<std::string> left_out() const override;
 
 private:
-    static constexpr std::size_t most_pieces = 16;  // on an axis
     /// Where the pieces of an interval begin, and the last one's end.
     struct cut_interval {
         std::size_t pieces;
@@ -158,9 +157,8 @@ std::vector<std::string> split_large_stage::left_out() const {
 split_large_stage::cut_interval split_large_stage::cut(float lower, float upper, double longest) {
     const double extent = double{upper} - double{lower};
     cut_interval interval{1, {lower, upper}};
-    if (!(extent > longest)) return interval;
-    const double wanted = std::min(std::ceil(extent / longest - 0.01), static_cast<double>(most_pieces));
-    interval.pieces = static_cast<std::size_t>(wanted);
+    interval.pieces = piece_count(extent, longest);
+    const auto wanted = static_cast<double>(interval.pieces);
     for (std::size_t i = 1; i < interval.pieces; ++i) {
         interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
         // Between floats that are this near each other there is no room for pieces.
@@ -171,8 +169,6 @@ split_large_stage::cut_interval split_large_stage::cut(float lower, float upper,
 }
 
 void split_large_stage::find_splits(std::span<const box> boxes, double longest) {
-    // More than that no search would gain by.
-    const std::size_t most_in_all = 65'536 + 16 * boxes.size();
     splits_now_.clear();
     std::size_t all = 0;
     for (std::uint32_t id = 0; id < boxes.size(); ++id) {
@@ -183,9 +179,7 @@ void split_large_stage::find_splits(std::span<const box> boxes, double longest) 
                 static_cast<std::uint8_t>(cut(boxes[id].min[k], boxes[id].max[k], longest).pieces);
         if (found.further_pieces() == 0) continue;
         all += found.further_pieces() + 1;
-        if (all > most_in_all)
-            throw input_error("split_large: this size makes more than " + std::to_string(most_in_all) + " pieces of " +
-                              std::to_string(boxes.size()) + " objects; a greater one makes fewer");
+        require_few_pieces(split_large_prepare::name, all, boxes.size());
         splits_now_.push_back(found);
     }
 }

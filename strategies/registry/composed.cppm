@@ -27,7 +27,10 @@ template <Strategy S>
 [[nodiscard]] entry entry_of() {
     std::string leaves_out;
     if constexpr (requires { S::leaves_out; }) leaves_out = S::leaves_out;
-    return {{std::string(S::name), std::string(S::summary), strategy_is_exact<S>, parameters_of<S>(), leaves_out},
+    std::string needs_meshes;
+    if constexpr (requires { S::needs_meshes; }) needs_meshes = S::needs_meshes;
+    return {{std::string(S::name), std::string(S::summary), strategy_is_exact<S>, parameters_of<S>(), leaves_out,
+             needs_meshes},
             [](const strategy_choice& choice) { (void)configured<S>(choice.settings); },
             [](const strategy_choice& choice) { return is_exact_as<S>(configured<S>(choice.settings)); }};
 }

@@ -175,6 +175,15 @@ bool is_exact(const composition& c, stage of) {
     });
 }
 
+std::string needs_meshes(const composition& c) {
+    require_known(c, stage::global_search);
+    for (const strategy_kind kind : strategy_kinds)
+        if (info_of(kind).stage == stage::global_search)
+            if (const std::string& sentence = entry_of(kind, c[kind]).info.needs_meshes; !sentence.empty())
+                return sentence;
+    return {};
+}
+
 std::vector<composition> every_composition(stage of) {
     return of == stage::global_search ? every_composition(global_rows(), of) : every_composition(local_rows(), of);
 }

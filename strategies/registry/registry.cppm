@@ -24,7 +24,8 @@ struct strategy_info {
     std::string summary;
     bool exact;  ///< false for one that approximates, whatever its parameters: its results are compared, not refused
     std::vector<parameter_info> parameters;
-    std::string leaves_out;  ///< what a stage with it does without, a sentence; empty where it does not say
+    std::string leaves_out;    ///< what a stage with it does without, a sentence; empty where it does not say
+    std::string needs_meshes;  ///< why it has no use for boxes alone, a sentence; empty where it has
 };
 
 /// The strategies of a kind, in the order of `strategies/CMakeLists.txt`.
@@ -62,6 +63,9 @@ private:
 
 /// Whether every strategy of the stage is exact with the parameters that it has there.
 [[nodiscard]] bool is_exact(const composition& c, stage of);
+
+/// Why the composition is refused in scenes of boxes, in the words of the strategy; empty where it plays them too.
+[[nodiscard]] std::string needs_meshes(const composition& c);
 
 /// Every combination of a stage that makes sense, with default parameters; what stands apart in turn, the rest usual.
 [[nodiscard]] std::vector<composition> every_composition(stage of);

@@ -131,7 +131,7 @@ TEST_CASE("Tests of local detection report a time and the share of hits, which i
         CHECK(benchmarks[i]["hits"] == again[i]["hits"]);
         // Of Möller's original what it loses is counted; all others are refused when they lose anything.
         const bool may_lose = benchmarks[i].value("name", "").starts_with("test/triangle_box_moller");
-        CHECK((benchmarks[i].value("lost", -1.0) >= 0) == may_lose);
+        CHECK((benchmarks[i].value("kept", -1.0) >= 0) == may_lose);
     }
     // The box of a triangle holds it, and the leaf's box, when it is turned, holds that of the turned triangle.
     for (const std::string frame : {"", "/frame:a"}) {

@@ -56,7 +56,8 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                     c[strategy_kind::sort] = sort;
                     c[strategy_kind::partition] = partition;
                     c[strategy_kind::sweep] = sweep;
-                    if (refusal_of(c, stage::global_search).empty() && is_exact(c, stage::global_search))
+                    if (refusal_of(c, stage::global_search).empty() && is_exact(c, stage::global_search) &&
+                        needs_meshes(c).empty())
                         compositions.push_back(c);
                 }
             if (compositions.empty()) continue;

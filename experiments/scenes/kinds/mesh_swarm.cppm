@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +24,8 @@ import :rotation;
 namespace aabblab {
 
 /// Many meshes that drift and turn in a cube; object i is mesh i modulo the number of meshes. Unless told otherwise,
-/// each mesh is scaled to a longest extent of 1, since models come in units of their own.
+/// each mesh is scaled to a longest extent of 1, since models come in units of their own. Where some objects are huge
+/// they are the first, and of the first mesh; the others are the other meshes in turn, or the same where there is one.
 class mesh_swarm final : public aabb::mesh_scene {
 public:
     static constexpr std::string_view name = "mesh_swarm";
@@ -40,6 +42,9 @@ public:
         /// The longest way of an object in a frame, in mean extents; it turns by up to as many radians.
         double displacement = 0.05;
         scaling normalise = scaling::yes;
+        /// How many objects are huge, and their longest extent over the side of the world, which the others decide.
+        std::uint32_t huge = 0;
+        double span = 0.5;
     };
     static constexpr std::tuple parameters{
         aabb::integer_parameter{"objects", &config::objects, 0U, 0x7fffffffU, "how many objects"},
@@ -49,7 +54,10 @@ public:
         aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e6,
                                "the longest way of an object in a frame, in mean extents (and radians it turns)"},
         aabb::choice_parameter{"normalise", &config::normalise, std::array<std::string_view, 2>{"yes", "no"},
-                               "scale each mesh to a longest extent of 1"}};
+                               "scale each mesh to a longest extent of 1"},
+        aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
+        aabb::number_parameter{"span", &config::span, 0.0, 1.0,
+                               "longest extent of a huge object over the side of the world"}};
 
     mesh_swarm(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
         : frames_(std::size_t{c.frames} + 1), random_(seed) {
@@ -57,23 +65,32 @@ public:
             "a mesh_swarm of " + std::to_string(c.objects) + " objects",
             c.objects * (drifting_points::bytes_each + sizeof(spin) + sizeof(aabb::pose) + sizeof(std::uint32_t)));
         meshes = std::move(given);
+        const std::uint32_t huge = std::min(c.huge, c.objects);
+        const std::uint32_t others = c.objects - huge;
+        const std::uint32_t first = huge > 0 ? 1 : 0;  // mesh of the others
+        if (meshes.size() == first) meshes.push_back(meshes[0]);
         std::vector<double> extents;
         for (aabb::mesh& m : meshes) {
             if (c.normalise == scaling::yes) normalise(m);
-            const aabb::box bounds = aabb::bounds_of(m);
-            centres_.push_back(centre_of(bounds));
-            extents.push_back(longest_extent(bounds));
+            extents.push_back(longest_extent(aabb::bounds_of(m)));
         }
+        mesh_of.assign(huge, 0);
         double sum = 0;
         double volume = 0;
-        for (std::uint32_t i = 0; i < c.objects; ++i) {
-            mesh_of.push_back(static_cast<std::uint32_t>(i % meshes.size()));
+        for (std::uint32_t i = 0; i < others; ++i) {
+            mesh_of.push_back(first + static_cast<std::uint32_t>(i % (meshes.size() - first)));
             const double extent = extents[mesh_of.back()];
             sum += extent;
             volume += extent * extent * extent;
         }
-        extent_ = c.objects == 0 ? 0 : sum / c.objects;
-        points_.emplace(c.objects, cube_root(volume / c.density) - extent_, c.displacement * extent_, random_);
+        extent_ = others == 0 ? 0 : sum / others;
+        const double side = cube_root((others == 0 ? huge : volume) / c.density);
+        if (huge > 0) normalise(meshes[0], c.span * side);
+        for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(aabb::bounds_of(m)));
+        huge_extent_ = c.span * side;
+        const double mean = c.objects == 0 ? 0 : (sum + huge * huge_extent_) / c.objects;
+        points_.emplace(others, side - extent_, c.displacement * mean, random_);
+        huge_.emplace(huge, side - huge_extent_, c.displacement * mean, random_);
         spins_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             const quaternion at = random_rotation(random_);
@@ -88,13 +105,15 @@ public:
         if (frame_ == frames_) return false;
         if (frame_++ > 0) {
             points_->advance(random_);
+            huge_->advance(random_);
             for (spin& s : spins_) s.at = composed(s.by, s.at);
         }
         poses.resize(spins_.size());
         for (std::size_t i = 0; i < poses.size(); ++i) {
             // The centre keeps half an extent from the walls of the world, which begins at the origin.
-            aabb::vec3d place = (*points_)[i];
-            for (double& coordinate : place.at) coordinate += extent_ / 2;
+            const bool is_huge = i < huge_->size();
+            aabb::vec3d place = is_huge ? (*huge_)[i] : (*points_)[i - huge_->size()];
+            for (double& coordinate : place.at) coordinate += (is_huge ? huge_extent_ : extent_) / 2;
             poses[i] = placed(centres_[mesh_of[i]], spins_[i].at, place);
         }
         return true;
@@ -108,9 +127,11 @@ private:
     std::size_t frames_;
     std::size_t frame_ = 0;
     random_source random_;
-    double extent_ = 0;                 // mean, of the objects
+    double extent_ = 0;  // mean, of objects that are not huge
+    double huge_extent_ = 0;
     std::vector<aabb::vec3d> centres_;  // by mesh
     std::optional<drifting_points> points_;
+    std::optional<drifting_points> huge_;
     std::vector<spin> spins_;
 };
 

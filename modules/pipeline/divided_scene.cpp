@@ -1,0 +1,102 @@
+module;
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabb.pipeline;
+
+import aabb.base;
+import aabb.geometry;
+
+namespace aabb {
+
+divided_scene::divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
+    division.resize(scene.meshes.size());
+    std::size_t parts = 0;
+    for (const auto& of_mesh : division) parts += of_mesh.size();
+    parts_.reserve(parts);  // models keep pointers to them
+    std::vector<std::uint32_t> first_model;
+    for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+        triangles_.push_back(scene.meshes[m].triangles.size());
+        first_model.push_back(models());
+        if (division[m].size() < 2) {
+            models_.push_back({m, whole, bounds_of(scene.meshes[m])});
+            continue;
+        }
+        for (std::vector<std::uint32_t>& triangles : division[m]) {
+            parts_.push_back(part_of(scene.meshes[m], std::move(triangles)));
+            models_.push_back({m, static_cast<std::uint32_t>(parts_.size() - 1), bounds_of(parts_.back().own)});
+        }
+    }
+    first_model.push_back(models());
+    for (std::uint32_t object = 0; object < scene.mesh_of.size(); ++object)
+        for (std::uint32_t m = first_model[scene.mesh_of[object]]; m < first_model[scene.mesh_of[object] + 1]; ++m)
+            pieces_.push_back({object, m});
+    boxes_.resize(pieces_.size());
+}
+
+divided_scene::part divided_scene::part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
+    assert(!triangles.empty());
+    part made;
+    for (const std::uint32_t t : triangles)
+        made.vertices.insert(made.vertices.end(), m.triangles[t].begin(), m.triangles[t].end());
+    std::ranges::sort(made.vertices);
+    const auto repeated = std::ranges::unique(made.vertices);
+    made.vertices.erase(repeated.begin(), repeated.end());
+    made.vertices.shrink_to_fit();
+    const auto own_number = [&](std::uint32_t vertex) {
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(made.vertices, vertex) - made.vertices.begin());
+    };
+    made.own.vertices.reserve(made.vertices.size());
+    for (const std::uint32_t v : made.vertices) made.own.vertices.push_back(m.vertices[v]);
+    made.own.triangles.reserve(triangles.size());
+    for (const std::uint32_t t : triangles) {
+        const auto& [a, b, c] = m.triangles[t];
+        made.own.triangles.push_back({own_number(a), own_number(b), own_number(c)});
+    }
+    made.triangles = std::move(triangles);
+    return made;
+}
+
+const mesh& divided_scene::mesh_of(std::uint32_t model) const noexcept {
+    const auto& [source, part, bounds] = models_[model];
+    return part == whole ? scene_.meshes[source] : parts_[part].own;
+}
+
+void divided_scene::follow() {
+    for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
+        if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangles_[m]);
+    for (auto& [source, number, bounds] : models_) {
+        if (!scene_.deforms(source)) continue;
+        if (number != whole) {
+            part& own = parts_[number];
+            for (std::size_t v = 0; v < own.vertices.size(); ++v)
+                own.own.vertices[v] = scene_.meshes[source].vertices[own.vertices[v]];
+        }
+        bounds = bounds_of(number == whole ? scene_.meshes[source] : parts_[number].own);
+    }
+}
+
+void divided_scene::place(std::span<const pose> poses) {
+    require_poses(scene_, poses);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        boxes_[i] = world_bounds(models_[pieces_[i].model].bounds, poses[pieces_[i].object]);
+        if (!is_valid(boxes_[i]))
+            throw input_error("object " + std::to_string(pieces_[i].object) + " lies beyond the range of float");
+    }
+}
+
+std::size_t divided_scene::bytes() const noexcept {
+    std::size_t all =
+        bytes_of(triangles_) + bytes_of(parts_) + bytes_of(models_) + bytes_of(pieces_) + bytes_of(boxes_);
+    for (const part& p : parts_)
+        all += bytes_of(p.own.vertices) + bytes_of(p.own.triangles) + bytes_of(p.vertices) + bytes_of(p.triangles);
+    return all;
+}
+
+}  // namespace aabb

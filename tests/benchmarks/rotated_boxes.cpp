@@ -1,0 +1,97 @@
+#include <rapidcheck.h>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+
+#include "../random_poses.hpp"
+
+import aabb;
+import aabblab.rotated_boxes;
+
+using namespace aabb;
+
+namespace {
+
+pose any_pose() {
+    std::array<double, 4> q{};
+    for (double& c : q) c = uniform(-1, 1);
+    q[0] += 2;
+    return turned_by(q, {uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)});
+}
+
+vec3d column(const pose& p, std::size_t j) {
+    return {p.rotation[j], p.rotation[3 + j], p.rotation[6 + j]};
+}
+
+double product(const vec3d& p, const vec3d& q) {
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+/// The point may lie on a face, an edge or a corner.
+box around(const vec3f& at) {
+    box b{at, at};
+    for (int k = 0; k < 3; ++k) {
+        b.min[k] -= static_cast<float>(*rc::gen::element(0.0, 1.0) * uniform(0, 2));
+        b.max[k] += static_cast<float>(*rc::gen::element(0.0, 1.0) * uniform(0, 2));
+    }
+    return b;
+}
+
+struct answer {
+    bool faces;
+    bool edges;
+};
+
+answer tested(const pose& pose_a, const box& a, const pose& pose_b, const box& b) {
+    const aabblab::rotated_boxes rotated(pose_a, pose_b, b);
+    const aabblab::box_pair pair = rotated.pair_of(a, b);
+    return {rotated.meet_by_faces(pair), rotated.meet_by_edges(pair)};
+}
+
+}  // namespace
+
+TEST_CASE("boxes that hold a vertex and its image are parted by no axis, even where they only touch there") {
+    REQUIRE(rc::check([] {
+        const pose pose_a = any_pose();
+        const pose pose_b = any_pose();
+        vec3f vertex{};
+        for (float& c : vertex.at) c = static_cast<float>(uniform(-5, 5));
+        const box b = around(vertex);
+        const answer both = tested(pose_a, around(relative_pose(pose_a, pose_b, b)(vertex)), pose_b, b);
+        RC_ASSERT(both.faces);
+        RC_ASSERT(both.edges);
+    }));
+}
+
+TEST_CASE("boxes with a gap along an axis are parted by it, some by the edges only") {
+    std::size_t by_edges_only = 0;
+    REQUIRE(rc::check([&] {
+        const pose pose_a = any_pose();
+        pose pose_b = any_pose();
+        const auto axis = *rc::gen::inRange<std::size_t>(0, 15);
+        vec3d along = column(axis < 3 ? pose_a : pose_b, axis % 3);
+        if (axis >= 6) along = cross(column(pose_a, axis % 3), column(pose_b, axis / 3 - 2));
+        const double length = std::sqrt(product(along, along));
+        RC_PRE(length > 0.1);
+        for (double& c : along.at) c /= length;
+        // Boxes about their frames' origins, so that B's is as far off as both reach.
+        box a{};
+        box b{};
+        double reach = 0.01;
+        for (int k = 0; k < 3; ++k) {
+            a.max[k] = static_cast<float>(uniform(0, 2));
+            b.max[k] = static_cast<float>(uniform(0, 2));
+            a.min[k] = -a.max[k];
+            b.min[k] = -b.max[k];
+            const auto j = static_cast<std::size_t>(k);
+            reach += std::abs(product(along, column(pose_a, j))) * double{a.max[k]} +
+                     std::abs(product(along, column(pose_b, j))) * double{b.max[k]};
+        }
+        for (int k = 0; k < 3; ++k) pose_b.translation[k] = pose_a.translation[k] + along[k] * reach;
+        const answer both = tested(pose_a, a, pose_b, b);
+        RC_ASSERT(!(axis < 6 ? both.faces : both.edges));
+        by_edges_only += both.faces ? 1 : 0;
+    }));
+    CHECK(by_edges_only > 0);
+}
