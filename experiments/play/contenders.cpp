@@ -28,6 +28,7 @@ void use(contender& who, const aabb::composition& c, aabb::stage stage) {
     who.exact = who.exact && is_exact(c, stage);
     if (stage == aabb::stage::global_search) {
         who.exact_boxes = is_exact(c, stage);
+        who.whole_boxes = needs_meshes(c).empty();
         who.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
     } else {
         who.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
@@ -69,6 +70,8 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
     std::vector<contender> all;
     std::set<contender_name> names;
     for (const aabb::composition& c : e.compositions) {
+        // Refused in a config; of all compositions that there are, it has no part in this scene.
+        if (!meshes && !needs_meshes(c).empty()) continue;
         contender who = contender_of(c, meshes);
         // In a scene of boxes, compositions that differ in local detection only are one.
         if (names.insert(who.name).second) all.push_back(std::move(who));

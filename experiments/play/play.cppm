@@ -17,6 +17,7 @@ import aabb.validation;
 import aabblab.configs;
 import aabblab.results;
 import aabblab.scenes;
+import aabblab.stopwatch;
 export import :player;
 
 export namespace aabblab {
@@ -69,11 +70,11 @@ struct scene_validation {
 
 /// One repeat.
 struct timing {
-    double build_ms = 0;
-    double first_ms = 0;
-    double update_ms = 0;
-    double search_ms = 0;
-    double detect_ms = 0;
+    elapsed build;
+    elapsed first;
+    elapsed update;
+    elapsed search;
+    elapsed detect;
     std::string digest;
 };
 /// The scene is told what the contender itself finds.

@@ -103,19 +103,11 @@ void player::detect() {
 }
 
 std::optional<aabb::contact> player::first_contact() {
-    const std::vector<std::uint32_t>& mesh_of = scene_.meshes()->mesh_of;
-    for (const auto [a, b] : pipeline_->candidates())
-        if (const auto found = made_.local->first_pair(mesh_of[a], scene_.poses()[a], mesh_of[b], scene_.poses()[b]))
-            return aabb::contact{a, b, found->a, found->b};
-    return std::nullopt;
+    return pipeline_->first_contact();
 }
 
 std::uint64_t player::count_contacts() {
-    const std::vector<std::uint32_t>& mesh_of = scene_.meshes()->mesh_of;
-    std::uint64_t count = 0;
-    for (const auto [a, b] : pipeline_->candidates())
-        count += made_.local->count_pairs(mesh_of[a], scene_.poses()[a], mesh_of[b], scene_.poses()[b]);
-    return count;
+    return pipeline_->count_contacts();
 }
 
 void player::find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs) {
@@ -143,7 +135,9 @@ aabb::work_counters player::counters() const {
 }
 
 std::vector<aabb::part_bytes> player::global_bytes() const {
-    return made_.global ? made_.global->bytes() : std::vector<aabb::part_bytes>{};
+    std::vector<aabb::part_bytes> parts = made_.global ? made_.global->bytes() : std::vector<aabb::part_bytes>{};
+    if (pipeline_ && pipeline_->division_bytes() > 0) parts.push_back({"prepare", pipeline_->division_bytes()});
+    return parts;
 }
 
 std::vector<aabb::part_bytes> player::local_bytes() const {
@@ -175,20 +169,20 @@ std::vector<std::string> player::left_out() const {
 std::optional<double> player::box_inflation() const {
     if (!made_.local) return std::nullopt;
     double sum = 0;
-    const std::size_t meshes = scene_.meshes()->meshes.size();
-    for (std::uint32_t m = 0; m < meshes; ++m) {
+    const std::uint32_t models = pipeline_->models();
+    for (std::uint32_t m = 0; m < models; ++m) {
         const std::optional<aabb::tree_survey> seen = made_.local->survey(m);
         if (!seen) return std::nullopt;
         sum += seen->area_inflation;
     }
-    return sum / static_cast<double>(meshes);
+    return sum / static_cast<double>(models);
 }
 
 void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each, std::size_t most) {
     for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
-        const double update = milliseconds_of([&] { who.update(); });
-        const double search = milliseconds_of([&] { who.search(); });
-        const double detect = milliseconds_of([&] { who.detect(); });
+        const elapsed update = elapsed_in([&] { who.update(); });
+        const elapsed search = elapsed_in([&] { who.search(); });
+        const elapsed detect = elapsed_in([&] { who.detect(); });
         const played_frame played{frame, update, search, detect, who.sorted_pairs(), who.sorted_contacts()};
         each(played);
         scene.tell(played.pairs, played.contacts);

@@ -19,6 +19,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabblab.results;
 import aabblab.scenes;
+import aabblab.stopwatch;
 
 export namespace aabblab {
 
@@ -27,6 +28,8 @@ struct contender {
     contender_name name;
     std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
     std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
+    bool whole_boxes =
+        true;  ///< false where global search sees parts of objects: its pairs are not held against theirs
     bool exact_boxes = true;  ///< a difference from the exact pairs of boxes is a failure, not a measurement
     bool exact = true;        ///< the same of contacts
 };
@@ -100,7 +103,8 @@ public:
     /// In place of `detect`, in scenes of meshes: any one contact of the frame, how many there are.
     [[nodiscard]] std::optional<aabb::contact> first_contact();
     [[nodiscard]] std::uint64_t count_contacts();
-    /// Appends the pairs of intersecting triangles of one mesh of the scene with itself, in no particular order.
+    /// Appends the pairs of intersecting triangles of one mesh of the scene, which is not divided, with itself, in no
+    /// particular order.
     void find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs);
 
     /// Of the frame, sorted; duplicates stay.
@@ -113,7 +117,7 @@ public:
     [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
     [[nodiscard]] std::size_t buffer_bytes() const;
     [[nodiscard]] std::vector<std::string> left_out() const;
-    /// The mean over the scene's meshes of the tree's; empty where there is no tree to be seen.
+    /// The mean over the models of the tree's; empty where there is no tree to be seen.
     [[nodiscard]] std::optional<double> box_inflation() const;
 
 private:
@@ -127,13 +131,13 @@ private:
 /// A frame that was played.
 struct played_frame {
     std::uint32_t number;
-    double update_ms;
-    double search_ms;
-    double detect_ms;
+    elapsed update;
+    elapsed search;
+    elapsed detect;
     std::span<const aabb::index_pair> pairs;  ///< of boxes, sorted; duplicates stay
     std::span<const aabb::contact> contacts;  ///< the same; empty in a scene of boxes
 
-    [[nodiscard]] double ms() const { return update_ms + search_ms + detect_ms; }
+    [[nodiscard]] double ms() const { return update.wall_ms + search.wall_ms + detect.wall_ms; }
 };
 
 /// Plays what is left of a scene, or so many frames of it. Each frame is handed over, then the scene is told what was

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ import aabblab.metrics;
 import aabblab.progress;
 import aabblab.results;
 import aabblab.scenes;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -103,11 +105,15 @@ bool goes_its_own_way(const scene_choice& scene, const contender& who) {
 std::string time_into(const scene_choice& scene, timed_contender& timed) {
     row& r = timed.result;
     const timing times = time_scene(scene, *timed.who);
-    r.build_ms = times.build_ms;
-    r.first_ms = times.first_ms;
-    r.update_ms = times.update_ms;
-    r.search_ms = times.search_ms;
-    r.detect_ms = times.detect_ms;
+    const auto take = [](const elapsed& time, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
+        wall_ms = time.wall_ms;
+        cpu_ms = time.cpu_ms;
+    };
+    take(times.build, r.build_ms, r.build_cpu_ms);
+    take(times.first, r.first_ms, r.first_cpu_ms);
+    take(times.update, r.update_ms, r.update_cpu_ms);
+    take(times.search, r.search_ms, r.search_cpu_ms);
+    take(times.detect, r.detect_ms, r.detect_cpu_ms);
     if (times.digest == r.digest || goes_its_own_way(scene, *timed.who)) return {};
     timed.strayed = true;
     return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): timed, its digest is " +

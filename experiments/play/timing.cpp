@@ -20,15 +20,17 @@ timing time_scene(const scene_choice& choice, const contender& who) {
 timing time_scene(scene_play& scene, const contender& who) {
     timing times;
     std::optional<player> p;
-    times.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
+    times.build = elapsed_in([&] { p.emplace(who, scene, aabb::instrumentation::none); });
     tally found(scene.meshes() != nullptr);
     play(scene, *p, [&](const played_frame& frame) {
         if (frame.number == 0) {
-            times.first_ms = frame.ms();
+            times.first += frame.update;
+            times.first += frame.search;
+            times.first += frame.detect;
         } else {
-            times.update_ms += frame.update_ms;
-            times.search_ms += frame.search_ms;
-            times.detect_ms += frame.detect_ms;
+            times.update += frame.update;
+            times.search += frame.search;
+            times.detect += frame.detect;
         }
         found.add(frame.pairs, frame.contacts);
     });

@@ -72,10 +72,12 @@ public:
         player_.detect();
         if (frame == 0) first_frame_ = player_.counters();
         found_.add(player_.sorted_pairs(), player_.sorted_contacts());
-        const set_difference boxes(exact.pairs(), player_.sorted_pairs());
-        if (who_.exact_boxes) note(frame, boxes.first());
-        boxes_missing_ += boxes.missing.size();
-        boxes_invented_ += boxes.invented.size();
+        if (who_.whole_boxes) {
+            const set_difference boxes(exact.pairs(), player_.sorted_pairs());
+            if (who_.exact_boxes) note(frame, boxes.first());
+            boxes_missing_ += boxes.missing.size();
+            boxes_invented_ += boxes.invented.size();
+        }
         if (!scene_.meshes()) return;
         const set_difference contacts(exact.contacts(), player_.sorted_contacts());
         if (who_.exact) note(frame, contacts.first());

@@ -38,3 +38,24 @@ TEST_CASE("Times a frame need a frame after the first one") {
         CHECK_FALSE(measured(none)(r).has_value());
     }
 }
+
+TEST_CASE("Processor time stands beside wall time, and what lies between was waiting") {
+    row r;
+    r.frames = 3;
+    r.build_ms = r.first_ms = r.update_ms = r.search_ms = r.detect_ms = 4;
+    r.build_cpu_ms = r.first_cpu_ms = r.update_cpu_ms = r.search_cpu_ms = r.detect_cpu_ms = 3;
+    CHECK(measured("frame_cpu_ms")(r) == 4.5);
+    CHECK(measured("update_cpu_ms")(r) == 1.5);
+    CHECK(measured("search_cpu_ms")(r) == 1.5);
+    CHECK(measured("detect_cpu_ms")(r) == 1.5);
+    CHECK(measured("build_cpu_ms")(r) == 3);
+    CHECK(measured("whole_cpu_ms")(r) == 15);
+    CHECK(measured("waiting")(r) == 25);
+    r.first_cpu_ms = r.update_cpu_ms = r.search_cpu_ms = r.detect_cpu_ms = 4.1;
+    CHECK(measured("waiting")(r) == 0);
+    r.frames = 1;
+    CHECK(measured("frame_cpu_ms")(r) == 4.1);
+    CHECK_FALSE(measured("update_cpu_ms")(r).has_value());
+    r.update_cpu_ms.reset();
+    CHECK_FALSE(measured("waiting")(r).has_value());
+}

@@ -1,0 +1,59 @@
+module;
+#include <sched.h>
+
+#include <chrono>
+#include <cstddef>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+
+module aabblab.processor;
+
+namespace aabblab {
+
+namespace {
+
+/// Ticks that each processor has been busy, by its number; empty where the system does not say.
+std::map<std::size_t, double> busy_ticks() {
+    std::map<std::size_t, double> busy;
+    std::ifstream in("/proc/stat");
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with("cpu") || line.starts_with("cpu ")) continue;
+        std::istringstream fields(line.substr(3));
+        std::size_t number = 0;
+        double user = 0, nice = 0, system = 0;
+        if (fields >> number >> user >> nice >> system) busy[number] = user + nice + system;
+    }
+    return busy;
+}
+
+}  // namespace
+
+void stay_on_idlest_processor() {
+    // A tick is a hundredth of a second.
+    constexpr auto moment = std::chrono::milliseconds(60);
+    cpu_set_t allowed;
+    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
+    const std::map<std::size_t, double> before = busy_ticks();
+    std::this_thread::sleep_for(moment);
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t idlest = CPU_SETSIZE;
+    for (const auto& [number, ticks] : busy_ticks()) {
+        const auto then = before.find(number);
+        if (number >= CPU_SETSIZE || !CPU_ISSET(number, &allowed) || then == before.end()) continue;
+        // Of equals the last: interrupts tend to go to the first.
+        if (ticks - then->second > least) continue;
+        least = ticks - then->second;
+        idlest = number;
+    }
+    if (idlest == CPU_SETSIZE) return;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(idlest, &one);
+    sched_setaffinity(0, sizeof one, &one);
+}
+
+}  // namespace aabblab

@@ -1,0 +1,13 @@
+module;
+#include <string>
+#include <string_view>
+
+/// Checksums that every system has a tool for.
+export module aabblab.sha256;
+
+export namespace aabblab {
+
+/// SHA-256 (FIPS 180-4) in 64 hexadecimal digits, as sha256sum prints it.
+[[nodiscard]] std::string sha256_of(std::string_view bytes);
+
+}  // namespace aabblab
