@@ -27,17 +27,29 @@ figure_axis axis_of(const json& j) {
     return {j.at("label"), j.at("logarithmic"), j.at("names").get<std::vector<std::pair<double, std::string>>>()};
 }
 
-json json_of(const figure& f) {
+json json_of(const std::vector<series>& all) {
     json lines = json::array();
-    for (const series& s : f.lines) {
+    for (const series& s : all) {
         json points = json::array();
         for (const figure_point& p : s.points) points.push_back({p.x, p.y, p.low, p.high});
         lines.push_back({{"label", s.label}, {"style", static_cast<int>(s.style)}, {"points", std::move(points)}});
     }
+    return lines;
+}
+
+json json_of(const std::vector<figure_mark>& all) {
     json marks = json::array();
-    for (const figure_mark& m : f.marks) marks.push_back({{"x", m.x}, {"label", m.label}});
+    for (const figure_mark& m : all) marks.push_back({{"x", m.x}, {"label", m.label}});
+    return marks;
+}
+
+json json_of(const figure& f) {
+    json panels = json::array();
+    for (const figure_panel& p : f.panels)
+        panels.push_back({{"title", p.title}, {"lines", json_of(p.lines)}, {"marks", json_of(p.marks)}});
     return {{"name", f.name},    {"caption", f.caption},      {"x", json_of(f.x)},
-            {"y", json_of(f.y)}, {"lines", std::move(lines)}, {"marks", std::move(marks)}};
+            {"y", json_of(f.y)}, {"lines", json_of(f.lines)}, {"marks", json_of(f.marks)},
+            {"panels", panels}};
 }
 
 /// A number that is none, as a trajectory's that ends beyond all, is null in JSON; figures leave it out.
@@ -45,15 +57,28 @@ double number_of(const json& j) {
     return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>();
 }
 
-figure figure_of(const json& j) {
-    figure f{j.at("name"), j.at("caption"), axis_of(j.at("x")), axis_of(j.at("y")), {}, {}};
-    for (const json& line : j.at("lines")) {
+std::vector<series> series_of(const json& j) {
+    std::vector<series> all;
+    for (const json& line : j) {
         series s{line.at("label"), static_cast<series_style>(line.at("style").get<int>()), {}};
         for (const json& p : line.at("points"))
             s.points.push_back({number_of(p.at(0)), number_of(p.at(1)), number_of(p.at(2)), number_of(p.at(3))});
-        f.lines.push_back(std::move(s));
+        all.push_back(std::move(s));
     }
-    for (const json& m : j.at("marks")) f.marks.push_back({m.at("x"), m.at("label")});
+    return all;
+}
+
+std::vector<figure_mark> marks_of(const json& j) {
+    std::vector<figure_mark> all;
+    for (const json& m : j) all.push_back({m.at("x"), m.at("label")});
+    return all;
+}
+
+figure figure_of(const json& j) {
+    figure f{j.at("name"),       j.at("caption"),          axis_of(j.at("x")),
+             axis_of(j.at("y")), series_of(j.at("lines")), marks_of(j.at("marks"))};
+    for (const json& p : j.value("panels", json::array()))
+        f.panels.push_back({p.at("title"), series_of(p.at("lines")), marks_of(p.at("marks"))});
     return f;
 }
 

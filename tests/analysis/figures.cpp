@@ -8,11 +8,13 @@
 #include <catch2/generators/catch_generators.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
 #include <cctype>
+#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <regex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -106,6 +108,63 @@ bool well_formed(std::string_view xml) {
         }
     }
     return open.empty();
+}
+
+/// A text of an SVG, as far as gnuplot writes it, with the box that it takes where letters are as wide as in the widest
+/// usual sans.
+struct placed_text {
+    std::string text;
+    double left, right, top, bottom;
+};
+
+std::vector<placed_text> texts_of(const std::string& svg) {
+    std::vector<placed_text> all;
+    const std::regex one(
+        R"re(<g transform="translate\(([-0-9.]+),([-0-9.]+)\)( rotate\(([-0-9.]+)\))?"[^>]*text-anchor="([a-z]+)">\s*<text>(.*?)</text>)re");
+    for (std::sregex_iterator i(svg.begin(), svg.end(), one), end; i != end; ++i) {
+        std::string text = std::regex_replace((*i)[6].str(), std::regex("<[^>]*>"), "");
+        text = std::regex_replace(text, std::regex("&[a-z]+;"), "x");
+        if (text.empty()) continue;
+        const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; });
+        const double width = 16 * 0.6 * static_cast<double>(letters);
+        const double x = std::stod((*i)[1]);
+        const double y = std::stod((*i)[2]);
+        const double before = (*i)[5] == "start" ? 0 : (*i)[5] == "middle" ? width / 2 : width;
+        const double behind = width - before;
+        const double turn = (*i)[4].matched ? std::stod((*i)[4]) * 3.14159265358979 / 180 : 0;
+        // Along the line of text; up and down it takes less than half a line.
+        const auto [from_x, to_x] = std::minmax(x - before * std::cos(turn), x + behind * std::cos(turn));
+        const auto [from_y, to_y] = std::minmax(y - before * std::sin(turn), y + behind * std::sin(turn));
+        all.push_back({text, from_x, to_x, from_y - (turn == 0 ? 12 : 0), to_y + (turn == 0 ? 4 : 0)});
+    }
+    return all;
+}
+
+/// No text is cut off.
+void require_texts_inside(const std::string& svg) {
+    const std::regex size("<svg\\s+width=\"([0-9.]+)\" height=\"([0-9.]+)\"");
+    std::smatch found;
+    REQUIRE(std::regex_search(svg, found, size));
+    const std::vector<placed_text> texts = texts_of(svg);
+    REQUIRE(!texts.empty());
+    for (const placed_text& t : texts) {
+        CAPTURE(t.text, t.left, t.right, t.top, t.bottom);
+        CHECK(t.left >= 0);
+        CHECK(t.right <= std::stod(found[1]));
+        CHECK(t.top >= 0);
+        CHECK(t.bottom <= std::stod(found[2]));
+    }
+}
+
+void require_texts_apart(const std::string& svg) {
+    const std::vector<placed_text> texts = texts_of(svg);
+    for (const placed_text& a : texts)
+        for (const placed_text& b : texts) {
+            if (&a >= &b) continue;
+            CAPTURE(a.text, b.text);
+            const bool apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+            CHECK(apart);
+        }
 }
 
 void require_svg(const std::string& svg) {
@@ -221,8 +280,8 @@ TEST_CASE("A figure's table has its points") {
 
 TEST_CASE("What is text to the user is text to gnuplot") {
     // Quotes, a command, a variable, enhanced text, a format, an escape, XML, and UTF-8.
-    const std::string text = "'it''s' \"a_b^{c}\" `date` $x @y 50% %g \\n <&amp;> é";
-    const std::string in_svg = "'it''s' \"a_b^{c}\" `date` $x @y 50% %g \\n &lt;&amp;amp;> é";
+    const std::string text = "'it''s' \"a_b^{c}\" `date` $x @y 5% %g \\n <&amp;> é";
+    const std::string in_svg = "'it''s' \"a_b^{c}\" `date` $x @y 5% %g \\n &lt;&amp;amp;> é";
     figure f = figure_of({series_of(text, series_style::points, {{1, 1, 1, 1}})});
     f.caption = text + "\\";
     f.x.label = text;
@@ -460,4 +519,118 @@ TEST_CASE("A folder that cannot be made is named") {
     const figure f = every_style();
     REQUIRE_THROWS_AS(aabblab::draw(folder / "file", {&f, 1}), aabb::input_error);
     REQUIRE_THROWS_WITH(aabblab::draw(folder / "file", {&f, 1}), ContainsSubstring((folder / "file").string()));
+}
+
+namespace {
+
+/// Three lines that end so far apart that each can have its label beside it, or so near that they cannot.
+figure three_lines(double factor) {
+    std::vector<aabblab::series> lines;
+    double end = 1;
+    for (const char* label : {"Shell sort", "insertion sort, axial cut", "incremental"}) {
+        lines.push_back(series_of(label, series_style::line, {{100, 1, 1, 1}, {100000, end, end, end}}));
+        end *= factor;
+    }
+    figure f = figure_of(lines);
+    f.x.logarithmic = f.y.logarithmic = true;
+    return f;
+}
+
+/// So many panels with two lines and a level, which all have the same labels.
+figure small_multiples(std::size_t count) {
+    figure f = figure_of({series_of("equal", series_style::level, {{0, 1, 1, 1}})});
+    f.x.logarithmic = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double y = static_cast<double>(i) + 2;
+        f.panels.push_back({"displacement " + std::to_string(i),
+                            {series_of("Shell sort", series_style::line, {{100, 1, 1, 1}, {1000000, y, y, y}}),
+                             series_of("insertion sort", series_style::line, {{100, 2, 2, 2}, {1000000, 3, 3, 3}})},
+                            {{1000, "a mark"}}});
+    }
+    return f;
+}
+
+}  // namespace
+
+TEST_CASE("Lines have their labels at their ends, where they are far enough apart for it") {
+    const figure apart = three_lines(10);
+    REQUIRE_THAT(aabblab::script_of(apart), ContainsSubstring("unset key") && !ContainsSubstring("set key at"));
+    const std::string svg = drawn(apart).svg;
+    require_svg(svg);
+    require_texts_inside(svg);
+    require_texts_apart(svg);
+    for (const char* words :
+         {">Shell sort</text>", ">insertion sort,</text>", ">axial cut</text>", ">incremental</text>"})
+        REQUIRE_THAT(svg, ContainsSubstring(words));
+    // From top to bottom as the lines end.
+    const auto top_of = [texts = texts_of(svg)](const std::string& text) {
+        return std::ranges::find(texts, text, &placed_text::text)->top;
+    };
+    CHECK(top_of("incremental") < top_of("insertion sort,"));
+    CHECK(top_of("axial cut") < top_of("Shell sort"));
+}
+
+TEST_CASE("Labels that meet give way a little, and stand in a legend where they would have to give way far") {
+    const std::string near = drawn(three_lines(1.3)).svg;
+    require_texts_inside(near);
+    require_texts_apart(near);
+    std::vector<aabblab::series> many;
+    for (int i = 0; i < 9; ++i)
+        many.push_back(series_of("line " + std::to_string(i), series_style::line, {{1, 1, 1, 1}, {2, 2, 2, 2}}));
+    many.push_back(series_of("far", series_style::line, {{1, 1, 1, 1}, {2, 100, 100, 100}}));
+    const figure crowded = figure_of(many);
+    REQUIRE_THAT(aabblab::script_of(crowded), ContainsSubstring("set key at"));
+    require_texts_inside(drawn(crowded).svg);
+    // A line that ends before the others has no end there.
+    figure early = three_lines(10);
+    early.lines[1].points.back().x = 1000;
+    REQUIRE_THAT(aabblab::script_of(early), ContainsSubstring("set key at"));
+    figure dots = three_lines(10);
+    dots.lines[1].style = series_style::points;
+    REQUIRE_THAT(aabblab::script_of(dots), ContainsSubstring("set key at"));
+}
+
+TEST_CASE("Panels share axes, looks and a legend") {
+    for (const std::size_t count : {1, 2, 3, 4, 7}) {
+        CAPTURE(count);
+        const figure f = small_multiples(count);
+        const pictures p = drawn(f);
+        require_svg(p.svg);
+        require_pdf(p.pdf);
+        require_texts_inside(p.svg);
+        require_texts_apart(p.svg);
+        for (std::size_t i = 0; i < count; ++i)
+            CHECK(count_of(">displacement " + std::to_string(i) + "</text>", p.svg) == 1);
+        for (const char* once : {"objects", "time a frame (ms)", "Shell sort", "insertion sort"})
+            CHECK(count_of(">" + std::string(once) + "</text>", p.svg) == 1);
+        CHECK(count_of(">a mark</text>", p.svg) == count);
+        const std::string script = aabblab::script_of(f);
+        CHECK(count_of("set style line ", script) == 3);
+        CHECK(count_of("set xrange", script) == 1);
+        CHECK(
+            aabblab::csv_of(f).starts_with("number,x,y,low,high,series,panel\n1,,1,1,1,equal,\n"
+                                           "2,100,1,1,1,Shell sort,displacement 0\n"));
+    }
+}
+
+TEST_CASE("No text of a figure is cut off, and no number of an axis runs into the next") {
+    figure wide = figure_of({series_of("a line with a long label that has to stand in a legend below the plot",
+                                       series_style::line, {{1, 1e6, 1e6, 1e6}, {1e6, 3e6, 3e6, 3e6}})});
+    wide.x.label = "number of objects that move by a tenth of their edge in a frame, over all scenes and seeds";
+    wide.y.label = "time of a frame over that of the axial cut in the same repeat (median)";
+    wide.x.logarithmic = true;
+    wide.marks = {{1e5, "the first of two long marks"}, {9e5, "and the second of them"}};
+    figure ticks = figure_of({series_of("s", series_style::line, {{1e6, 1, 1, 1}, {9e6, 2, 2, 2}})});
+    figure slanted = figure_of({series_of("s", series_style::points, {})});
+    for (int i = 0; i < 9; ++i) {
+        slanted.x.names.emplace_back(i, "triangle/moller:epsilon=scaled" + std::to_string(i));
+        slanted.lines.front().points.push_back({static_cast<double>(i), 1, 1, 1});
+    }
+    require_texts_inside(drawn(slanted).svg);
+    for (const figure& f : {every_style(), wide, ticks, three_lines(100)}) {
+        CAPTURE(f.lines.front().label);
+        const std::string svg = drawn(f).svg;
+        require_texts_inside(svg);
+        require_texts_apart(svg);
+    }
 }

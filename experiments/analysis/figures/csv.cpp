@@ -26,15 +26,17 @@ namespace {
 std::string csv_of(const figure& f) {
     // Text stands last, where gnuplot need not understand its quotes.
     std::vector<std::string> header{"number", "x", "y", "low", "high", "series"};
+    if (!f.panels.empty()) header.emplace_back("panel");
     if (!f.x.names.empty()) header.emplace_back("x_name");
     if (!f.y.names.empty()) header.emplace_back("y_name");
     std::string text = csv_line(header);
-    for (std::size_t i = 0; i < f.lines.size(); ++i)
-        for (const figure_point& p : points_of(f.lines[i])) {
-            const bool level = f.lines[i].style == series_style::level;
-            std::vector<std::string> fields{fmt::format("{}", i + 1), level ? "" : fmt::format("{}", p.x)};
+    for (const numbered_series& s : numbered(f))
+        for (const figure_point& p : points_of(*s.source)) {
+            const bool level = s.source->style == series_style::level;
+            std::vector<std::string> fields{fmt::format("{}", s.number), level ? "" : fmt::format("{}", p.x)};
             for (const double value : {p.y, p.low, p.high}) fields.push_back(fmt::format("{}", value));
-            fields.push_back(one_line(f.lines[i].label));
+            fields.push_back(one_line(s.source->label));
+            if (!f.panels.empty()) fields.push_back(s.panel == nullptr ? "" : one_line(s.panel->title));
             if (!f.x.names.empty()) fields.push_back(level ? "" : name_at(f.x, p.x));
             if (!f.y.names.empty()) fields.push_back(name_at(f.y, p.y));
             text += csv_line(fields);

@@ -32,24 +32,78 @@ struct extent {
     return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
-[[nodiscard]] std::vector<shown_series> shown(const figure& f) {
-    std::vector<shown_series> all;
-    for (std::size_t i = 0; i < f.lines.size(); ++i) {
-        shown_series s{&f.lines[i], i + 1, points_of(f.lines[i]), false};
-        std::erase_if(s.points, [&](const figure_point& p) {
-            return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
+/// What has no label has a look of its own, as every series has where there are no panels.
+[[nodiscard]] std::vector<std::size_t> looks_of(const figure& f, const std::vector<numbered_series>& all) {
+    std::vector<std::size_t> looks;
+    std::vector<const series*> first;
+    for (const numbered_series& s : all) {
+        const auto same = std::ranges::find_if(first, [&](const series* other) {
+            return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
         });
-        s.varies = std::ranges::any_of(s.points, [](const figure_point& p) { return p.low < p.high; });
-        if (!s.points.empty()) all.push_back(std::move(s));
+        looks.push_back(static_cast<std::size_t>(same - first.begin()) + 1);
+        if (same == first.end()) first.push_back(s.source);
     }
-    return all;
+    return looks;
 }
 
-[[nodiscard]] std::vector<figure_mark> shown_marks(const figure& f) {
+[[nodiscard]] std::vector<figure_mark> shown_marks(const figure& f, const figure_panel* panel) {
     std::vector<figure_mark> marks = f.marks;
+    if (panel != nullptr) marks.insert(marks.end(), panel->marks.begin(), panel->marks.end());
     std::erase_if(marks, [&](const figure_mark& m) { return !has_place(f.x, m.x); });
     std::ranges::sort(marks, {}, &figure_mark::x);
     return marks;
+}
+
+[[nodiscard]] std::vector<shown_panel> shown(const figure& f) {
+    const std::vector<numbered_series> all = numbered(f);
+    const std::vector<std::size_t> looks = looks_of(f, all);
+    std::vector<shown_panel> panels;
+    for (std::size_t i = 0; i < std::max<std::size_t>(f.panels.size(), 1); ++i) {
+        const figure_panel* const panel = f.panels.empty() ? nullptr : &f.panels[i];
+        shown_panel& to = panels.emplace_back(panel == nullptr ? "" : panel->title);
+        to.marks = shown_marks(f, panel);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            if (all[k].panel != nullptr && all[k].panel != panel) continue;
+            shown_series s{all[k].source, all[k].number, looks[k], points_of(*all[k].source), false};
+            std::erase_if(s.points, [&](const figure_point& p) {
+                return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
+            });
+            s.varies = std::ranges::any_of(s.points, [](const figure_point& p) { return p.low < p.high; });
+            if (!s.points.empty()) to.lines.push_back(std::move(s));
+        }
+    }
+    return panels;
+}
+
+/// Each look once.
+[[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
+    std::vector<shown_label> labels;
+    for (const shown_panel& panel : panels)
+        for (const shown_series& s : panel.lines) {
+            const bool is_line = s.is(series_style::line) && s.points.size() > 1;
+            const series_style style = s.is(series_style::line) && !is_line ? series_style::points : s.source->style;
+            const auto known = std::ranges::find(labels, s.look, &shown_label::look);
+            if (known == labels.end())
+                labels.push_back({s.source->label, s.look, style});
+            else if (is_line)
+                known->style = style;
+        }
+    return labels;
+}
+
+/// Where the lines of a figure without panels end, if all with a label are lines that end near the right edge.
+[[nodiscard]] std::vector<double> ends_of(const drawing& d) {
+    constexpr double near_edge = 0.9;
+    std::vector<double> ends;
+    if (d.panels.size() > 1) return ends;
+    for (const shown_series& s : d.panels.front().lines) {
+        const auto last = std::ranges::max_element(s.points, {}, &figure_point::x);
+        const bool at_edge = s.is(series_style::level) ||
+                             (s.is(series_style::line) && s.points.size() > 1 && d.x.place(last->x) >= near_edge);
+        if (!at_edge && !s.source->label.empty()) return {};
+        ends.push_back(d.y.place(last->y));
+    }
+    return ends;
 }
 
 [[nodiscard]] scale axis_scale(const figure_axis& axis, extent values, scale_end end) {
@@ -101,16 +155,26 @@ double half_gap(const figure_axis& axis) {
     return axis.logarithmic ? 2 : 0.5;
 }
 
-drawing::drawing(const figure& of) : f(of), lines(shown(of)), marks(shown_marks(of)) {
+std::vector<numbered_series> numbered(const figure& f) {
+    std::vector<numbered_series> all;
+    for (const series& s : f.lines) all.push_back({&s, all.size() + 1, nullptr});
+    for (const figure_panel& panel : f.panels)
+        for (const series& s : panel.lines) all.push_back({&s, all.size() + 1, &panel});
+    return all;
+}
+
+drawing::drawing(const figure& of) : f(of), panels(shown(of)), labels(labels_of(panels)) {
     extent x_values;
     extent y_values;
-    for (const shown_series& s : lines)
-        for (const figure_point& p : s.points) {
-            if (!s.is(series_style::level)) x_values.include(p.x);
-            for (const double value : {p.low, p.y, p.high})
-                if (has_place(f.y, value)) y_values.include(value);
-        }
-    for (const figure_mark& m : marks) x_values.include(m.x);
+    for (const shown_panel& panel : panels) {
+        for (const shown_series& s : panel.lines)
+            for (const figure_point& p : s.points) {
+                if (!s.is(series_style::level)) x_values.include(p.x);
+                for (const double value : {p.low, p.y, p.high})
+                    if (has_place(f.y, value)) y_values.include(value);
+            }
+        for (const figure_mark& m : panel.marks) x_values.include(m.x);
+    }
     x = axis_scale(f.x, x_values, scale_end::near_values);
     y = axis_scale(f.y, y_values, scale_end::on_ticks);
     if (y.named)
@@ -122,9 +186,22 @@ drawing::drawing(const figure& of) : f(of), lines(shown(of)), marks(shown_marks(
     parts.y_named = y.named;
     parts.x_ticks = placed(x);
     parts.y_ticks = placed(y);
-    for (const shown_series& s : lines) parts.legend.push_back(s.source->label);
-    for (const figure_mark& m : marks) parts.marks.emplace_back(x.place(m.x), m.label);
+    for (const shown_label& label : labels) parts.legend.push_back(label.text);
+    parts.ends = ends_of(*this);
+    for (const shown_panel& panel : panels) {
+        parts.titles.push_back(panel.title);
+        std::vector<placed_text>& marks = parts.marks.emplace_back();
+        for (const figure_mark& m : panel.marks) marks.emplace_back(x.place(m.x), m.label);
+    }
     room = layout_of(parts);
+    // The numbers that there is no room for become small ticks.
+    std::size_t shown_number = 0;
+    for (tick& t : x.ticks)
+        if (!t.label.empty() && !room.x_tick_shown[shown_number++]) t.label.clear();
+}
+
+bool drawing::empty() const {
+    return std::ranges::all_of(panels, [](const shown_panel& panel) { return panel.lines.empty(); });
 }
 
 }  // namespace aabblab

@@ -1,5 +1,6 @@
 module;
 #include <cstddef>
+#include <string>
 #include <vector>
 
 /// A figure made ready to be written down: which points have a place in it, on which axes, and where all else goes.
@@ -14,6 +15,14 @@ namespace aabblab {
 /// The points of a series in NAME.csv: all that are finite, of a level the first.
 [[nodiscard]] std::vector<figure_point> points_of(const series& s);
 
+/// A series in the order of NAME.csv: those that all panels share, then panel by panel.
+struct numbered_series {
+    const series* source;
+    std::size_t number;         ///< from 1
+    const figure_panel* panel;  ///< none, where all have it
+};
+[[nodiscard]] std::vector<numbered_series> numbered(const figure& f);
+
 /// Half the distance of the nearest names; a factor where the axis is logarithmic.
 [[nodiscard]] double half_gap(const figure_axis& axis);
 
@@ -21,10 +30,24 @@ namespace aabblab {
 struct shown_series {
     const series* source;
     std::size_t number;  ///< from 1, among all series of the figure
+    std::size_t look;    ///< from 1; the same for what has one label in several panels
     std::vector<figure_point> points;
     bool varies;  ///< has quartiles to show
 
     [[nodiscard]] bool is(series_style style) const { return source->style == style; }
+};
+
+struct shown_panel {
+    std::string title;
+    std::vector<shown_series> lines;
+    std::vector<figure_mark> marks;  ///< from left to right
+};
+
+/// A look in the legend, or at the end of its line.
+struct shown_label {
+    std::string text;
+    std::size_t look;
+    series_style style;  ///< points where a line has one point only
 };
 
 /// The figure must outlive it.
@@ -32,11 +55,13 @@ struct drawing {
     explicit drawing(const figure& of);
 
     const figure& f;
-    std::vector<shown_series> lines;  ///< their labels stand in the same order in `room`
-    std::vector<figure_mark> marks;   ///< from left to right
+    std::vector<shown_panel> panels;
+    std::vector<shown_label> labels;  ///< in the same order in `room`
     scale x;
     scale y;
     layout room;
+
+    [[nodiscard]] bool empty() const;
 };
 
 }  // namespace aabblab

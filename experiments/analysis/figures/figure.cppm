@@ -25,7 +25,7 @@ enum class series_style : unsigned char {
 };
 
 struct series {
-    std::string label;  ///< in the legend, where it is not empty
+    std::string label;  ///< at its end or in the legend, where it is not empty
     series_style style = series_style::line;
     std::vector<figure_point> points;  ///< a series without is left out; the others look as if it were there
 };
@@ -43,13 +43,22 @@ struct figure_mark {
     std::string label;
 };
 
+/// One of several small plots that share both axes.
+struct figure_panel {
+    std::string title;  ///< above it: "displacement 0.1"
+    /// Beside those of the figure. What has the same label looks the same in every panel.
+    std::vector<series> lines;
+    std::vector<figure_mark> marks;
+};
+
 struct figure {
     std::string name;     ///< of its files, without ending: "figure1"
     std::string caption;  ///< one sentence or two; stands beside the figure in reports, not in it
     figure_axis x;
     figure_axis y;
-    std::vector<series> lines;  ///< ten can be told apart
+    std::vector<series> lines;  ///< ten can be told apart; where there are panels, these are in each of them
     std::vector<figure_mark> marks;
+    std::vector<figure_panel> panels{};  ///< without any it is one plot
 };
 
 }  // namespace aabblab
