@@ -19,6 +19,8 @@ needs=(
     'libfmt-dev                   fmt-devel                <fmt/core.h>'
     'nlohmann-json3-dev           json-devel               <nlohmann/json.hpp>'
     'libxxhash-dev                xxhash-devel             <xxhash.h>'
+    'libssl-dev                   openssl-devel            <openssl/evp.h>'
+    'libarchive-dev               libarchive-devel         <archive.h>'
 )
 # The same of what each engine and integrator needs, as its own line says. Where that is not to be had it is left out.
 mapfile -t optional_needs < <(sed -nE 's/^aabblab_(engine|integrator)\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\2 \3 \4/p' \

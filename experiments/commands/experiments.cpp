@@ -21,9 +21,11 @@ import aabb.policy;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.metrics;
 import aabblab.tables;
 import aabblab.results;
 import aabblab.play;
+import aabblab.processor;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -108,6 +110,7 @@ void print_overall(std::span<const scene_summary> scenes) {
 
 /// Shows a scene as soon as its last seed is played.
 std::vector<std::string> play_here(const experiment& e, results_folder& results, printed shown) {
+    if (e.records(metric_group::time)) stay_on_idlest_processor();
     std::vector<std::string> failures;
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
@@ -154,9 +157,15 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
         // It is of a whole run.
         std::error_code ignored;
         std::filesystem::remove(folder / "summary.csv", ignored);
-        if (e.processes == 1) failures = play_here(e, results, shown);
+        if (e.processes == 1) {
+            failures = play_here(e, results, shown);
+            results.seal();
+        }
     }
-    if (e.processes > 1) failures = play_afresh(e, folder);
+    if (e.processes > 1) {
+        failures = play_afresh(e, folder);
+        results_folder(folder, record_of(e), existing_results::resume).seal();
+    }
     const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
     write_file(folder / "summary.csv", to_csv(full_table_of(scenes)));
     if (shown == printed::nothing) return failures;
@@ -166,6 +175,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
 }
 
 bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
+    if (e.records(metric_group::time)) stay_on_idlest_processor();
     results_folder results(folder, record_of(e), existing_results::resume);
     bool right = true;
     for (const scene_choice& scene : e.scenes)

@@ -7,6 +7,7 @@ module;
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -113,6 +114,15 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
+void results_folder::seal() {
+    results_seal all{seal_of(folder_ / "results.csv"), std::nullopt, {}};
+    if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))
+        all.differences = seal_of(table);
+    for (const row& r : rows_)
+        if (std::ranges::find(all.contenders, r.name) == all.contenders.end()) all.contenders.push_back(r.name);
+    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, all));
+}
+
 void results_folder::open_table() {
     if (file_) std::fclose(file_);
     file_ = std::fopen((folder_ / "results.csv").c_str(), "ab");
@@ -124,7 +134,7 @@ void results_folder::fail_table() const {
 }
 
 void results_folder::write_manifest() const {
-    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_));
+    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, std::nullopt));
 }
 
 }  // namespace aabblab

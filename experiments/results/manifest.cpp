@@ -5,21 +5,26 @@ module;
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commit.hpp"
 
 module aabblab.results;
 
 import aabb.base;
+import aabb.registry;
 import aabblab.files;
+import aabblab.machine;
 import aabblab.scenes;
+import aabblab.sha256;
 
 namespace aabblab {
 
@@ -27,11 +32,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-std::string cpu_model() {
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown";
+const machine& here() {
+    static const machine found = this_machine();
+    return found;
 }
 
 /// Of the program that runs: what was changed and not committed makes another build too.
@@ -46,9 +49,73 @@ std::string own_digest() {
 /// What made the results. Times of different builds or machines must not meet in one table.
 json build() {
     static const std::string digest = own_digest();
-    return {{"version", AABBLAB_VERSION},   {"commit", AABBLAB_COMMIT},   {"dirty", AABBLAB_DIRTY},
-            {"compiler", AABBLAB_COMPILER}, {"flags", AABBLAB_FLAGS},     {"build_type", AABBLAB_BUILD_TYPE},
-            {"cpu", cpu_model()},           {"engines", AABBLAB_ENGINES}, {"program", digest}};
+    return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
+            {"dirty", AABBLAB_DIRTY},     {"compiler", AABBLAB_COMPILER},
+            {"flags", AABBLAB_FLAGS},     {"build_type", AABBLAB_BUILD_TYPE},
+            {"cpu", here().processor},    {"caches", here().caches},
+            {"engines", AABBLAB_ENGINES}, {"program", digest}};
+}
+
+/// What else there is to know of the machine. It may change without making the times of a run another machine's.
+json surroundings() {
+    json all{{"processors", here().processors}, {"kernel", here().kernel}, {"libc", here().libc}};
+    if (here().governor) all["governor"] = *here().governor;
+    if (here().hypervisor) all["hypervisor"] = *here().hypervisor;
+    return all;
+}
+
+json json_of(const contender_name& name) {
+    json all = json::object();
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (!name[kind].empty()) all[std::string(name_of(kind))] = name[kind];
+    if (!name.engine.empty()) all["engine"] = name.engine;
+    return all;
+}
+
+contender_name contender_of(const json& all) {
+    contender_name name;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) name[kind] = all.value(std::string(name_of(kind)), "");
+    name.engine = all.value("engine", "");
+    return name;
+}
+
+json json_of(const table_seal& table) {
+    return {{"rows", table.rows}, {"sha256", table.checksum}};
+}
+
+table_seal table_of(const json& table) {
+    return {table.at("rows").get<std::size_t>(), table.at("sha256").get<std::string>()};
+}
+
+/// The name of a file need not be UTF-8.
+std::string text_of(const json& manifest, int indent) {
+    return manifest.dump(indent, ' ', false, json::error_handler_t::replace);
+}
+
+/// Of all but the checksum itself.
+std::string checksum_of(json manifest) {
+    manifest["seal"].erase("manifest");
+    return sha256_of(text_of(manifest, -1));
+}
+
+results_seal seal_in(const json& manifest) {
+    const json& seal = manifest.at("seal");
+    results_seal all{table_of(seal.at("results.csv")), std::nullopt, {}};
+    if (seal.contains("differences.csv")) all.differences = table_of(seal.at("differences.csv"));
+    for (const json& contender : seal.at("contenders")) all.contenders.push_back(contender_of(contender));
+    return all;
+}
+
+/// The scenes of a manifest in their order, each with its exact digest, or an empty one.
+std::vector<std::pair<scene_choice, std::string>> scenes_in(const json& manifest) {
+    std::vector<std::pair<scene_choice, std::string>> scenes;
+    for (const json& scene : manifest.value("scenes", json::array())) {
+        scene_choice played{scene.value("kind", ""), {}, {}, std::nullopt};
+        if (scene.contains("seed")) played.seed = scene.value("seed", std::uint64_t{0});
+        if (set_parameters(played, scene.value("parameters", json()).dump()))
+            scenes.emplace_back(std::move(played), scene.value("digest", ""));
+    }
+    return scenes;
 }
 
 json read_json(const std::filesystem::path& file) {
@@ -71,7 +138,8 @@ std::string date_now() {
     return text.data();
 }
 
-std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests) {
+std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests,
+                          const std::optional<results_seal>& seal) {
     json scenes = json::array();
     for (const scene_choice& scene : e.scenes) {
         const auto digest = digests.find(scene);
@@ -79,12 +147,36 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
-    const json manifest{
-        {"experiment", e.name}, {"date", date},
-        {"build", build()},     {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
-        {"scenes", scenes},     {"notes", e.notes}};
-    // The file's name need not be UTF-8.
-    return manifest.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    json manifest{{"experiment", e.name},
+                  {"date", date},
+                  {"build", build()},
+                  {"machine", surroundings()},
+                  {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
+                  {"scenes", scenes},
+                  {"notes", e.notes}};
+    if (seal) {
+        json& all = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
+        if (seal->differences) all["differences.csv"] = json_of(*seal->differences);
+        all["contenders"] = json::array();
+        for (const contender_name& name : seal->contenders) all["contenders"].push_back(json_of(name));
+        all["manifest"] = checksum_of(manifest);
+    }
+    return text_of(manifest, 2) + "\n";
+}
+
+sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
+    const json manifest = read_json(file);
+    sealed_manifest all{manifest.value("experiment", ""), {}, std::nullopt};
+    try {
+        all.scenes = scenes_in(manifest);
+        if (!manifest.contains("seal")) return all;
+        all.seal = seal_in(manifest);
+        if (manifest.at("seal").at("manifest") == checksum_of(manifest)) return all;
+    } catch (const json::exception&) {
+        throw aabb::input_error(file.string() + " is not a manifest of results");
+    }
+    throw aabb::input_error(file.string() +
+                            " was altered after the run: what stands in it does not have the checksum that it states");
 }
 
 std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
@@ -95,6 +187,13 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
     if (before["build"] != build())
         return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
                "), whose times cannot be compared";
+    if (!before.contains("seal")) return {};
+    // Nobody may continue what was altered, and seal it anew.
+    try {
+        (void)verified_rows(manifest.parent_path());
+    } catch (const aabb::input_error& altered) {
+        return altered.what();
+    }
     return {};
 }
 
@@ -103,12 +202,8 @@ resumed_manifest resume_manifest(const std::filesystem::path& file, const experi
         throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
     const json before = read_json(file);
     resumed_manifest manifest{before.value("date", ""), {}};
-    for (const json& scene : before.value("scenes", json::array())) {
-        scene_choice played{scene.value("kind", ""), {}, {}, std::nullopt};
-        if (scene.contains("seed")) played.seed = scene.value("seed", std::uint64_t{0});
-        if (scene.contains("digest") && set_parameters(played, scene.value("parameters", json()).dump()))
-            manifest.digests[played] = scene["digest"];
-    }
+    for (auto& [scene, digest] : scenes_in(before))
+        if (!digest.empty()) manifest.digests[std::move(scene)] = std::move(digest);
     return manifest;
 }
 
@@ -119,8 +214,12 @@ std::string build_description() {
 manifest_summary read_manifest(const std::filesystem::path& folder) {
     const json manifest = read_json(folder / "manifest.json");
     const json& made = manifest["build"];
-    manifest_summary summary{manifest.value("date", ""), made.value("commit", "unknown"), made.value("compiler", ""),
-                             made.value("cpu", ""), manifest.value("notes", std::vector<std::string>{})};
+    manifest_summary summary{manifest.value("date", ""),
+                             made.value("commit", "unknown"),
+                             made.value("compiler", ""),
+                             made.value("cpu", ""),
+                             manifest.value("notes", std::vector<std::string>{}),
+                             manifest["config"].value("quick", false)};
     if (made.value("dirty", false)) summary.commit += " (changed)";
     return summary;
 }

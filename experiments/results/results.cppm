@@ -11,6 +11,7 @@ module;
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// Results of an experiment in a folder: results.csv, manifest.json, differences.csv.
@@ -55,6 +56,11 @@ struct row {
     std::optional<double> update_ms;         ///< sums over the frames after frame 0
     std::optional<double> search_ms;
     std::optional<double> detect_ms;
+    std::optional<double> build_cpu_ms;  ///< the same of the thread's processor time
+    std::optional<double> first_cpu_ms;
+    std::optional<double> update_cpu_ms;
+    std::optional<double> search_cpu_ms;
+    std::optional<double> detect_cpu_ms;
     std::uint64_t candidates = 0;           ///< pairs of boxes, over all frames
     std::optional<std::uint64_t> contacts;  ///< pairs of triangles, over all frames; empty in scenes of boxes
     std::string digest;                     ///< of the contacts, or of the pairs in scenes of boxes
@@ -76,6 +82,12 @@ struct row {
 /// Rows of a results.csv. A last one that was cut off in the middle of being written is left out.
 /// @throws aabb::input_error with file and line where it is not a results.csv, or two rows are of the same measurement.
 [[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file);
+
+/// Rows of a folder of results, held against its manifest: the scenes are the manifest's, and an exact row has the
+/// digest that the manifest has for its scene. Where the run was finished, so that the manifest has a seal, all rows
+/// are there and none was altered, and they stand in the order of the config, whatever their order in the file.
+/// @throws aabb::input_error where that is not so, with file, and line where there is one.
+[[nodiscard]] std::vector<row> verified_rows(const std::filesystem::path& folder);
 
 /// A line of differences.csv: how many pairs of one class a contender missed or invented in a scene.
 struct difference {
@@ -148,6 +160,9 @@ public:
     /// Replaces the differences of these contenders in this scene.
     void set_differences(const scene_choice& scene, std::span<const contender_name> of,
                          std::span<const difference> found);
+    /// Of an experiment that is finished: its manifest gets what later shows whether a row is missing or was altered.
+    /// It loses that when the results are opened again.
+    void seal();
 
 private:
     void drop_where(const std::function<bool(const row&)>& dropped);
@@ -173,6 +188,7 @@ struct manifest_summary {
     std::string compiler;
     std::string cpu;
     std::vector<std::string> notes;
+    bool quick = false;
 };
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 
@@ -194,9 +210,35 @@ void make_folder(const std::filesystem::path& folder);
 [[nodiscard]] std::string csv_of(const row& r);
 [[nodiscard]] std::string csv_of(std::span<const difference> differences);
 
+/// @param seen hears each row with the line that it begins in
+[[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file,
+                                         const std::function<void(const row&, std::size_t)>& seen);
+
+/// What shows whether a table was altered, whatever the order of its rows and the ends of its lines.
+struct table_seal {
+    std::size_t rows;
+    std::string checksum;  ///< SHA-256 of its sorted lines, that of the column names among them
+    friend bool operator==(const table_seal&, const table_seal&) = default;
+};
+[[nodiscard]] table_seal seal_of(const std::filesystem::path& table);
+
+struct results_seal {
+    table_seal results;
+    std::optional<table_seal> differences;
+    std::vector<contender_name> contenders;  ///< in the order in which they were played
+};
+
 [[nodiscard]] std::string date_now();
 [[nodiscard]] std::string manifest_text(const experiment_record& e, const std::string& date,
-                                        const scene_digests& digests);
+                                        const scene_digests& digests, const std::optional<results_seal>& seal);
+
+struct sealed_manifest {
+    std::string experiment;
+    std::vector<std::pair<scene_choice, std::string>> scenes;  ///< each with its exact digest, or an empty one
+    std::optional<results_seal> seal;
+};
+/// @throws aabb::input_error where it is not a manifest, or was altered since it was sealed.
+[[nodiscard]] sealed_manifest read_sealed_manifest(const std::filesystem::path& file);
 
 struct resumed_manifest {
     std::string date;

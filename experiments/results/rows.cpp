@@ -4,6 +4,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -63,6 +64,11 @@ void for_each_column(Row& r, Field field) {
     field("update_ms", r.update_ms);
     field("search_ms", r.search_ms);
     field("detect_ms", r.detect_ms);
+    field("build_cpu_ms", r.build_cpu_ms);
+    field("first_cpu_ms", r.first_cpu_ms);
+    field("update_cpu_ms", r.update_cpu_ms);
+    field("search_cpu_ms", r.search_cpu_ms);
+    field("detect_cpu_ms", r.detect_cpu_ms);
     field("candidates", r.candidates);
     field("contacts", r.contacts);
     field("digest", r.digest);
@@ -194,6 +200,10 @@ std::string csv_of(std::span<const difference> differences) {
 }
 
 std::vector<row> read_rows(const std::filesystem::path& file) {
+    return read_rows(file, [](const row&, std::size_t) {});
+}
+std::vector<row> read_rows(const std::filesystem::path& file,
+                           const std::function<void(const row&, std::size_t)>& seen) {
     std::map<std::string, std::size_t> lines;  // by key
     return read_table<row>(file, columns_of_row, [&](const row& r, std::size_t line) {
         const std::string place = file.string() + ":" + std::to_string(line) + ": ";
@@ -202,6 +212,7 @@ std::vector<row> read_rows(const std::filesystem::path& file) {
         if (const auto [before, is_new] = lines.emplace(r.key(), line); !is_new)
             throw aabb::input_error(place + "the measurement of line " + std::to_string(before->second) +
                                     " stands here again, so two runs have written into one folder");
+        seen(r, line);
     });
 }
 std::vector<difference> read_differences(const std::filesystem::path& file) {

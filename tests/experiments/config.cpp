@@ -93,6 +93,14 @@ sweep = "incremental"
     REQUIRE(to_text(e.compositions[6], aabb::stage::global_search) == "insertion + none + incremental");
 }
 
+TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in scenes of meshes") {
+    const std::string splits = "[compose]\nprepare = [\"none\", \"split_mesh\"]\n";
+    REQUIRE(refusal_of(minimal + splits)
+                .ends_with("split_mesh divides meshes, and there are only boxes here; split_large divides boxes"));
+    const experiment e = parsed("name = \"x\"\n[[scene]]\nkind = \"mesh_swarm\"\nmeshes = [\"icosphere\"]\n" + splits);
+    REQUIRE(e.compositions.size() == 2);
+}
+
 TEST_CASE("A metric that is named is recorded and shown; a group is recorded") {
     const experiment e = parsed(minimal + "[measure]\nmetrics = [\"time\", \"box_tests\", \"tree_bytes\"]\n");
     REQUIRE(e.recorded ==
@@ -128,6 +136,13 @@ TEST_CASE("The option --quick takes what the config says under quick") {
     REQUIRE(aabblab::parameters_text(quick.scenes[0]) == "objects=5 frames=7 seed=1");
     REQUIRE(aabblab::hash_of(quick) != aabblab::hash_of(parsed(text)));
     REQUIRE(parsed(text + "quick = { repeats = 2 }\n", experiment_size::quick).repeats == 2);
+    REQUIRE(
+        parsed(text + "processes = 5\nquick = { repeats = 6, processes = 3 }\n", experiment_size::quick).processes ==
+        3);
+    const std::string second = minimal + "[[scene]]\nkind = \"lattice\"\nquick = false\n";
+    REQUIRE(parsed(second).scenes.size() == 2);
+    REQUIRE(parsed(second, experiment_size::quick).scenes.size() == 1);
+    REQUIRE(parsed(second, experiment_size::quick).scenes[0].kind == "brownian");
 }
 
 TEST_CASE("The hash is of what a config says, not of how it is written") {
@@ -188,6 +203,8 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
          ":3: ", "unknown scene 'brownain'; did you mean 'brownian'?"},
         {minimal + "object = 3\n", ":5: ", "unknown key of scene brownian 'object'; did you mean 'objects'?"},
         {minimal + "quick = { object = 3 }\n", ":5: ", "did you mean 'objects'?"},
+        {minimal + "quick = false\n", ":2: ", "every scene of this config is left out by quick = false"},
+        {minimal + "quick = true\n", ":5: ", "expected a table"},
         {"name = \"x\"\n[[scene]]\nkind = \"mesh_swarm\"\nmeshes = []\n",
          ":4: ", "meshes is an empty list; expected at least one mesh"},
         {minimal + "[measure]\nmetrics = []\n", ":6: ", "metrics is an empty list; expected at least one metric"},

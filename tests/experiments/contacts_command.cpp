@@ -46,6 +46,7 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     const auto options = GENERATE(values<std::vector<std::string>>(
         {{},
          {"--tree", "compressed:leaf_test=triangle_box", "--sort", "shell", "--partition", "axial_cut"},
+         {"--tree", "compressed", "--prepare", "split_mesh:size=0.1"},
          {"--tree", "shared_planes", "--build", "sah", "--sweep", "all_axes", "--prepare", "split_large:size=2"}}));
     const program_result result = run_program(joined(base, options));
     REQUIRE(result.status == 0);

@@ -80,6 +80,7 @@ TEST_CASE("pairs refuses what it cannot do and leaves no file behind") {
          "--engine stands in for --prepare, --sort, --partition and --sweep"},
         {{"--split-large", "2"}, "'split_large' is a strategy; write --prepare split_large"},
         {{"--prepare", "split_large:size=0"}, "split_large: size must be a number above 0, not '0'"},
+        {{"--prepare", "split_mesh"}, "split_mesh divides meshes, and there are only boxes here"},
         {{"--sort", "std", "--sweep", "incremental"}, "goes with insertion only"},
         {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "it goes with none only"},
         {{"--partition", "axial_cut:axes=4"}, "axial_cut: axes must be a whole number from 1 to 3, not '4'"},

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include "interrupted.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
@@ -46,12 +47,13 @@ std::set<std::string> answers(const std::filesystem::path& results) {
     return all;
 }
 
-/// Leaves the first lines, and half of the next, as a process that is killed does.
-void cut_off(const std::filesystem::path& file, std::size_t lines) {
-    const std::string all = bytes_of_file(file);
+/// Leaves the first lines of the table, and half of the next, as a process that is killed does.
+void cut_off(const std::filesystem::path& results, std::size_t lines) {
+    const std::string all = bytes_of_file(results / "results.csv");
     std::size_t at = 0;
     for (std::size_t i = 0; i < lines; ++i) at = all.find('\n', at) + 1;
-    std::ofstream(file, std::ios::binary) << all.substr(0, at + 40);
+    std::ofstream(results / "results.csv", std::ios::binary) << all.substr(0, at + 40);
+    unseal(results);
 }
 
 }  // namespace
@@ -87,7 +89,7 @@ TEST_CASE("A run killed half-way and resumed ends with the rows of one that was 
     // In the first process, between two, in the last.
     for (const std::size_t lines : {1, 4, 9, 13, 24}) {
         CAPTURE(lines);
-        cut_off(folder / "out/results.csv", lines);
+        cut_off(folder / "out", lines);
         const program_result resumed = run_program({"run", file, "--out", out, "--resume"});
         INFO(resumed.err);
         REQUIRE(resumed.status == 0);
@@ -136,7 +138,7 @@ TEST_CASE("A repeat that was interrupted is played again, whole") {
     REQUIRE(run_program({"run", file, "--out", out}).status == 0);
     const std::vector<row> before = aabblab::read_rows(folder / "out/results.csv");
     // Of the second repeat of the first scene one row is left.
-    cut_off(folder / "out/results.csv", 4);
+    cut_off(folder / "out", 4);
     REQUIRE(run_program({"run", file, "--out", out, "--resume"}).status == 0);
     const std::vector<row> after = aabblab::read_rows(folder / "out/results.csv");
     REQUIRE(after.size() == before.size());

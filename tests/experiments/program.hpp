@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 /// What a run of the program left behind.
@@ -44,16 +45,15 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
 
 inline constexpr int closed_output = -2;
 
-/// Runs the program under test to its end.
+/// Runs a command to its end, its name first; one without a slash is looked for as a shell does.
 /// @param input what it reads from standard input
 /// @param output an open file that it writes standard output to, in place of one whose content is returned; or
 /// closed_output
-[[nodiscard]] inline program_result run_program(std::vector<std::string> arguments, const std::string& input = {},
+[[nodiscard]] inline program_result run_command(std::vector<std::string> arguments, const std::string& input = {},
                                                 int output = -1) {
     const auto in = program_detail::make_file(input);
     const auto out = program_detail::make_file({});
     const auto err = program_detail::make_file({});
-    arguments.insert(arguments.begin(), AABBLAB_UNDER_TEST);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
@@ -66,13 +66,20 @@ inline constexpr int closed_output = -2;
         posix_spawn_file_actions_adddup2(&files, output < 0 ? fileno(out.get()) : output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, fileno(err.get()), STDERR_FILENO);
     pid_t child = 0;
-    const int failed = posix_spawn(&child, argv[0], &files, nullptr, argv.data(), environ);
+    const int failed = posix_spawnp(&child, argv[0], &files, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     if (failed != 0) throw std::system_error(failed, std::generic_category(), arguments[0]);
     int status = 0;
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), program_detail::content_of(out.get()),
             program_detail::content_of(err.get())};
+}
+
+/// Runs the program under test in the same way.
+[[nodiscard]] inline program_result run_program(std::vector<std::string> arguments, const std::string& input = {},
+                                                int output = -1) {
+    arguments.insert(arguments.begin(), AABBLAB_UNDER_TEST);
+    return run_command(std::move(arguments), input, output);
 }
 
 /// Arguments, and more of them.

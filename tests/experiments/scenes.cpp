@@ -239,6 +239,34 @@ TEST_CASE("a swarm's objects meet, cycle through the meshes and move as told") {
     }
 }
 
+TEST_CASE("huge objects of a swarm are the first, of the first mesh, and as long as they are told") {
+    const std::vector<std::string> one{"icosphere:triangles=80"};
+    for (const std::vector<std::string>& given : {one, {one[0], "torus_knot:triangles=200", one[0]}}) {
+        const auto scene = aabblab::make_mesh_scene(
+            {"mesh_swarm", {{"objects", "64"}, {"huge", "3"}, {"span", "0.5"}, {"density", "1"}}, given, 1});
+        REQUIRE(scene->meshes.size() == std::max<std::size_t>(given.size(), 2));
+        for (std::size_t i = 0; i < 64; ++i)
+            REQUIRE(scene->mesh_of[i] == (i < 3 ? 0 : 1 + (i - 3) % (scene->meshes.size() - 1)));
+        // The others fill a cube of 61 unit cubes.
+        const double side = std::cbrt(61.0);
+        for (std::size_t m = 0; m < scene->meshes.size(); ++m) {
+            const aabb::box b = aabb::bounds_of(scene->meshes[m]);
+            const int k = aabb::longest_axis(b);
+            REQUIRE(std::abs(b.max[k] - b.min[k] - (m == 0 ? side / 2 : 1)) < 1e-5);
+        }
+        std::vector<aabb::pose> poses;
+        while (scene->next(poses)) {
+            std::vector<aabb::box> boxes;
+            for (std::size_t i = 0; i < poses.size(); ++i)
+                boxes.push_back(aabb::world_bounds(aabb::bounds_of(scene->meshes[scene->mesh_of[i]]), poses[i]));
+            REQUIRE(overlaps_in(boxes) > 61);
+        }
+    }
+    // All of them, more than all, none.
+    for (const char* huge : {"5", "9", "0"})
+        REQUIRE(play_poses({"mesh_swarm", {{"objects", "5"}, {"huge", huge}}, one, 1})[0].size() == 5);
+}
+
 TEST_CASE("meshes that are not normalised keep their coordinates and still meet") {
     const temporary_folder folder;
     const auto file =

@@ -1,0 +1,143 @@
+module;
+#include <archive.h>
+#include <archive_entry.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <system_error>
+
+module aabblab.archive;
+
+import aabb.base;
+import aabblab.files;
+
+namespace aabblab {
+
+namespace {
+
+/// A folder of a new name, for nobody else to read.
+std::filesystem::path make_temporary_folder() {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / "aabblab-XXXXXX").string();
+    if (error || !mkdtemp(name.data()))
+        throw aabb::input_error("an archive cannot be unpacked: there is no folder for temporary files (TMPDIR)");
+    return name;
+}
+
+/// Where an entry goes: below `top`, and by no detour.
+std::filesystem::path place_of(const std::string& name, const std::string& top, const std::string& archive) {
+    const std::filesystem::path path(name);
+    const bool detours = std::ranges::any_of(
+        path, [](const std::filesystem::path& part) { return part.empty() || part == "." || part == ".."; });
+    if (path.empty() || path.is_absolute() || detours || *path.begin() != top)
+        throw aabb::input_error(archive + " is not an archive of " + top + ": it has the entry '" + name + "'");
+    return path.lexically_relative(top);
+}
+
+struct deleter {
+    void operator()(archive* a) const { archive_read_free(a); }
+};
+
+class reader {
+public:
+    reader(const std::filesystem::path& file, const archive_limits& limits)
+        : file_(file.string()), limits_(limits), archive_(archive_read_new()) {
+        archive_read_support_filter_xz(archive_.get());
+        archive_read_support_format_tar(archive_.get());
+        if (access(file_.c_str(), R_OK) != 0) fail("cannot be read");
+        if (archive_read_open_filename(archive_.get(), file_.c_str(), std::size_t{1} << 16U) != ARCHIVE_OK)
+            fail_reading();
+    }
+
+    void unpack(const std::string& top, const std::filesystem::path& into) {
+        std::set<std::filesystem::path> places;
+        archive_entry* entry = nullptr;
+        while (has_next(entry)) {
+            const char* name = archive_entry_pathname(entry);
+            const auto type = archive_entry_filetype(entry);
+            const std::filesystem::path place = place_of(without_slash(name ? name : "", type), top, file_);
+            if (archive_entry_hardlink(entry) || (type != AE_IFREG && type != AE_IFDIR))
+                fail("has an entry that is neither a file nor a folder: '" + place.string() + "'");
+            if (type == AE_IFDIR) continue;
+            if (!places.insert(place).second) fail("has the file '" + place.string() + "' twice");
+            if (places.size() > limits_.files)
+                fail("has more than " + std::to_string(limits_.files) + " files, which no results have");
+            take(into / place);
+        }
+        if (places.empty()) fail("is empty");
+    }
+
+private:
+    static std::string without_slash(std::string name, unsigned type) {
+        if (type == AE_IFDIR && name.ends_with('/')) name.pop_back();
+        return name;
+    }
+
+    [[nodiscard]] bool has_next(archive_entry*& entry) {
+        const int result = archive_read_next_header(archive_.get(), &entry);
+        if (result == ARCHIVE_EOF) return false;
+        if (result != ARCHIVE_OK) fail_reading();
+        begun_ = true;
+        return true;
+    }
+
+    void take(const std::filesystem::path& file) {
+        std::error_code error;
+        std::filesystem::create_directories(file.parent_path(), error);
+        if (error) fail("cannot be unpacked: " + error.message());
+        output_file out(file);
+        std::array<char, std::size_t{1} << 16U> buffer{};
+        for (;;) {
+            const la_ssize_t size = archive_read_data(archive_.get(), buffer.data(), buffer.size());
+            if (size < 0) fail_reading();
+            if (size == 0) break;
+            // As it comes, whatever the header of the entry says.
+            bytes_ += static_cast<std::uint64_t>(size);
+            if (bytes_ > limits_.bytes)
+                fail("unpacks to more than " + std::to_string(limits_.bytes >> 20U) + " MiB, which no results have");
+            out.write(buffer.data(), static_cast<std::size_t>(size));
+        }
+        out.commit();
+    }
+
+    [[noreturn]] void fail_reading() const {
+        const char* why = archive_error_string(archive_.get());
+        if (!begun_) fail("is not an archive of results, which is tar compressed by xz");
+        fail(std::string("is damaged or cut off: ") + (why ? why : "it cannot be read to its end"));
+    }
+    [[noreturn]] void fail(const std::string& what) const { throw aabb::input_error(file_ + " " + what); }
+
+    std::string file_;
+    archive_limits limits_;
+    std::unique_ptr<archive, deleter> archive_;
+    std::uint64_t bytes_ = 0;
+    bool begun_ = false;
+};
+
+}  // namespace
+
+unpacked_archive::unpacked_archive(const std::filesystem::path& archive, const std::string& top,
+                                   const archive_limits& limits)
+    : folder_(make_temporary_folder()) {
+    try {
+        reader(archive, limits).unpack(top, folder_);
+    } catch (...) {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+        throw;
+    }
+}
+
+unpacked_archive::~unpacked_archive() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+}
+
+}  // namespace aabblab

@@ -1,0 +1,106 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+module aabblab.results;
+
+import :csv;
+import aabb.base;
+import aabblab.files;
+import aabblab.scenes;
+import aabblab.sha256;
+
+namespace aabblab {
+
+namespace {
+
+void require_seal(const std::filesystem::path& table, const table_seal& stated) {
+    const table_seal found = std::filesystem::exists(table) ? seal_of(table) : table_seal{};
+    if (found.rows != stated.rows)
+        throw aabb::input_error(table.string() + " has " + std::to_string(found.rows) + " rows; when the run was " +
+                                "finished it had " + std::to_string(stated.rows) + ", as manifest.json says");
+    if (found != stated)
+        throw aabb::input_error(table.string() +
+                                " was altered after the run: its rows do not have the checksum that manifest.json "
+                                "states");
+}
+
+/// The places of scenes in the manifest, with their digests.
+class known_scenes {
+public:
+    explicit known_scenes(const sealed_manifest& made) {
+        for (const auto& [scene, digest] : made.scenes) known_.emplace(scene, known{known_.size(), digest});
+    }
+
+    /// @param place "results.csv:17: "
+    void require(const row& r, const std::string& place) const {
+        const auto found = known_.find(r.scene);
+        if (found == known_.end())
+            throw aabb::input_error(place + "manifest.json has no scene " + r.scene.kind + " with these parameters");
+        if (const std::string& digest = found->second.digest;
+            r.status == "exact" && !digest.empty() && r.digest != digest)
+            throw aabb::input_error(place + "the row is exact, but its digest is '" + r.digest +
+                                    "'; that of the scene is " + digest + ", as manifest.json says");
+    }
+    [[nodiscard]] std::size_t index(const scene_choice& scene) const { return known_.at(scene).index; }
+
+private:
+    struct known {
+        std::size_t index;
+        std::string digest;
+    };
+    std::map<scene_choice, known> known_;
+};
+
+/// By scene, repeat and contender.
+void sort_as_played(std::vector<row>& rows, const known_scenes& scenes, const std::vector<contender_name>& contenders) {
+    std::map<contender_name, std::size_t> turns;
+    for (const contender_name& name : contenders) turns.emplace(name, turns.size());
+    std::vector<std::tuple<std::size_t, std::uint64_t, std::size_t, std::size_t>> order;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        order.emplace_back(scenes.index(rows[i].scene), rows[i].repeat, turns[rows[i].name], i);
+    std::ranges::sort(order);
+    std::vector<row> sorted;
+    sorted.reserve(rows.size());
+    for (const auto& place : order) sorted.push_back(std::move(rows[std::get<3>(place)]));
+    rows = std::move(sorted);
+}
+
+}  // namespace
+
+table_seal seal_of(const std::filesystem::path& table) {
+    std::vector<std::string> lines;
+    for (const csv_record& record : read_csv(bytes_of_file(table), table.string()).records)
+        lines.push_back(csv_line(record.fields));
+    std::ranges::sort(lines);
+    std::string text;
+    for (const std::string& line : lines) text += line;
+    // One line has the names of the columns.
+    return {lines.empty() ? 0 : lines.size() - 1, sha256_of(text)};
+}
+
+std::vector<row> verified_rows(const std::filesystem::path& folder) {
+    const sealed_manifest made = read_sealed_manifest(folder / "manifest.json");
+    const std::filesystem::path table = folder / "results.csv";
+    const known_scenes scenes(made);
+    std::vector<row> rows = read_rows(table, [&](const row& r, std::size_t line) {
+        const std::string place = table.string() + ":" + std::to_string(line) + ": ";
+        if (r.experiment != made.experiment)
+            throw aabb::input_error(place + "the row is of the experiment '" + r.experiment +
+                                    "', and manifest.json of '" + made.experiment + "'");
+        scenes.require(r, place);
+    });
+    if (!made.seal) return rows;
+    require_seal(table, made.seal->results);
+    if (made.seal->differences) require_seal(folder / "differences.csv", *made.seal->differences);
+    sort_as_played(rows, scenes, made.seal->contenders);
+    return rows;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,48 @@
+module;
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// What of a reproduction's folder its report is made from, and whether it is as the run left it.
+export module aabblab.record;
+
+export namespace aabblab {
+
+/// The folder that they stand in in an archive.
+inline constexpr const char* record_top = "reproduction";
+
+/// The experiments that a folder has, by name.
+[[nodiscard]] std::vector<std::string> recorded_experiments(const std::filesystem::path& folder);
+
+/// The files that a judgement reads, relative to the folder, in order.
+[[nodiscard]] std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder);
+
+/// The same, and SHA256SUMS where there is one: what an archive holds.
+[[nodiscard]] std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder);
+
+/// Of a run that is finished: writes SHA256SUMS, which names every file that a judgement reads but the tables of
+/// results, whose checksums stand in their manifests, since their rows may stand in any order.
+void seal_record(const std::filesystem::path& folder);
+/// Of a run that begins: takes it away.
+void unseal_record(const std::filesystem::path& folder);
+[[nodiscard]] bool is_sealed_record(const std::filesystem::path& folder);
+
+/// Where it is sealed, every file is there and as it was, whatever the ends of its lines, and no other.
+/// @throws aabb::input_error where that is not so.
+void verify_record(const std::filesystem::path& folder);
+
+/// What a report says of results that are not sealed.
+inline constexpr const char* unsealed_note =
+    "the results are not sealed, since the run was not finished or is of an earlier version: nothing shows whether "
+    "rows "
+    "are missing or were altered";
+
+}  // namespace aabblab
+
+// What the parts of the module share.
+namespace aabblab {
+
+/// SHA256SUMS and nothing else has this name.
+inline constexpr const char* sums_name = "SHA256SUMS";
+
+}  // namespace aabblab

@@ -1,0 +1,53 @@
+#include <catch2/catch_test_macros.hpp>
+#include <filesystem>
+#include <string>
+
+#include "temporary_folder.hpp"
+
+import aabblab.machine;
+
+namespace {
+
+void write(const temporary_folder& folder, const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    (void)folder.write(name, text);
+}
+
+}  // namespace
+
+TEST_CASE("A machine is told as Linux has it: processor, caches by level, governor, whether it is virtual") {
+    const temporary_folder root;
+    write(root, "proc/cpuinfo",
+          "processor\t: 0\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n\n"
+          "processor\t: 1\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n");
+    const std::string core = "sys/devices/system/cpu/cpu0/";
+    const auto write_cache = [&](const std::string& index, const char* level, const char* type, const char* size) {
+        write(root, core + "cache/index" + index + "/level", std::string(level) + "\n");
+        write(root, core + "cache/index" + index + "/type", std::string(type) + "\n");
+        write(root, core + "cache/index" + index + "/size", std::string(size) + "\n");
+    };
+    write_cache("0", "1", "Data", "48K");
+    write_cache("1", "1", "Instruction", "32K");
+    write_cache("2", "2", "Unified", "2M");
+    write(root, core + "cpufreq/scaling_governor", "performance\n");
+    const aabblab::machine m = aabblab::this_machine(root.path());
+    CHECK(m.processor == "A Processor @ 2.40GHz");
+    CHECK(m.processors == 2);
+    CHECK(m.caches.size() == 3);
+    CHECK(m.caches.at("L1d") == 48 * 1024);
+    CHECK(m.caches.at("L1i") == 32 * 1024);
+    CHECK(m.caches.at("L2") == 2 * 1024 * 1024);
+    CHECK(m.governor == "performance");
+    CHECK(m.hypervisor == true);
+}
+
+TEST_CASE("What a system does not tell of its machine is left open") {
+    const temporary_folder nothing;
+    const aabblab::machine m = aabblab::this_machine(nothing.path());
+    CHECK(m.processor == "unknown");
+    CHECK(m.caches.empty());
+    CHECK(!m.governor);
+    CHECK(!m.hypervisor);
+    CHECK(m.kernel.starts_with("Linux "));
+    CHECK(!m.libc.empty());
+}

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "interrupted.hpp"
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabb.registry;
+import aabblab.results;
+import aabblab.sha256;
+
+using aabblab::row;
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::MessageMatches;
+
+namespace {
+
+const char* const config =
+    "name = \"sealed\"\nseed = [1, 2]\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 2\n"
+    "[compose]\nsort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 3\nprocesses = 3\n";
+
+/// A finished run.
+class finished_run {
+public:
+    finished_run() {
+        const program_result ran = run();
+        INFO(ran.err);
+        REQUIRE(ran.status == 0);
+    }
+
+    [[nodiscard]] program_result run(const std::vector<std::string>& more = {}) const {
+        return run_program(joined({"run", (folder_ / "sealed.toml").string(), "--out", out().string()}, more));
+    }
+    [[nodiscard]] std::filesystem::path out() const { return folder_ / "out"; }
+    [[nodiscard]] std::string table() const { return bytes_of_file(out() / "results.csv"); }
+    void write_table(const std::string& text) const { std::ofstream(out() / "results.csv", std::ios::binary) << text; }
+    [[nodiscard]] nlohmann::ordered_json manifest() const {
+        return nlohmann::ordered_json::parse(bytes_of_file(out() / "manifest.json"));
+    }
+    void write_manifest(const nlohmann::ordered_json& manifest) const {
+        std::ofstream(out() / "manifest.json") << manifest.dump(2);
+    }
+
+private:
+    temporary_folder folder_;
+    std::filesystem::path config_ = folder_.write("sealed.toml", config);
+};
+
+std::vector<std::string> keys_of(const std::vector<row>& rows) {
+    std::vector<std::string> keys;
+    for (const row& r : rows) keys.push_back(r.key());
+    return keys;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+std::string joined_lines(const std::vector<std::string>& lines, const char* end) {
+    std::string text;
+    for (const std::string& line : lines) text += line + end;
+    return text;
+}
+
+std::string shuffled(const std::string& table) {
+    std::vector<std::string> lines = lines_of(table);
+    std::shuffle(lines.begin() + 1, lines.end(), std::mt19937(7));
+    return joined_lines(lines, "\n");
+}
+
+/// The field of a line, as long as none is in quotes before it.
+std::string with_field(const std::string& table, std::size_t line, const std::string& before,
+                       const std::string& after) {
+    std::vector<std::string> lines = lines_of(table);
+    const std::size_t at = lines.at(line - 1).find(before);
+    REQUIRE(at != std::string::npos);
+    lines[line - 1].replace(at, before.size(), after);
+    return joined_lines(lines, "\n");
+}
+
+}  // namespace
+
+TEST_CASE("Checksums are those of FIPS 180-4") {
+    CHECK(aabblab::sha256_of("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    CHECK(aabblab::sha256_of("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_CASE("Rows of a finished run are read in the order of the config, whatever their order and the ends of lines") {
+    const finished_run run;
+    const std::vector<row> rows = aabblab::verified_rows(run.out());
+    REQUIRE(rows.size() == 12);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        CHECK(rows[i].scene.seed == i / 6 + 1);
+        CHECK(rows[i].repeat == i / 2 % 3);
+        CHECK(rows[i].name[aabb::strategy_kind::sort] == (i % 2 == 0 ? "std" : "insertion"));
+    }
+    const std::string table = run.table();
+    const std::string mixed = shuffled(table);
+    REQUIRE(mixed != table);
+    run.write_table(mixed);
+    CHECK(keys_of(aabblab::verified_rows(run.out())) == keys_of(rows));
+    run.write_table(joined_lines(lines_of(mixed), "\r\n"));
+    CHECK(keys_of(aabblab::verified_rows(run.out())) == keys_of(rows));
+    // A tool that every system has sees the same.
+    const auto sealed = run.manifest()["seal"]["results.csv"];
+    std::vector<std::string> lines = lines_of(table);
+    std::ranges::sort(lines);
+    CHECK(sealed["rows"] == 12);
+    CHECK(sealed["sha256"] == aabblab::sha256_of(joined_lines(lines, "\n")));
+}
+
+TEST_CASE("Rows that were altered, removed or added are refused, with the place where there is one") {
+    const finished_run run;
+    const std::string table = run.table();
+    const row first = aabblab::read_rows(run.out() / "results.csv").front();
+    const auto refused = [&](const std::string& text, const std::string& sentence) {
+        run.write_table(text);
+        CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error,
+                             MessageMatches(ContainsSubstring(sentence)));
+        run.write_table(table);
+    };
+    const std::string altered = "out/results.csv was altered after the run: its rows do not have the checksum";
+    refused(with_field(table, 3, ",exact", ",inexact"), altered);
+    refused(with_field(table, 3, first.digest, "0000000000000000"),
+            "out/results.csv:3: the row is exact, but its digest is '0000000000000000'; that of the scene is " +
+                first.digest);
+    refused(with_field(table, 3, "\"\"objects\"\":60", "\"\"objects\"\":61"),
+            "out/results.csv:3: manifest.json has no scene brownian with these parameters");
+    refused(with_field(table, 3, "sealed", "other"),
+            "out/results.csv:3: the row is of the experiment 'other', and manifest.json of 'sealed'");
+    std::vector<std::string> lines = lines_of(table);
+    lines.erase(lines.begin() + 3);
+    refused(joined_lines(lines, "\n"), "out/results.csv has 11 rows; when the run was finished it had 12");
+    refused(table.substr(0, table.size() - 1), "out/results.csv has 11 rows; when the run was finished it had 12");
+    CHECK(aabblab::verified_rows(run.out()).size() == 12);
+}
+
+TEST_CASE("A manifest that was altered is refused") {
+    const finished_run run;
+    const nlohmann::ordered_json manifest = run.manifest();
+    const auto refused = [&](const std::function<void(nlohmann::ordered_json&)>& alter, const std::string& sentence) {
+        nlohmann::ordered_json altered = manifest;
+        alter(altered);
+        run.write_manifest(altered);
+        CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error,
+                             MessageMatches(ContainsSubstring(sentence)));
+    };
+    const std::string sentence =
+        "manifest.json was altered after the run: what stands in it does not have the checksum that it states";
+    refused([](auto& m) { m["build"]["cpu"] = "a faster one"; }, sentence);
+    refused([](auto& m) { m["scenes"][0]["digest"] = "0000000000000000"; }, sentence);
+    refused([](auto& m) { m["config"]["text"] = "name = \"sealed\"\n"; }, sentence);
+    refused([](auto& m) { m["seal"]["results.csv"]["rows"] = 11; }, sentence);
+    refused([](auto& m) { m["seal"] = "none"; }, "is not a manifest of results");
+    refused([](auto& m) { m["seal"]["contenders"][0] = 1; }, "is not a manifest of results");
+}
+
+TEST_CASE("A run that is not finished has no seal, and is read as it is") {
+    const finished_run run;
+    unseal(run.out());
+    std::vector<std::string> lines = lines_of(run.table());
+    lines.pop_back();
+    run.write_table(joined_lines(lines, "\n"));
+    CHECK(aabblab::verified_rows(run.out()).size() == 11);
+    // Its digests are known all the same.
+    const row first = aabblab::read_rows(run.out() / "results.csv").front();
+    run.write_table(with_field(run.table(), 3, first.digest, "0000000000000000"));
+    CHECK_THROWS_AS(aabblab::verified_rows(run.out()), aabb::input_error);
+}
+
+TEST_CASE("What was altered is neither resumed nor sealed anew") {
+    const finished_run run;
+    REQUIRE(run.run({"--resume"}).status == 0);
+    REQUIRE(run.manifest().contains("seal"));
+    std::vector<std::string> lines = lines_of(run.table());
+    lines.erase(lines.begin() + 3);
+    run.write_table(joined_lines(lines, "\n"));
+    const std::string before = bytes_of_file(run.out() / "manifest.json");
+    const program_result refused = run.run({"--resume"});
+    INFO(refused.err);
+    CHECK(refused.status == 2);
+    CHECK(is_one_sentence(refused.err));
+    CHECK(refused.err.find("has 11 rows; when the run was finished it had 12") != std::string::npos);
+    CHECK(bytes_of_file(run.out() / "manifest.json") == before);
+}
+
+TEST_CASE("A manifest says what machine it was, and what of it times hang on") {
+    const finished_run run;
+    const nlohmann::ordered_json manifest = run.manifest();
+    CHECK(manifest["build"]["cpu"].is_string());
+    CHECK(manifest["build"]["caches"].is_object());
+    CHECK(manifest["machine"]["processors"] > 0);
+    CHECK(manifest["machine"]["kernel"].get<std::string>().starts_with("Linux "));
+    CHECK(manifest["machine"]["libc"].is_string());
+    // A new kernel is no other machine, another cache is.
+    unseal(run.out());
+    nlohmann::ordered_json changed = run.manifest();
+    changed["machine"]["kernel"] = "Linux 1.0 i386";
+    run.write_manifest(changed);
+    CHECK(run.run({"--resume"}).status == 0);
+    unseal(run.out());
+    changed = run.manifest();
+    changed["build"]["caches"]["L2"] = 1;
+    run.write_manifest(changed);
+    CHECK(run.run({"--resume"}).err.find("another build or machine") != std::string::npos);
+}
