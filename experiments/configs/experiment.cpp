@@ -90,6 +90,8 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     const node* processes = measure ? measure->find("processes") : nullptr;
+    const node* in_quick = measure ? measure->find("quick") : nullptr;
+    if (const node* fewer = in_quick ? in_quick->find("processes") : nullptr; fewer && e.quick) processes = fewer;
     if (!processes) return;
     e.processes = doc.integer_of("processes", *processes, 1);
     if (e.quick || !e.records(metric_group::time))
@@ -114,7 +116,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     const node* in_quick = measure->find("quick");
     if (!in_quick) return;
     doc.require_table("quick", *in_quick);
-    doc.require_keys(*in_quick, " of quick", {"repeats"});
+    doc.require_keys(*in_quick, " of quick", {"repeats", "processes"});
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
 

@@ -25,13 +25,19 @@ namespace aabblab {
 
 namespace {
 
+/// `quick = false`: the scene is left out of a first look.
+bool is_false(const node& value) {
+    return value.kind == node_kind::boolean && value.text == "false";
+}
+
 /// The scene as this size of the experiment sees it: without `quick`, or with what stands in it.
 node sized(const document& doc, const node& scene, experiment_size size) {
     node result = scene;
     std::erase_if(result.items, [](const node& entry) { return entry.key == "quick"; });
     const node* quick = scene.find("quick");
-    if (quick) doc.require_table("quick", *quick);
-    if (!quick || size == experiment_size::full) return result;
+    if (!quick || is_false(*quick)) return result;
+    doc.require_table("quick", *quick);
+    if (size == experiment_size::full) return result;
     for (const node& entry : quick->items) {
         const auto same = std::ranges::find(result.items, entry.key, &node::key);
         if (same == result.items.end())
@@ -53,6 +59,7 @@ constexpr std::string_view own_keys[] = {"kind", "seed", "meshes", "without_data
 
 void require_known_keys(const document& doc, const node& scene, const scene_info& info) {
     const node* quick = scene.find("quick");
+    if (quick && is_false(*quick)) quick = nullptr;
     for (const node* table : {&scene, quick})
         if (const node* seed = table && info.plays_file ? table->find("seed") : nullptr)
             doc.fail(seed->line, info.name + " plays a file as it is and has no seed");
@@ -150,6 +157,14 @@ struct written_scene {
     int line;
 };
 
+/// Refuses a composition that has no use for a scene of boxes.
+void require_playable(const document& doc, const written_scene& scene, const experiment& e) {
+    if (scene.info->has_meshes) return;
+    for (const aabb::composition& c : e.compositions)
+        if (const std::string reason = needs_meshes(c); !reason.empty())
+            doc.fail(scene.line, scene.choice.kind + ": " + reason);
+}
+
 void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size,
                 std::vector<std::string>& notes, each_once<written_scene>& scenes) {
     doc.require_table("scene", written);
@@ -161,6 +176,8 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
     for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
     const node* own_seed = scene.find("seed");
     const std::vector<std::optional<std::uint64_t>> all_seeds = seeds_of(doc, own_seed ? own_seed : seed);
+    const node* quick = written.find("quick");
+    if (size == experiment_size::quick && quick && is_false(*quick)) return;
     for (const located_text& kind : names) {
         const scene_info& info = info_of(doc, kind);
         const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
@@ -199,9 +216,13 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node* seed = seed_of(doc, size);
     each_once<written_scene> written;
     for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e.notes, written);
-    if (written.all().empty()) doc.fail(scenes->line, "this config has no scene; expected at least one [[scene]]");
+    if (written.all().empty())
+        doc.fail(scenes->line, scenes->items.empty() ? "this config has no scene; expected at least one [[scene]]"
+                                                     : "every scene of this config is left out by quick = false");
     aabb::digest content;
-    for (const auto& [choice, info, line] : written.all()) {
+    for (const written_scene& scene : written.all()) {
+        const auto& [choice, info, line] = scene;
+        require_playable(doc, scene, e);
         doc.at(line, [&] { add_content(content, choice, *info); });
         e.scenes.push_back(choice);
     }

@@ -29,14 +29,14 @@ bool limit_acts(const condition& c, const std::string& segments) {
 
 }  // namespace
 
-claim_result one_cut_a_box(const measurements& m) {
-    claim_result claim;
+draft one_cut_a_box(const measurements& m) {
+    draft made;
+    claim_result& claim = made.claim;
     claim.id = "C10";
     claim.claim = "Cutting a box more than once on an axis does not pay";
     claim.measured = "time a frame of axial_cut with its limit over that without, where the limit acts";
     claim.expected = expectation::not_more;
     claim.experiments = {"c10"};
-    std::vector<candidate> candidates;
     figure f{
         "c10",
         "Time of global search with at most one cut of a box on an axis, over that without the limit (the level "
@@ -50,22 +50,24 @@ claim_result one_cut_a_box(const measurements& m) {
     for (const condition& c : m.of("c10"))
         for (const char* segments : {"auto", "32"}) {
             if (!limit_acts(c, segments)) continue;
-            candidates.push_back(candidate_of(c, limited("on", segments), limited("off", segments),
-                                              measured("frame_ms"), {{"segments", segments}}));
-            candidate& one = candidates.back();
+            candidate one = candidate_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
+                                         {{"segments", segments}});
             const std::string span = value_of(c.of(), "span");
             const bool automatic = std::string(segments) == "auto";
-            one.primary = span == "0.5" && value_of(c.of(), "huge") == "10" && automatic;
-            if (span.empty() || !automatic || !one.log_ratio.known()) continue;
-            series& s = by_span[span];
-            s.label = "edge " + span + " of the world";
-            s.points.push_back(point_of(number_of(c.of(), "huge"), one));
+            const std::string wanted = automatic ? "" : " and 32 segments";
+            one.primary = span == "0.5" && value_of(c.of(), "huge") == "10";
+            if (!span.empty() && automatic && one.known()) {
+                series& s = by_span[span];
+                s.label = "edge " + span + " of the world";
+                s.points.push_back(point_of(number_of(c.of(), "huge"), one));
+            }
+            made.candidates.push_back(span.empty() ? told(std::move(one), "on mixed sizes" + wanted)
+                                                   : told(std::move(one), "with huge boxes" + wanted));
         }
-    judge(claim, std::move(candidates));
     for (const auto& [span, s] : by_span) f.lines.push_back(s);
     f.lines.push_back({"any number of cuts", series_style::level, {{1, 1, 1, 1}}});
     claim.figures.push_back(f);
-    return claim;
+    return made;
 }
 
 }  // namespace aabblab

@@ -72,60 +72,78 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
     return t;
 }
 
-const std::vector<std::string>& sorts() {
-    static const std::vector<std::string> all{"shell:gaps=ciura", "shell:gaps=tokuda", "shell:gaps=shell", "insertion"};
-    return all;
+struct sort_told {
+    const char* sort;
+    const char* subject;
+    bool is_primary;
+};
+constexpr sort_told sorts[] = {{"insertion", "with insertion sort", true},
+                               {"shell:gaps=four_one", "with Shell sort of two gaps", true},
+                               {"shell:gaps=ciura_eight", "with Ciura's eight gaps", true},
+                               {"shell:gaps=ciura", "with Ciura's gaps extended as N grows", true},
+                               {"shell:gaps=tokuda", "with Tokuda's gaps", false},
+                               {"shell:gaps=shell", "with Shell's own gaps", false}};
+
+/// As it is at most sizes, in two digits.
+std::string inversions_of(const std::vector<const condition*>& conditions) {
+    std::vector<double> all;
+    for (const condition* c : conditions)
+        if (const auto found = c->spread({{kind::sort, "insertion"}}, an_object(measured("inversions"))))
+            all.push_back(found->median);
+    return all.empty() ? "-" : three_digits(quartiles_of(all).median);
 }
 
 }  // namespace
 
-claim_result linear_sort(const measurements& m) {
-    claim_result claim;
+draft linear_sort(const measurements& m) {
+    draft made;
+    claim_result& claim = made.claim;
     claim.id = "C2";
     claim.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too";
     claim.measured =
         "comparisons and moves for an element at ten times as many elements over those now, by the straight line "
-        "through "
-        "them against log N";
+        "through them against log N";
+    claim.lead = "Work an element at ten times as many elements";
     claim.expected = expectation::not_more;
     claim.experiments = {"c2"};
     std::map<std::string, std::vector<const condition*>> by_displacement;
     for (const condition& c : m.of("c2")) by_displacement[value_of(c.of(), "displacement")].push_back(&c);
-    std::vector<candidate> candidates;
-    for (const auto& [displacement, conditions] : by_displacement)
-        for (const std::string& sort : sorts()) {
+    for (const sort_told& one : sorts)
+        for (const auto& [displacement, conditions] : by_displacement) {
             sizes all;
             for (const condition* c : conditions) {
                 all.log_n.push_back(std::log10(number_of(c->of(), "objects")));
-                all.per_element.push_back(c->logs({{kind::sort, sort}}, an_object(work())));
+                all.per_element.push_back(c->logs({{kind::sort, one.sort}}, an_object(work())));
             }
-            const cells& any = all.per_element.front();
-            candidates.push_back({{{"scene", "line"},
-                                   {"sort", sort},
-                                   {"displacement", displacement},
-                                   {"elements", sizes_text(conditions)}},
-                                  bootstrap(any.size(), [&](const resample& d) { return all.growth(d); }),
-                                  sort == "shell:gaps=ciura" && displacement == "0.1",
-                                  {}});
+            candidate c;
+            c.where = {{"scene", "line"},
+                       {"sort", one.sort},
+                       {"displacement", displacement},
+                       {"inversions", inversions_of(conditions)},
+                       {"elements", sizes_text(conditions)}};
+            c.log_ratios = {
+                bootstrap(all.per_element.front().size(), [&](const resample& d) { return all.growth(d); })};
+            c.primary = one.is_primary && displacement == "0.1";
+            c.source = "c2: growth of comparisons and moves of sort=" + std::string(one.sort);
+            made.candidates.push_back(told(std::move(c), one.subject, "inversions", quantity::work));
         }
-    judge(claim, std::move(candidates));
-    if (by_displacement.empty()) return claim;
+    if (by_displacement.empty()) return made;
     claim.tables.push_back({"c2_inversions", "Inversions for each element, which are to be the same at every size.",
                             inversions_table(by_displacement)});
     figure f{"c2",
              "Comparisons and moves for each element against the number of elements, at a displacement of a tenth of "
-             "an edge: a "
-             "level line is O(N).",
+             "an edge: a level line is O(N).",
              {"elements", true, {}},
              {"comparisons and moves for each element", true, {}},
              {},
              {}};
-    for (const std::string& sort : sorts())
-        f.lines.push_back(series_of(sort, by_displacement["0.1"], "objects", {{kind::sort, sort}}, an_object(work())));
+    for (const sort_told& one : sorts)
+        f.lines.push_back(
+            series_of(one.sort, by_displacement["0.1"], "objects", {{kind::sort, one.sort}}, an_object(work())));
     f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {{kind::sort, "insertion"}},
                                 an_object(measured("inversions"))));
     claim.figures.push_back(f);
-    return claim;
+    return made;
 }
 
 }  // namespace aabblab

@@ -2,8 +2,11 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,7 +33,7 @@ selection grid(const std::string& cell) {
 
 /// Those of the config. Not what there are rows of: a size that was wrong everywhere would be forgotten.
 const std::vector<std::string>& cell_sizes() {
-    static const std::vector<std::string> all{"2", "4", "8", "16", "32", "64", "128", "256"};
+    static const std::vector<std::string> all{"4", "8", "16", "32", "64"};
     return all;
 }
 
@@ -38,16 +41,28 @@ row_value all_bytes() {
     return bytes_of({"projections", "partition", "sweep"});
 }
 
-/// Times of every cell size over that of the axial cut, scene by scene.
+/// A grid of one cell is none.
+bool is_grid(const condition& c, const std::string& size) {
+    const auto made = c.spread(grid(size), measured("subsets"));
+    return !made || made->median > 1;
+}
+
+/// Times of every cell size over that of the axial cut, scene by scene. Sizes that leave one cell in a scene are left
+/// out of all.
 class scenes_and_cells {
 public:
-    explicit scenes_and_cells(const std::vector<condition>& conditions) {
-        for (const condition& c : conditions) {
+    explicit scenes_and_cells(const std::vector<const condition*>& conditions) {
+        for (const std::string& size : cell_sizes())
+            if (std::ranges::all_of(conditions, [&](const condition* c) { return is_grid(*c, size); }))
+                sizes_.push_back(size);
+        for (const condition* c : conditions) {
             std::vector<cells>& ratios = over_cut_.emplace_back();
-            for (const std::string& size : cell_sizes())
-                ratios.push_back(c.log_ratios(grid(size), cut, measured("frame_ms")));
+            for (const std::string& size : sizes_)
+                ratios.push_back(c->log_ratios(grid(size), cut, measured("frame_cpu_ms")));
         }
     }
+
+    [[nodiscard]] const std::vector<std::string>& sizes() const { return sizes_; }
 
     /// Of a time that is so much longer than the cut's, over that with the scene's best cell size. NaN where a size was
     /// not measured: the others would look better than they are.
@@ -69,7 +84,7 @@ public:
     /// That of the cell size whose worst scene is the least bad.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
         double least = worst_regret(0, d);
-        for (std::size_t size = 1; size < cell_sizes().size(); ++size) least = std::min(least, worst_regret(size, d));
+        for (std::size_t size = 1; size < sizes_.size(); ++size) least = std::min(least, worst_regret(size, d));
         return least;
     }
 
@@ -85,7 +100,8 @@ private:
         return found;
     }
 
-    std::vector<std::vector<cells>> over_cut_;
+    std::vector<std::string> sizes_;
+    std::vector<std::vector<cells>> over_cut_;  // by scene and size
 };
 
 table times(const std::vector<condition>& conditions) {
@@ -97,7 +113,7 @@ table times(const std::vector<condition>& conditions) {
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         const auto add = [&](const selection& who) {
-            const auto time = c.spread(who, measured("frame_ms"));
+            const auto time = c.spread(who, measured("frame_cpu_ms"));
             cells.push_back(time ? three_digits(time->median) : "-");
         };
         add(cut);
@@ -113,43 +129,53 @@ void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& ca
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
     const condition& large = worlds.back();
-    const auto add = [&](const std::string& what, const cells& above, const cells& below, expectation expected) {
+    const auto add = [&](const std::string& what, const std::string& subject, const cells& above, const cells& below,
+                         quantity compared, expectation expected) {
         if (above.empty() || below.empty()) return;
-        candidates.push_back(
-            {{{"scene", "brownian"}, {"comparison", what}},
-             bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); }),
-             false,
-             expected});
+        candidate c;
+        c.where = {{"scene", "brownian"}, {"comparison", what}};
+        c.log_ratios = {
+            bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); })};
+        c.expected = expected;
+        c.source = "c5_world: growth";
+        candidates.push_back(told(std::move(c), subject, "", compared));
     };
     const row_value bytes = all_bytes();
     for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
         const selection who = grid(size);
+        const std::string grid_of = std::string("a grid of ") + label;
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            small.log_ratios(who, cut, measured("frame_ms")), large.log_ratios(who, cut, measured("frame_ms")),
-            expectation::less);
-        add(std::string("bytes of a grid, ") + label + ", small world over large", small.logs(who, bytes),
-            large.logs(who, bytes), expectation::less);
+            "for " + grid_of + ", beside the cut, in the smallest world over the largest",
+            small.log_ratios(who, cut, measured("frame_cpu_ms")), large.log_ratios(who, cut, measured("frame_cpu_ms")),
+            quantity::time, expectation::less);
+        add(std::string("bytes of a grid, ") + label + ", small world over large", "for " + grid_of + " there",
+            small.logs(who, bytes), large.logs(who, bytes), quantity::bytes, expectation::less);
     }
-    add("bytes of axial_cut, large world over small", large.logs(cut, bytes), small.logs(cut, bytes),
-        expectation::not_more);
+    add("bytes of axial_cut, large world over small", "for the cut in the largest world over the smallest",
+        large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
-figure cell_figure(const std::vector<condition>& conditions) {
+/// A panel for each number of objects.
+figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f{"c5",
              "Time of global search against the size of a grid's cells, over that of the axial cut in the same repeat "
-             "(the level 1), scene by scene; 95 % intervals.",
+             "(the level 1), scene by scene; 95 % intervals. Grids of one cell are left out.",
              {"cell size (edges of the smallest box)", true, {}},
              {"time over that of axial cut", true, {}},
              {},
              {}};
-    for (const condition& c : conditions) {
-        series s{value_of(c.of(), "scene"), series_style::line, {}};
-        for (const std::string& size : cell_sizes()) {
-            const candidate ratio = candidate_of(c, grid(size), cut, measured("frame_ms"));
-            if (!ratio.log_ratio.known()) continue;
-            s.points.push_back(point_of(std::stod(size), ratio));
+    for (const auto& [objects, conditions] : by_objects) {
+        figure_panel& panel = f.panels.emplace_back();
+        panel.title = grouped(static_cast<std::uint64_t>(objects)) + " objects";
+        for (const condition* c : conditions) {
+            series s{value_of(c->of(), "scene"), series_style::line, {}};
+            for (const std::string& size : cell_sizes()) {
+                const candidate ratio = candidate_of(*c, grid(size), cut, "frame_cpu_ms");
+                if (!ratio.known() || !is_grid(*c, size)) continue;
+                s.points.push_back(point_of(std::stod(size), ratio));
+            }
+            panel.lines.push_back(s);
         }
-        f.lines.push_back(s);
     }
     f.lines.push_back({"axial cut", series_style::level, {{1, 1, 1, 1}}});
     return f;
@@ -181,44 +207,56 @@ figure world_figure(const std::string& name, const std::string& what, const std:
 
 }  // namespace
 
-claim_result cut_against_grid(const measurements& m) {
-    claim_result claim;
+draft cut_against_grid(const measurements& m) {
+    draft made;
+    claim_result& claim = made.claim;
     claim.id = "C5";
     claim.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the space";
     claim.measured =
-        "the worst slowdown over all scenes, each against its best cell size, of axial_cut over that of the cell size "
-        "whose worst is the least";
+        "the worst slowdown over four scenes of as many objects, each against its best cell size, of axial_cut over "
+        "that of the cell size whose worst is the least";
     claim.experiments = {"c5", "c5_world"};
-    const std::vector<condition>& conditions = m.of("c5");
-    std::vector<candidate> candidates;
-    if (!conditions.empty()) {
+    std::map<double, std::vector<const condition*>> by_objects;
+    for (const condition& c : m.of("c5")) by_objects[number_of(c.of(), "objects")].push_back(&c);
+    for (const auto& [number, conditions] : by_objects) {
+        const std::string objects = value_of(conditions.front()->of(), "objects");
         const scenes_and_cells all(conditions);
+        if (all.sizes().empty()) continue;
         const sample_size size =
-            conditions.front().log_ratios(grid(cell_sizes().front()), cut, measured("frame_ms")).size();
-        const auto add = [&](const std::string& comparison, auto log_ratio, bool primary, expectation expected) {
-            candidates.push_back({{{"scene", "the worst of all"}, {"comparison", comparison}},
-                                  bootstrap(size, log_ratio),
-                                  primary,
-                                  expected});
+            conditions.front()->log_ratios(grid(all.sizes().front()), cut, measured("frame_cpu_ms")).size();
+        const auto add = [&](const std::string& comparison, const std::optional<std::string>& subject, auto log_ratio,
+                             quantity compared, expectation expected) -> candidate& {
+            candidate c;
+            c.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}};
+            c.log_ratios = {bootstrap(size, log_ratio)};
+            c.expected = expected;
+            c.source = "c5: regret";
+            c.compared = compared;
+            c.subject = subject;
+            c.along = "objects";
+            return made.candidates.emplace_back(std::move(c));
         };
         add(
-            "axial_cut over the safest cell size",
-            [&](const resample& d) { return all.worst_regret_of_cut(d) - all.least_worst_regret(d); }, true,
-            expectation::less);
+            "axial_cut over the safest cell size", "over four scenes, over that of the safest cell size",
+            [&](const resample& d) { return all.worst_regret_of_cut(d) - all.least_worst_regret(d); },
+            quantity::slowdown, expectation::less)
+            .primary = objects == "1000" || objects == "10000";
         add(
-            "each scene's best cell size over the safest",
-            [&](const resample& d) { return -all.least_worst_regret(d); }, false, expectation::less);
+            "each scene's best cell size over the safest", std::nullopt,
+            [&](const resample& d) { return -all.least_worst_regret(d); }, quantity::slowdown, expectation::less);
         add(
-            "axial_cut over each scene's best cell size", [&](const resample& d) { return all.worst_regret_of_cut(d); },
-            false, expectation::not_more);
+            "axial_cut over each scene's best cell size",
+            "in the worst of four scenes with the cut, over its best cell size",
+            [&](const resample& d) { return all.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
     }
     const std::vector<condition>& worlds = m.of("c5_world");
-    add_growth(worlds, candidates);
-    judge(claim, std::move(candidates));
-    claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(conditions)});
-    claim.figures = {cell_figure(conditions), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
-                     world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_ms"))};
-    return claim;
+    add_growth(worlds, made.candidates);
+    claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(m.of("c5"))});
+    claim.figures.push_back(cell_figure(by_objects));
+    claim.figures.push_back(world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()));
+    claim.figures.push_back(
+        world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_cpu_ms")));
+    return made;
 }
 
 }  // namespace aabblab

@@ -34,28 +34,93 @@ std::size_t count_of(std::span<const endpoint> all, support what) {
     return static_cast<std::size_t>(std::ranges::count(all, what, &endpoint::found));
 }
 
-std::string where_against_band(support found, expectation expected, double ratio) {
-    if (found == support::undecided && expected == expectation::not_more)
-        return "is not shown to be below 1.05, nor above";
-    if (found == support::undecided) return "cannot be told from the band of no difference, 0.952 to 1.05";
-    if (found == support::no_difference) return "lies within the band of no difference, 0.952 to 1.05";
-    if (found == support::favours && expected == expectation::not_more && ratio > 1 / (1 + equivalence_band))
-        return "is not above 1.05";
-    return found == support::favours ? "is below 0.952" : "is above 1.05";
+std::string word_of(const endpoint& e) {
+    if (e.expected == expectation::not_more && e.found == support::favours && e.direction == outcome::undecided)
+        return "not more";
+    switch (e.direction) {
+        case outcome::less: return "less";
+        case outcome::same: return "the same";
+        case outcome::more: return "more";
+        case outcome::undecided: break;
+    }
+    return "open";
 }
 
-std::string sentence_of(const claim_result& claim) {
-    if (!claim.has_primary) return "There are no measurements that decide it.";
-    std::string text =
-        fmt::format("At {} the ratio is {}, which {}", text_of(claim.primary.where), ratio_text(claim.primary),
-                    where_against_band(claim.primary.found, claim.expected, claim.primary.ratio));
-    if (claim.secondary.empty()) return text + ".";
+/// Every primary ratio, and how many others say what.
+std::string figures_of(std::span<const endpoint> all) {
+    std::string text;
+    std::vector<endpoint> others;
+    for (const endpoint& e : all) {
+        if (!e.is_primary) {
+            others.push_back(e);
+            continue;
+        }
+        text += fmt::format("{}{}: {}, {}", text.empty() ? "" : "; ", text_of(e.where), ratio_text(e), word_of(e));
+    }
+    if (text.empty()) return "There are no measurements that decide it.";
+    text = "Primary ratios, each with its 95 % interval: " + text + ".";
+    if (others.empty()) return text;
     return text + fmt::format(
-                      "; of {} other conditions {} favour the claim, {} contradict it, {} show no difference "
-                      "and {} are undecided.",
-                      claim.secondary.size(), count_of(claim.secondary, support::favours),
-                      count_of(claim.secondary, support::contradicts),
-                      count_of(claim.secondary, support::no_difference), count_of(claim.secondary, support::undecided));
+                      " Of {} other conditions {} favour the claim, {} contradict it, {} show no difference and "
+                      "{} are undecided.",
+                      others.size(), count_of(others, support::favours), count_of(others, support::contradicts),
+                      count_of(others, support::no_difference), count_of(others, support::undecided));
+}
+
+/// Judged.
+claim_result finished(const draft& made, const std::vector<endpoint>& all) {
+    claim_result claim = made.claim;
+    claim.verdict = verdict_of(all);
+    claim.sentence = sentence_of(all, claim.lead);
+    std::vector<endpoint> beside;
+    for (const candidate& c : made.beside)
+        if (c.known()) beside.push_back(endpoint_of(c, claim.expected));
+    if (!beside.empty()) claim.sentence += " " + sentence_of(beside);
+    if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
+    claim.because = figures_of(all);
+    std::vector<endpoint> ordered = all;
+    std::ranges::stable_partition(ordered, &endpoint::is_primary);
+    claim.has_primary = !ordered.empty() && ordered.front().is_primary;
+    if (claim.has_primary) claim.primary = ordered.front();
+    claim.secondary.assign(ordered.begin() + (claim.has_primary ? 1 : 0), ordered.end());
+    std::string name = claim.id;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    claim.tables.insert(claim.tables.begin(),
+                        {name,
+                         "Every endpoint of " + claim.id + ": " + claim.measured +
+                             ". Outcomes are by Holm's rule, of primary ones over all claims, of the others over this "
+                             "one; intervals are each one's own.",
+                         endpoint_table(ordered, [](const endpoint& e) {
+                             return text_of(e.found) + (e.is_primary ? " (primary)" : "");
+                         })});
+    return claim;
+}
+
+/// The drafts of all claims, from one machine.
+std::vector<draft> drafts_of(const measurements& m) {
+    std::vector<draft> all{improved_search(m),  linear_sort(m),         shell_sort(m),    more_segments(m),
+                           cut_against_grid(m), triangle_for_box(m),    less_memory(m),   less_time(m),
+                           balanced_tree(m),    large_objects_split(m), one_cut_a_box(m), whole_algorithm(m),
+                           fewer_box_tests(m),  insensitive_search(m)};
+    for (draft& d : all)
+        for (const std::string& experiment : d.claim.experiments)
+            for (const condition& c : m.of(experiment)) d.claim.scenes.push_back(c.of());
+    return all;
+}
+
+/// Puts what another machine measured beside it. What it did not measure is not known of all machines.
+void add_machine(std::vector<draft>& all, const std::vector<draft>& more) {
+    const auto add = [](std::vector<candidate>& to, const std::vector<candidate>& from) {
+        for (candidate& c : to) {
+            const auto same = std::ranges::find_if(
+                from, [&](const candidate& other) { return other.where == c.where && other.source == c.source; });
+            c.log_ratios.push_back(same == from.end() ? estimate{std::nan("")} : same->log_ratios.front());
+        }
+    };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        add(all[i].candidates, more[i].candidates);
+        add(all[i].beside, more[i].beside);
+    }
 }
 
 }  // namespace
@@ -115,77 +180,26 @@ std::string dependence_of(const open_choice& choice) {
     return undecided ? "undecided" : "no";
 }
 
-endpoint endpoint_of(const candidate& c, expectation expected) {
-    const interval range = c.log_ratio.range();
-    const expectation own = c.expected.value_or(expected);
-    const support alone = support_of(own, decide(evidence_of(c.log_ratio, own)));
-    return {c.where, std::exp(c.log_ratio.value), {std::exp(range.low), std::exp(range.high)}, alone, alone};
-}
-
 figure_point point_of(double x, const candidate& c) {
-    const interval range = c.log_ratio.range();
-    return {x, std::exp(c.log_ratio.value), std::exp(range.low), std::exp(range.high)};
+    const estimate ratio = c.log_ratio();
+    const interval range = ratio.range();
+    return {x, std::exp(ratio.value), std::exp(range.low), std::exp(range.high)};
 }
 
-void judge(claim_result& claim, std::vector<candidate> candidates) {
-    std::erase_if(candidates, [](const candidate& c) { return !c.log_ratio.known(); });
-    std::vector<evidence> others;
-    std::vector<expectation> expected;
-    for (const candidate& c : candidates) {
-        const endpoint e = endpoint_of(c, claim.expected);
-        if (c.primary && !claim.has_primary) {
-            claim.has_primary = true;
-            claim.primary = e;
-            continue;
-        }
-        claim.secondary.push_back(e);
-        expected.push_back(c.expected.value_or(claim.expected));
-        others.push_back(evidence_of(c.log_ratio, expected.back()));
-    }
-    const std::vector<outcome> outcomes = decide_together(others);
-    std::vector<support> supports;
-    for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        claim.secondary[i].found = support_of(expected[i], outcomes[i]);
-        supports.push_back(claim.secondary[i].found);
-    }
-    std::vector<endpoint> all;
-    if (claim.has_primary) all.push_back(claim.primary);
-    all.insert(all.end(), claim.secondary.begin(), claim.secondary.end());
-    if (claim.has_primary) {
-        claim.verdict = verdict_of(claim.primary.found, supports);
-        if (claim.verdict == verdict_kind::holds_when) {
-            if (count_of(all, support::favours) + count_of(all, support::undecided) == all.size()) {
-                claim.when = fmt::format("in {} of {} conditions, the others are undecided",
-                                         count_of(all, support::favours), all.size());
-            } else if (const std::string simplest = simplest_condition(all); !simplest.empty()) {
-                claim.when = "when " + simplest;
-            } else {
-                claim.when = fmt::format("in {} of {} conditions", count_of(all, support::favours), all.size());
-                if (const std::string nearest = nearest_condition(all); !nearest.empty())
-                    claim.when += ", mostly when " + nearest;
-            }
-        }
-    }
-    claim.because = sentence_of(claim);
-    std::string name = claim.id;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    claim.tables.insert(
-        claim.tables.begin(),
-        {name,
-         "Every endpoint of " + claim.id + ": " + claim.measured +
-             ". Outcomes are by Holm's rule over all but the primary one, intervals are each one's own.",
-         endpoint_table(all, [&](const endpoint& e) {
-             return text_of(e.found) + (&e == all.data() && claim.has_primary ? " (primary)" : "");
-         })});
-}
-
-candidate candidate_of(const condition& c, const selection& arm, const selection& base, const row_value& of,
+candidate candidate_of(const condition& c, const selection& arm, const selection& base, const std::string& metric,
                        factors more) {
-    factors where = c.of();
-    where.insert(where.end(), more.begin(), more.end());
-    const cells ratios = c.log_ratios(arm, base, of);
-    if (ratios.empty()) return {where, {std::nan(""), {}}};
-    return {where, bootstrap(ratios)};
+    candidate made;
+    made.where = c.of();
+    made.where.insert(made.where.end(), more.begin(), more.end());
+    made.source = c.experiment() + ": " + metric + " of " + text_of(arm) + " over " + text_of(base);
+    const cells ratios = c.log_ratios(arm, base, measured(metric));
+    made.log_ratios = {ratios.empty() ? estimate{std::nan("")} : bootstrap(ratios)};
+    return made;
+}
+
+bool is_drifting(const condition& c) {
+    return value_of(c.of(), "scene") == "brownian" && value_of(c.of(), "objects") == "10000" &&
+           value_of(c.of(), "displacement") == "0.1";
 }
 
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
@@ -204,16 +218,22 @@ std::string mesh_of(const condition& c) {
 }
 
 reproduction judged(const measurements& m) {
+    return judged({&m, 1});
+}
+
+reproduction judged(std::span<const measurements> machines) {
+    const measurements& first = machines.front();
+    std::vector<draft> drafts = drafts_of(first);
+    for (const measurements& m : machines.subspan(1)) add_machine(drafts, drafts_of(m));
     reproduction all;
-    all.claims = {improved_search(m),     linear_sort(m),      shell_sort(m),      more_segments(m),
-                  cut_against_grid(m),    triangle_for_box(m), compressed_tree(m), balanced_tree(m),
-                  large_objects_split(m), one_cut_a_box(m),    whole_algorithm(m), fewer_box_tests(m)};
-    for (claim_result& claim : all.claims)
-        for (const std::string& experiment : claim.experiments)
-            for (const condition& c : m.of(experiment)) claim.scenes.push_back(c.of());
-    all.choices = open_choices(m);
-    all.tables = table1(m);
-    all.null_control = null_control(m);
+    const std::vector<std::vector<endpoint>> endpoints = decided(drafts, equivalence_band);
+    for (std::size_t i = 0; i < drafts.size(); ++i) all.claims.push_back(finished(drafts[i], endpoints[i]));
+    all.headline = headline_of(all.claims);
+    all.disturbance = disturbance_of(machines);
+    all.choices = open_choices(first);
+    all.tables = table1(first);
+    all.bands = bands_table(drafts);
+    all.null_control = null_control(first);
     return all;
 }
 
@@ -247,7 +267,7 @@ std::string text_of(support found) {
 std::string text_of(const claim_result& claim) {
     switch (claim.verdict) {
         case verdict_kind::holds: return "holds";
-        case verdict_kind::holds_when: return "holds " + claim.when;
+        case verdict_kind::in_part: return "holds in part";
         case verdict_kind::no_difference: return "no difference";
         case verdict_kind::does_not_hold: return "does not hold";
         case verdict_kind::undecided: break;
@@ -259,6 +279,7 @@ table verdict_table(const reproduction& all) {
     table t{{{"", false},
              {"claim", false},
              {"verdict", false},
+             {"in words", false},
              {"ratio"},
              {"95 %"},
              {"for"},
@@ -267,7 +288,7 @@ table verdict_table(const reproduction& all) {
              {"undecided"}},
             {}};
     for (const claim_result& c : all.claims) {
-        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c)});
+        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c), c.sentence});
         cells.push_back(c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
         cells.push_back(c.has_primary
                             ? ratio_digits_of(c.primary.range.low) + " to " + ratio_digits_of(c.primary.range.high)

@@ -17,13 +17,24 @@ import aabblab.metrics;
 
 export namespace aabblab {
 
+/// What is compared, and so how a sentence tells it.
+enum class quantity : unsigned char { time, bytes, box_tests, work, slowdown };
+
 /// One ratio of a claim: where it was measured, what it is, and what it says.
 struct endpoint {
     factors where;
     double ratio = 0;
     interval range{};  ///< 95 %, of this endpoint alone
-    support found = support::undecided;
-    support alone = support::undecided;  ///< what its own interval says, as if there were no others
+    expectation expected = expectation::less;
+    support found = support::undecided;      ///< beside all that are decided with it
+    outcome direction = outcome::undecided;  ///< the same
+    support alone = support::undecided;      ///< what its own interval says, as if there were no others
+    bool is_primary = false;
+    quantity compared = quantity::time;
+    /// What a sentence calls the line of endpoints that it is on: "on drifting boxes". None where it is not told.
+    std::optional<std::string> subject;
+    std::string along;   ///< the factor that orders the line; empty where nothing does
+    std::string source;  ///< of which rows it is: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
 };
 
 /// A table of a report.
@@ -37,13 +48,15 @@ struct claim_result {
     std::string id;        ///< "C1"
     std::string claim;     ///< what the paper says
     std::string measured;  ///< which ratio of what
+    std::string remark;    ///< a sentence beside the verdict
+    std::string lead;      ///< what the sentence begins with where "up to twice as fast" says too little
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
-    std::string when;     ///< of "holds when": "when objects is at least 10000", "in 3 of 8 conditions"
-    std::string because;  ///< one sentence with the figure that decides
+    std::string sentence;  ///< the verdict in words: which way, how much and where
+    std::string because;   ///< the figures that decide
     bool has_primary = false;
-    endpoint primary;
-    std::vector<endpoint> secondary;
+    endpoint primary;                      ///< the first of those that are
+    std::vector<endpoint> secondary;       ///< all others, further primary ones first
     std::vector<std::string> experiments;  ///< whose configs made it
     std::vector<factors> scenes;           ///< of these experiments
     std::vector<named_table> tables;
@@ -69,25 +82,21 @@ struct open_choice {
 /// All that the paper's experiments show.
 struct reproduction {
     std::vector<claim_result> claims;
+    std::vector<std::string> headline;  ///< the whole in three sentences
+    std::string disturbance;            ///< a sentence, where the machine was not quiet
     std::vector<open_choice> choices;
     std::vector<named_table> tables;  ///< table 1
     std::vector<figure> figures;      ///< of all claims together
+    named_table bands;                ///< the verdicts under narrower and wider bands of no difference
     named_table null_control;         ///< ratios where there is nothing to be found
 };
-/// @param results the folder with those of every experiment
+/// @param machines the results of every experiment, of one machine or of several. Of several a ratio is their mean, and
+/// what is found is what every one of them finds; tables, figures, what the paper leaves open and the null control are
+/// the first one's.
+[[nodiscard]] reproduction judged(std::span<const measurements> machines);
 [[nodiscard]] reproduction judged(const measurements& results);
 
-/// The simplest condition on one or two factors that tells the endpoints that favour a claim from those that are
-/// decided otherwise: "objects is at least 10000", "sort is insertion or displacement is 1". None that is met by an
-/// endpoint which is undecided among many, but decided otherwise when taken alone. Empty where there is none so simple.
-/// Two factors need two endpoints on either side, lest some pair of them always fits, and no single factor that is
-/// nearly right.
-[[nodiscard]] std::string simplest_condition(std::span<const endpoint> all);
-
-/// One condition that tells most of them apart, and how many; empty where there is none.
-[[nodiscard]] std::string nearest_condition(std::span<const endpoint> all);
-
-/// "holds when objects is at least 10000", "no difference", …
+/// "holds", "holds in part", "no difference", …
 [[nodiscard]] std::string text_of(const claim_result& claim);
 [[nodiscard]] std::string text_of(support found);
 /// "brownian, objects 10,000, displacement 0.1"
@@ -97,6 +106,8 @@ struct reproduction {
 /// Three decimals, so that 1.048 is not taken for the band's edge; fewer from 10 on, four below 0.01.
 [[nodiscard]] std::string ratio_digits_of(double ratio);
 
+/// The verdict in words, from all endpoints of a claim: a clause for each line of them.
+[[nodiscard]] std::string sentence_of(std::span<const endpoint> all, const std::string& lead = {});
 /// Claim by claim: verdict, primary ratio with its interval, and where it was measured.
 [[nodiscard]] table verdict_table(const reproduction& all);
 /// What the paper leaves open.
@@ -110,17 +121,46 @@ namespace aabblab {
 /// A ratio on its way to be judged.
 struct candidate {
     factors where;
-    estimate log_ratio;
+    std::vector<estimate> log_ratios;  ///< by machine
     bool primary = false;
     std::optional<expectation> expected{};  ///< where it is not the claim's
+    quantity compared = quantity::time;
+    std::optional<std::string> subject{};
+    std::string along{};
+    std::string source{};
+
+    /// Whether every machine measured it.
+    [[nodiscard]] bool known() const;
+    /// Over all machines.
+    [[nodiscard]] estimate log_ratio() const;
+};
+
+/// A claim before it is judged.
+struct draft {
+    claim_result claim;
+    std::vector<candidate> candidates;
+    std::vector<candidate> beside{};  ///< told at the end of the sentence, by their own intervals, and not judged
 };
 
 /// Endpoint by its own 95 % interval.
-[[nodiscard]] endpoint endpoint_of(const candidate& c, expectation expected);
+[[nodiscard]] endpoint endpoint_of(const candidate& c, expectation expected, double band = equivalence_band);
 
-/// Decides a claim: the primary candidate by its interval, all others together. Writes the sentence and the table of
-/// endpoints. Candidates without a finite ratio (a composition was wrong, an experiment has not run) are left out.
-void judge(claim_result& claim, std::vector<candidate> candidates);
+/// Candidates without a finite ratio (a composition was wrong, an experiment has not run) are left out. Primary ones
+/// are decided together over all claims, the others together within theirs.
+/// @returns endpoints by claim, in the order of candidates
+[[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
+/// By the rule of aabblab.statistics.
+[[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> all);
+
+/// One of these clauses; empty where nothing on the line is measured.
+[[nodiscard]] std::string clause_of(std::span<const endpoint> all, const std::string& subject);
+/// What it all comes to, in three sentences.
+[[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
+/// Whether the machine was quiet: a sentence where it was not.
+[[nodiscard]] std::string disturbance_of(std::span<const measurements> machines);
+
+/// The verdicts under bands of 0, 3, 5 and 10 %.
+[[nodiscard]] named_table bands_table(std::span<const draft> drafts);
 
 /// Endpoints a row each, the factors in which they differ as columns.
 [[nodiscard]] table endpoint_table(std::span<const endpoint> all,
@@ -140,9 +180,13 @@ private:
 };
 
 /// The ratio of two compositions in one condition.
+/// @param metric by its name
 /// @param more factors beside the condition's own
 [[nodiscard]] candidate candidate_of(const condition& c, const selection& arm, const selection& base,
-                                     const row_value& of, factors more = {});
+                                     const std::string& metric, factors more = {});
+/// The same, told on a line.
+[[nodiscard]] candidate told(candidate c, const std::string& subject, const std::string& along = "",
+                             quantity compared = quantity::time);
 
 /// A ratio with its 95 % interval as a point of a figure.
 [[nodiscard]] figure_point point_of(double x, const candidate& c);
@@ -154,25 +198,29 @@ private:
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);
 
-/// The conditions of primary endpoints, in the full and in the quick size.
+/// The condition that claims on global search are decided in first: 10,000 cubes that drift by a tenth of their edge.
+[[nodiscard]] bool is_drifting(const condition& c);
+/// Those of other claims, which what the paper leaves open is held against.
 [[nodiscard]] bool is_primary_of_c7(const condition& c);
 [[nodiscard]] bool is_primary_of_c11(const condition& c);
 
 inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
 inline const selection improved{{kind::sort, "shell"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}};
 
-[[nodiscard]] claim_result improved_search(const measurements& m);
-[[nodiscard]] claim_result linear_sort(const measurements& m);
-[[nodiscard]] claim_result shell_sort(const measurements& m);
-[[nodiscard]] claim_result more_segments(const measurements& m);
-[[nodiscard]] claim_result cut_against_grid(const measurements& m);
-[[nodiscard]] claim_result triangle_for_box(const measurements& m);
-[[nodiscard]] claim_result compressed_tree(const measurements& m);
-[[nodiscard]] claim_result balanced_tree(const measurements& m);
-[[nodiscard]] claim_result large_objects_split(const measurements& m);
-[[nodiscard]] claim_result one_cut_a_box(const measurements& m);
-[[nodiscard]] claim_result whole_algorithm(const measurements& m);
-[[nodiscard]] claim_result fewer_box_tests(const measurements& m);
+[[nodiscard]] draft improved_search(const measurements& m);
+[[nodiscard]] draft linear_sort(const measurements& m);
+[[nodiscard]] draft shell_sort(const measurements& m);
+[[nodiscard]] draft more_segments(const measurements& m);
+[[nodiscard]] draft cut_against_grid(const measurements& m);
+[[nodiscard]] draft triangle_for_box(const measurements& m);
+[[nodiscard]] draft less_memory(const measurements& m);
+[[nodiscard]] draft less_time(const measurements& m);
+[[nodiscard]] draft balanced_tree(const measurements& m);
+[[nodiscard]] draft large_objects_split(const measurements& m);
+[[nodiscard]] draft one_cut_a_box(const measurements& m);
+[[nodiscard]] draft whole_algorithm(const measurements& m);
+[[nodiscard]] draft fewer_box_tests(const measurements& m);
+[[nodiscard]] draft insensitive_search(const measurements& m);
 
 [[nodiscard]] std::vector<open_choice> open_choices(const measurements& m);
 [[nodiscard]] std::vector<named_table> table1(const measurements& m);

@@ -40,12 +40,17 @@ std::string address_of(const std::string& svg) {
 std::string_view class_of(verdict_kind verdict) {
     switch (verdict) {
         case verdict_kind::holds: return "holds";
-        case verdict_kind::holds_when: return "when";
+        case verdict_kind::in_part: return "part";
         case verdict_kind::no_difference: return "same";
         case verdict_kind::does_not_hold: return "not";
         case verdict_kind::undecided: break;
     }
-    return "undecided";
+    return "open";
+}
+
+std::string capitalised(std::string text) {
+    if (!text.empty() && 'a' <= text.front() && text.front() <= 'z') text.front() += 'A' - 'a';
+    return text;
 }
 
 class page {
@@ -86,24 +91,39 @@ private:
     std::string text_;
 };
 
-void add_summary(page& out, const reproduction& all) {
-    out.paragraph(
-        "Each claim with its verdict and its primary ratio (95 % interval): below 1 favours the claim, whatever a "
-        "condition in the verdict adds.",
-        "soft");
+void add_claim_rows(page& out, const reproduction& all) {
     out.raw("<div class=\"claims\">\n");
-    for (const claim_result& c : all.claims)
+    for (const claim_result& c : all.claims) {
         out.raw(
-            fmt::format("<a class=\"claim {}\" href=\"#{}\"><b>{}</b><span>{}</span><span class=\"verdict\">{}"
-                        "</span><span class=\"number\">{}</span></a>\n",
-                        class_of(c.verdict), c.id, c.id, html_text(c.claim), html_text(text_of(c)),
-                        c.has_primary ? ratio_text(c.primary) : "-"));
+            fmt::format("<a class=\"claim {}\" href=\"#{}\"><b>{}</b><div><p class=\"said\">{}</p><p><span "
+                        "class=\"word\">{}:</span> "
+                        "{}</p></div><div>",
+                        class_of(c.verdict), c.id, c.id, html_text(c.claim), html_text(capitalised(text_of(c))),
+                        html_text(c.sentence)));
+        if (c.has_primary)
+            out.raw(fmt::format("<p class=\"ratio\">{}</p>{}", ratio_text(c.primary), interval_picture(c.primary)));
+        else
+            out.raw("<p class=\"ratio\">not measured</p>");
+        out.raw("</div></a>\n");
+    }
     out.raw("</div>\n");
+    out.paragraph(
+        "Each row: what the paper says, the verdict, and the first primary ratio with its 95 % interval, on one scale "
+        "for all. Left of 1 favours the claim; the shaded band makes no difference.",
+        "soft");
 }
 
 void add_rule(page& out, const reproduction& all) {
     out.heading("rule", "How a verdict comes about");
-    for (const std::string& text : rule_paragraphs()) out.paragraph(text);
+    out.raw(rule_picture() + "\n");
+    out.raw("<dl class=\"words\">\n");
+    for (const auto& [kind, word, meaning] : verdict_words())
+        out.raw(fmt::format("<dt class=\"{}\"><span class=\"word\">{}</span></dt><dd>{}</dd>\n", class_of(kind), word,
+                            meaning));
+    out.raw("</dl>\n");
+    std::string text;
+    for (const std::string& paragraph : rule_paragraphs()) text += "<p>" + html_text(paragraph) + "</p>\n";
+    out.folded("The rule in words", text);
     out.paragraph(all.null_control.caption);
     out.folded("Every ratio of the null control",
                "<div class=\"wide\">" + to_html(all.null_control.content) + "</div>");
@@ -135,31 +155,37 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
                     std::span<const report_section> sections, const provenance& made,
                     const std::vector<std::string>& failures) {
     page out(folder);
-    out.raw("<h1>The paper, reproduced</h1>\n");
-    out.paragraph(
-        "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and twelve claims, "
-        "tested.");
+    if (!all.disturbance.empty()) out.paragraph(all.disturbance, "wrong");
+    for (const std::string& failure : failures) out.paragraph("Wrong: " + failure + ".", "wrong");
+    out.raw("<h1>The paper, reproduced</h1>\n<div class=\"headline\">\n");
+    for (const std::string& sentence : all.headline) out.paragraph(sentence);
+    out.raw("</div>\n");
     out.paragraph(
         fmt::format(
-            "{}, {} size. Commit {}, {}, {}. {} rows of {} scenes; up to {} processes, {} seeds and {} repeats in all.",
-            made.date, made.size, made.commit, made.compiler, made.cpu, made.rows, made.scenes, made.processes,
-            made.seeds, made.repeats),
+            "\"{}\": its table, its figures and {} claims, tested. {}, {} size. Commit {}, {}, {}. {} rows of {} "
+            "scenes; up to {} processes, {} seeds and {} repeats in all.",
+            paper_title, all.claims.size(), made.date, made.size, made.commit, made.compiler, made.cpu, made.rows,
+            made.scenes, made.processes, made.seeds, made.repeats),
         "soft");
-    for (const std::string& failure : failures) out.paragraph("Wrong: " + failure + ".", "wrong");
     for (const std::string& note : made.notes) out.paragraph("Note: " + note + ".", "soft");
-    add_summary(out, all);
-    for (const figure& f : all.figures) out.add(f);
+    add_claim_rows(out, all);
     add_rule(out, all);
+    out.heading("bands", "Under other bands of no difference");
+    out.add(all.bands);
+    // The rows show what the figure of verdicts does.
+    for (const figure& f : all.figures)
+        if (f.name != verdict_figure_name) out.add(f);
     for (const claim_result& c : all.claims) {
         out.heading(c.id, c.id + ": " + c.claim);
-        out.raw(fmt::format("<p class=\"verdict\">Verdict: {}.</p>\n", html_text(text_of(c))));
-        out.paragraph(c.because);
+        out.raw(fmt::format("<p class=\"verdict {}\"><span class=\"word\">{}:</span> {}</p>\n", class_of(c.verdict),
+                            html_text(capitalised(text_of(c))), html_text(c.sentence)));
+        if (c.because != c.sentence) out.paragraph(c.because);
         out.paragraph("The ratio is that of " + c.measured + ".", "soft");
         for (const figure& f : c.figures) out.add(f);
         for (const named_table& t : c.tables)
             if (&t != c.tables.data()) out.add(t);
-        out.folded("Every endpoint",
-                   "<div class=\"wide\">" + (c.tables.empty() ? "" : to_html(c.tables.front().content)) + "</div>");
+        if (!c.tables.empty())
+            out.folded("Every endpoint", "<div class=\"wide\">" + to_html(c.tables.front().content) + "</div>");
         for (const std::string& experiment : c.experiments)
             for (const provenance::config& config : made.configs)
                 if (config.experiment == experiment)

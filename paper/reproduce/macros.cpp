@@ -53,14 +53,26 @@ std::string setup_of(const claim_result& c) {
     return text.empty() ? "none were measured." : text + ".";
 }
 
+/// Names with commas, which TeX takes as they are.
+template <class Named>
+std::string list_of(const std::vector<Named>& all, std::size_t from = 0) {
+    std::string text;
+    for (std::size_t i = from; i < all.size(); ++i) text += (text.empty() ? "" : ",") + all[i].name;
+    return text;
+}
+
 void add_claim(macros& to, const claim_result& c) {
     const auto set = [&](const char* key, std::string_view text) { to.set(c.id + "." + key, text); };
     set("claim", c.claim);
     set("measured", c.measured);
     set("verdict", text_of(c));
-    set("because", c.because);
+    set("sentence", c.sentence);
+    set("because", c.because == c.sentence ? "" : c.because);
+    to.set_tex(c.id + ".figures", list_of(c.figures));
+    // The first has the endpoints, and stands in the appendix.
+    to.set_tex(c.id + ".tables", list_of(c.tables, 1));
     set("setup", setup_of(c));
-    set("favourable", c.expected == expectation::less ? "below 0.952" : "below 1.05");
+    set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
     set("condition", c.has_primary ? text_of(c.primary.where) : "-");
     set("ratio", c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
     set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
@@ -82,7 +94,7 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
     // A layout that was wrong has no row in table 1.
     for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
         for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
-    for (const char* name : {"table1", "table1_builds", "c2_inversions", "c3_map", "c4_auto", "c11_stages"})
+    for (const char* name : {"table1", "table1_builds"})
         to.set(std::string("table.") + name + ".caption", "There are no measurements.");
     to.set("date", made.date);
     to.set("commit", made.commit);
@@ -103,6 +115,15 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
     to.set("draws", draws_of_a_level);
     to.set("failures",
            failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
+    std::string ids;
+    for (const claim_result& c : all.claims) ids += (ids.empty() ? "" : ",") + c.id;
+    to.set_tex("claims", ids);
+    to.set("claims.count", all.claims.size());
+    std::string headline;
+    for (const std::string& sentence : all.headline) headline += (headline.empty() ? "" : " ") + sentence;
+    to.set("headline", headline);
+    to.set("disturbance", all.disturbance);
+    to.set("table.bands.caption", all.bands.caption);
     for (const claim_result& c : all.claims) {
         add_claim(to, c);
         for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);

@@ -1,10 +1,13 @@
 module;
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +17,7 @@ import aabblab.claims;
 import aabblab.conditions;
 import aabblab.figures;
 import aabblab.files;
+import aabblab.record;
 import aabblab.tables;
 import aabblab.statistics;
 
@@ -21,19 +25,40 @@ namespace aabblab {
 
 namespace {
 
+std::string_view text_of(outcome direction) {
+    switch (direction) {
+        case outcome::less: return "less";
+        case outcome::same: return "same";
+        case outcome::more: return "more";
+        case outcome::undecided: break;
+    }
+    return "open";
+}
+
 /// Every endpoint of every claim, for programs.
 table endpoints_of(const reproduction& all) {
-    table t{{{"claim", false}, {"endpoint", false}, {"where", false}, {"ratio"}, {"low"}, {"high"}, {"outcome", false}},
+    table t{{{"claim", false},
+             {"endpoint", false},
+             {"where", false},
+             {"source", false},
+             {"expected", false},
+             {"ratio"},
+             {"low"},
+             {"high"},
+             {"direction", false},
+             {"outcome", false}},
             {}};
-    const auto add = [&](const claim_result& c, const std::string& kind, const endpoint& e) {
+    const auto add = [&](const claim_result& c, const endpoint& e) {
         std::string where;
-        for (const auto& [name, value] : e.where) where += (where.empty() ? "" : " ") + name + "=" + value;
-        t.rows.push_back({c.id, kind, where, std::to_string(e.ratio), std::to_string(e.range.low),
-                          std::to_string(e.range.high), text_of(e.found)});
+        for (const auto& [name, value] : e.where) where += (where.empty() ? "" : "; ") + name + "=" + value;
+        const auto digits = [](double ratio) { return fmt::format("{:.9g}", ratio); };
+        t.rows.push_back({c.id, e.is_primary ? "primary" : "secondary", where, e.source,
+                          e.expected == expectation::less ? "less" : "not more", digits(e.ratio), digits(e.range.low),
+                          digits(e.range.high), std::string(text_of(e.direction)), text_of(e.found)});
     };
     for (const claim_result& c : all.claims) {
-        if (c.has_primary) add(c, "primary", c.primary);
-        for (const endpoint& e : c.secondary) add(c, "secondary", e);
+        if (c.has_primary) add(c, c.primary);
+        for (const endpoint& e : c.secondary) add(c, e);
     }
     return t;
 }
@@ -41,7 +66,7 @@ table endpoints_of(const reproduction& all) {
 /// The primary ratio of every claim against the band of no difference.
 figure verdict_figure(const reproduction& all) {
     figure f{
-        "verdicts",
+        std::string(verdict_figure_name),
         "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference. Ratios "
         "below 0.2 are left out.",
         {"claim", false, {}},
@@ -68,9 +93,10 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
 
 }  // namespace
 
-provenance provenance_of(const std::filesystem::path& folder, const reproduction& all) {
+provenance provenance_of(const measurements& results, const reproduction& all) {
     provenance made;
-    const measurements measured(folder);
+    const std::filesystem::path& folder = results.folder();
+    if (!is_sealed_record(folder)) made.notes.emplace_back(unsealed_note);
     std::vector<std::string> experiments;
     for (const claim_result& c : all.claims)
         for (const std::string& experiment : c.experiments)
@@ -80,9 +106,10 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
     for (const char* experiment : {"choices", "null_control"})
         if (std::filesystem::exists(folder / experiment / "manifest.json")) experiments.emplace_back(experiment);
     for (const std::string& experiment : experiments) {
-        const std::string text = bytes_of_file(folder / experiment / "manifest.json");
-        const nlohmann::json manifest = nlohmann::json::parse(text);
-        const nlohmann::json& build = manifest["build"];
+        // As the program wrote it, however it came here.
+        const auto manifest = nlohmann::ordered_json::parse(bytes_of_file(folder / experiment / "manifest.json"));
+        const std::string text = manifest.dump(2) + "\n";
+        const nlohmann::ordered_json& build = manifest["build"];
         made.configs.push_back({experiment, manifest["config"].value("text", ""), text});
         made.size = manifest["config"].value("quick", false) ? "quick" : "full";
         made.date = std::max(made.date, manifest.value("date", "").substr(0, 10));
@@ -92,7 +119,7 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
         made.cpu = build.value("cpu", "");
         for (const std::string& note : manifest.value("notes", std::vector<std::string>{}))
             if (std::ranges::find(made.notes, note) == made.notes.end()) made.notes.push_back(note);
-        const extent_of_results extent = measured.extent(experiment);
+        const extent_of_results extent = results.extent(experiment);
         made.rows += extent.rows;
         made.compositions += extent.compositions;
         made.scenes += extent.scenes;
@@ -103,14 +130,22 @@ provenance provenance_of(const std::filesystem::path& folder, const reproduction
     return made;
 }
 
-void write_reproduction(const std::filesystem::path& folder, const reproduction& judged_claims,
+void write_reproduction(const std::filesystem::path& folder, const reproduction& all,
                         std::span<const report_section> sections, const std::vector<std::string>& failures) {
+    write_reproduction(folder, measurements(folder), all, sections, failures);
+}
+
+void write_reproduction(const std::filesystem::path& folder, const measurements& results,
+                        const reproduction& judged_claims, std::span<const report_section> sections,
+                        const std::vector<std::string>& failures) {
     reproduction all = judged_claims;
     all.figures.push_back(verdict_figure(all));
-    const provenance made = provenance_of(folder, all);
+    const provenance made = provenance_of(results, all);
     std::filesystem::create_directories(folder / "tables");
     std::vector<named_table> tables = all.tables;
     tables.push_back({"verdicts", "The verdicts.", verdict_table(all)});
+    tables.push_back(all.bands);
+    tables.push_back({"rule", "From endpoints to the verdict.", rule_table()});
     tables.push_back(all.null_control);
     tables.push_back({"open", "What the paper leaves open.", choice_table(all)});
     std::vector<figure> figures = all.figures;

@@ -3,13 +3,16 @@ module;
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// The reproduction as files: tables, figures, a page, and what the LaTeX report takes its numbers from.
 export module aabblab.reproduction;
 
 import aabblab.claims;
+import aabblab.conditions;
 import aabblab.figures;
+import aabblab.statistics;
 import aabblab.tables;
 
 export namespace aabblab {
@@ -33,6 +36,9 @@ struct report_section {
 /// @throws aabb::input_error where a file cannot be read or written, or figures cannot be drawn.
 void write_reproduction(const std::filesystem::path& folder, const reproduction& all,
                         std::span<const report_section> sections, const std::vector<std::string>& failures);
+/// The same of results that stand elsewhere.
+void write_reproduction(const std::filesystem::path& folder, const measurements& results, const reproduction& all,
+                        std::span<const report_section> sections, const std::vector<std::string>& failures);
 
 }  // namespace aabblab
 
@@ -53,7 +59,27 @@ struct provenance {
     };
     std::vector<config> configs;
 };
-[[nodiscard]] provenance provenance_of(const std::filesystem::path& folder, const reproduction& all);
+[[nodiscard]] provenance provenance_of(const measurements& results, const reproduction& all);
+
+inline constexpr std::string_view paper_title = "Research on Collision Detection Algorithm Based on AABB";
+
+inline constexpr std::string_view verdict_figure_name = "verdicts";
+
+/// The claim's first ratio with its interval, against the band of no difference, as SVG for the page. All claims have
+/// the same scale; what lies beyond it is an arrow with its number.
+[[nodiscard]] std::string interval_picture(const endpoint& e);
+
+/// The rule as SVG for the page: where an interval may lie, and what that means.
+[[nodiscard]] std::string rule_picture();
+
+/// A verdict in few words.
+struct verdict_word {
+    verdict_kind kind;
+    std::string_view word;
+    std::string_view meaning;
+};
+[[nodiscard]] std::vector<verdict_word> verdict_words();
+[[nodiscard]] table rule_table();
 
 /// How a verdict comes about, from rule.md: a paragraph each, without line breaks.
 [[nodiscard]] std::vector<std::string> rule_paragraphs();

@@ -157,31 +157,85 @@ TEST_CASE("Several outcomes at once are decided step by step, the surest first")
     CHECK(together({}).empty());
 }
 
-TEST_CASE("A claim of less is favoured by less only, one of not more by no difference too") {
-    using aabblab::expectation;
-    CHECK(support_of(expectation::less, outcome::less) == support::favours);
-    CHECK(support_of(expectation::less, outcome::same) == support::no_difference);
-    CHECK(support_of(expectation::less, outcome::more) == support::contradicts);
-    CHECK(support_of(expectation::less, outcome::undecided) == support::undecided);
-    CHECK(support_of(expectation::not_more, outcome::same) == support::favours);
-    CHECK(support_of(expectation::not_more, outcome::more) == support::contradicts);
-    // 0.96, from 0.90 to 1.02, is not above 1.05, whether or not it is less than 0.95.
-    const estimate around{std::log(0.96), 0.03, 50};
-    CHECK(decide(evidence_of(around)) == outcome::undecided);
-    CHECK(support_of(expectation::not_more, decide(evidence_of(around, expectation::not_more))) == support::favours);
+TEST_CASE("A direction is found however small it is, unless it makes no difference") {
+    const auto of = [](double ratio, double error) {
+        return direction_of(aabblab::tails_of({std::log(ratio), error, 50}));
+    };
+    CHECK(of(0.9, 0.03) == outcome::less);
+    CHECK(of(1.12, 0.03) == outcome::more);
+    CHECK(of(0.98, 0.005) == outcome::same);
+    CHECK(of(0.98, 0.1) == outcome::undecided);
+    // Below 1, but not shown to lie within the band nor below it: its direction is known.
+    CHECK(of(0.95, 0.01) == outcome::less);
+    // Without a band nothing is the same.
+    CHECK(direction_of(aabblab::tails_of({std::log(0.98), 0.005, 50}, 0)) == outcome::less);
+    CHECK(direction_of(aabblab::tails_of({std::log(0.9), 0.01, 50}, 0.2)) == outcome::same);
+    // Counts do not vary.
+    CHECK(direction_of(aabblab::tails_of({0, 0, 1})) == outcome::same);
+    CHECK(direction_of(aabblab::tails_of({0.5, 0, 1})) == outcome::more);
 }
 
-TEST_CASE("The verdict is the primary endpoint's, and depends on conditions where others are decided otherwise") {
+TEST_CASE("A claim of less is favoured by less only, one of not more by all that is not above the band") {
+    using aabblab::expectation;
+    const auto found = [](expectation expected, double ratio, double error) {
+        return support_of(expected, aabblab::tails_of({std::log(ratio), error, 50}));
+    };
+    CHECK(found(expectation::less, 0.8, 0.01) == support::favours);
+    CHECK(found(expectation::less, 1, 0.01) == support::no_difference);
+    CHECK(found(expectation::less, 1.2, 0.01) == support::contradicts);
+    CHECK(found(expectation::less, 0.96, 0.03) == support::undecided);
+    CHECK(found(expectation::not_more, 1, 0.01) == support::favours);
+    CHECK(found(expectation::not_more, 1.2, 0.01) == support::contradicts);
+    // 0.96, from 0.90 to 1.02, is not above 1.05, whether or not it is less than 1.
+    CHECK(found(expectation::not_more, 0.96, 0.03) == support::favours);
+    CHECK(found(expectation::not_more, 1.02, 0.03) == support::undecided);
+}
+
+TEST_CASE("Several claims at once are decided step by step, the surest first") {
+    using aabblab::expectation;
+    const auto decided = [](const std::vector<double>& chances) {
+        std::vector<aabblab::tested> all;
+        for (const double p : chances) all.push_back({expectation::less, {p, 1, 1, 1}});
+        std::vector<bool> found;
+        for (std::size_t i = 0; const double level : levels_together(all))
+            found.push_back(direction_of(all[i++].p, level) == outcome::less);
+        return found;
+    };
+    // Holm, 1979: the k-th of m surest is held against 0.025 / (m - k + 1).
+    CHECK(decided({0.02}) == std::vector{true});
+    CHECK(decided({0.02, 0.02}) == std::vector{false, false});
+    CHECK(decided({0.024, 0.001, 0.012}) == std::vector{true, true, true});
+    CHECK(decided({0.024, 0.001, 0.013}) == std::vector{false, true, false});
+    // What is sure beyond doubt stays so beside what is not.
+    CHECK(decided({0, 0.5}) == std::vector{true, false});
+    CHECK(decided({}).empty());
+}
+
+TEST_CASE("Machines that disagree make a wide interval, those that agree a narrow one") {
+    const estimate one{0.5, 0.01, 20};
+    const estimate alone[] = {one};
+    CHECK(aabblab::mean_of(alone).range().low == one.range().low);
+    const estimate agree[] = {one, {0.502, 0.01, 20}, {0.498, 0.01, 20}};
+    const estimate differ[] = {one, {0.9, 0.01, 20}, {0.1, 0.01, 20}};
+    CHECK(std::abs(aabblab::mean_of(agree).value - 0.5) < 1e-12);
+    const auto width = [](const estimate& e) { return e.range().high - e.range().low; };
+    CHECK(width(aabblab::mean_of(agree)) < width(one));
+    // Two degrees of freedom: 4.303 standard errors of 0.4 / sqrt(3) on either side.
+    CHECK(std::abs(width(aabblab::mean_of(differ)) - 2 * 4.303 * 0.4 / std::sqrt(3.0)) < 0.01);
+}
+
+TEST_CASE("A verdict says no more than what its undecided endpoints cannot change") {
     using enum support;
-    const auto verdict = [](support primary, std::vector<support> others) { return verdict_of(primary, others); };
-    CHECK(verdict(favours, {}) == verdict_kind::holds);
-    CHECK(verdict(favours, {favours, favours}) == verdict_kind::holds);
-    CHECK(verdict(favours, {favours, undecided}) == verdict_kind::holds_when);
-    CHECK(verdict(favours, {favours, contradicts}) == verdict_kind::holds_when);
-    CHECK(verdict(favours, {no_difference}) == verdict_kind::holds_when);
-    CHECK(verdict(contradicts, {contradicts, undecided}) == verdict_kind::does_not_hold);
-    CHECK(verdict(contradicts, {favours}) == verdict_kind::holds_when);
-    CHECK(verdict(no_difference, {contradicts, undecided}) == verdict_kind::no_difference);
-    CHECK(verdict(no_difference, {favours}) == verdict_kind::holds_when);
-    CHECK(verdict(undecided, {favours, favours}) == verdict_kind::undecided);
+    const auto verdict = [](const std::vector<support>& primary) { return aabblab::verdict_of(primary); };
+    CHECK(verdict({favours}) == verdict_kind::holds);
+    CHECK(verdict({favours, favours}) == verdict_kind::holds);
+    CHECK(verdict({favours, contradicts}) == verdict_kind::in_part);
+    CHECK(verdict({favours, no_difference}) == verdict_kind::in_part);
+    CHECK(verdict({favours, contradicts, undecided}) == verdict_kind::in_part);
+    CHECK(verdict({favours, undecided}) == verdict_kind::undecided);
+    CHECK(verdict({contradicts, undecided}) == verdict_kind::undecided);
+    CHECK(verdict({contradicts}) == verdict_kind::does_not_hold);
+    CHECK(verdict({no_difference, contradicts}) == verdict_kind::does_not_hold);
+    CHECK(verdict({no_difference, no_difference}) == verdict_kind::no_difference);
+    CHECK(verdict({}) == verdict_kind::undecided);
 }

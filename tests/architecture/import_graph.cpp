@@ -53,6 +53,7 @@ const std::vector<std::string> rooms = {
     "experiments/extreme",
     "experiments/benchmarks",
     "paper/claims",
+    "paper/record",
     "paper/reproduce",
     "experiments/commands",
     "experiments",
@@ -71,7 +72,7 @@ bool is_forbidden(const arrow& one) {
     };
     const bool to_paper = one.to.starts_with("paper");
     const bool is_of_paper =
-        one.file == "experiments/commands/paper.cpp" || one.file == "experiments/commands/reproduce.cpp";
+        one.file == "experiments/commands/paper.cpp" || one.file.starts_with("experiments/commands/reproduce");
     // Strategies of different kinds know nothing of each other; only two commands know the paper, which reads results
     // through their analysis.
     return (is_kind(one.from) && is_kind(one.to)) ||

@@ -5,6 +5,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -70,6 +71,14 @@ bool selection::matches(const contender_name& name) const {
            });
 }
 
+std::string text_of(const selection& s) {
+    std::string text;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (!s.wanted_[kind].empty())
+            text += (text.empty() ? "" : " ") + std::string(name_of(kind)) + "=" + s.wanted_[kind];
+    return text;
+}
+
 condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(of)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
@@ -118,6 +127,27 @@ cells condition::logs(const selection& who, const row_value& of) const {
     return all;
 }
 
+std::vector<double> condition::values(const row_value& of) const {
+    std::vector<double> all;
+    for (const row* r : rows_)
+        if (const std::optional<double> value = of(*r)) all.push_back(*value);
+    return all;
+}
+
+std::vector<double> condition::differences(const row_value& of) const {
+    std::map<std::pair<contender_name, std::optional<std::uint64_t>>, const row*> before;
+    std::vector<double> all;
+    for (const row* r : rows_) {
+        const row*& last = before[{r->name, r->scene.seed}];
+        if (last) {
+            const double a = of(*last).value_or(0), b = of(*r).value_or(0);
+            if (a + b > 0) all.push_back(2 * std::abs(a - b) / (a + b));
+        }
+        last = r;
+    }
+    return all;
+}
+
 std::optional<quartiles> condition::spread(const selection& who, const row_value& of) const {
     std::vector<double> values;
     for (const row* r : rows_of(who))
@@ -135,9 +165,8 @@ const measurements::experiment_results& measurements::read(const std::string& ex
     std::unique_ptr<experiment_results>& results = read_[experiment];
     if (results) return *results;
     results = std::make_unique<experiment_results>();
-    const std::filesystem::path file = folder_ / experiment / "results.csv";
-    if (!std::filesystem::exists(file)) return *results;
-    results->rows = aabblab::read_rows(file);
+    if (!std::filesystem::exists(folder_ / experiment / "results.csv")) return *results;
+    results->rows = verified_rows(folder_ / experiment);
     std::vector<std::pair<factors, std::vector<const row*>>> groups;
     for (const row& r : results->rows) {
         const factors of = factors_of(r.scene);
@@ -147,6 +176,14 @@ const measurements::experiment_results& measurements::read(const std::string& ex
     }
     for (auto& [of, rows] : groups) results->conditions.emplace_back(of, std::move(rows));
     return *results;
+}
+
+std::vector<std::string> measurements::experiments() const {
+    std::vector<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+        if (std::filesystem::exists(entry.path() / "results.csv")) all.push_back(entry.path().filename().string());
+    std::ranges::sort(all);
+    return all;
 }
 
 const std::vector<condition>& measurements::of(const std::string& experiment) const {

@@ -47,15 +47,21 @@ public:
     [[nodiscard]] selection with(aabb::strategy_kind kind, std::string choice) const;
     [[nodiscard]] bool matches(const contender_name& name) const;
 
+    /// "sort=shell partition=axial_cut"
+    friend std::string text_of(const selection& s);
+
 private:
     aabb::by_kind<std::string> wanted_;
 };
+[[nodiscard]] std::string text_of(const selection& s);
 
 /// A scene with all its seeds: a condition under which ratios are measured.
 class condition {
 public:
     condition(factors of, std::vector<const row*> rows);
 
+    /// That it is of.
+    [[nodiscard]] std::string experiment() const { return rows_.empty() ? "" : rows_.front()->experiment; }
     /// Scene and parameters without the seed.
     [[nodiscard]] const factors& of() const { return of_; }
     [[nodiscard]] std::size_t processes() const { return processes_; }
@@ -69,6 +75,10 @@ public:
     [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& of) const;
     /// Logarithms of one composition's values: for counts and bytes, which no machine disturbs.
     [[nodiscard]] cells logs(const selection& who, const row_value& of) const;
+    /// Of every repeat of every composition that has it.
+    [[nodiscard]] std::vector<double> values(const row_value& of) const;
+    /// Between each repeat and the next, of one composition with one seed, as a share of their mean.
+    [[nodiscard]] std::vector<double> differences(const row_value& of) const;
     /// Median and quartiles over all repeats; empty where there are none.
     [[nodiscard]] std::optional<quartiles> spread(const selection& who, const row_value& of) const;
     /// The same as a point of a figure.
@@ -93,8 +103,13 @@ struct extent_of_results {
 class measurements {
 public:
     explicit measurements(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    /// @param name by which reports call it
+    measurements(std::filesystem::path folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// Those that have results, in the order of their names.
+    [[nodiscard]] std::vector<std::string> experiments() const;
     /// The conditions of an experiment in the order of its config; none where it has no results.
     [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const;
     [[nodiscard]] extent_of_results extent(const std::string& experiment) const;
@@ -107,6 +122,7 @@ private:
     [[nodiscard]] const experiment_results& read(const std::string& experiment) const;
 
     std::filesystem::path folder_;
+    std::string name_;
     mutable std::map<std::string, std::unique_ptr<experiment_results>> read_;
 };
 

@@ -149,6 +149,23 @@ estimate bootstrap(const cells& measured) {
     return bootstrap(measured.size(), [&](const resample& d) { return d.mean_of(measured); });
 }
 
+estimate mean_of(std::span<const estimate> machines) {
+    if (machines.size() == 1) return machines.front();
+    const auto count = static_cast<double>(machines.size());
+    double mean = 0, within = 0, degrees = 0, between = 0;
+    for (const estimate& e : machines) mean += e.value / count;
+    for (const estimate& e : machines) {
+        const double variance = e.error * e.error / (count * count);
+        within += variance;
+        degrees += variance * variance / e.degrees;
+        between += (e.value - mean) * (e.value - mean) / (count - 1) / count;
+    }
+    const double sum = within + std::max(0.0, between - within);
+    if (!(sum > 0)) return {mean, 0, 1};
+    if (between > within) degrees += between * between / (count - 1);
+    return {mean, std::sqrt(sum), degrees > 0 ? sum * sum / degrees : 1};
+}
+
 estimate difference_of(const estimate& a, const estimate& b) {
     const double of_a = a.error * a.error;
     const double of_b = b.error * b.error;

@@ -14,22 +14,27 @@ namespace aabblab {
 
 namespace {
 
-/// In each tail, as a 95 % interval has it.
-constexpr double one_sided = 0.025;
-
 bool any_is(std::span<const support> all, support what) {
     return std::ranges::find(all, what) != all.end();
 }
 
+bool all_are(std::span<const support> all, support what) {
+    return std::ranges::all_of(all, [=](support one) { return one == what; });
+}
+
+/// The p-value of the outcome that is nearest to being shown.
+double least(const tested& t) {
+    const double direction = std::min(t.p.less, t.p.more);
+    return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
+}
+
 }  // namespace
 
-evidence evidence_of(const estimate& log_ratio, expectation expected) {
+evidence evidence_of(const estimate& log_ratio) {
     const double high = std::log1p(equivalence_band);
     const double low = -high;
     const evidence more{outcome::more, log_ratio.chance_below(high)};
-    const evidence same{outcome::same, expected == expectation::not_more
-                                           ? log_ratio.chance_above(high)
-                                           : std::max(log_ratio.chance_above(high), log_ratio.chance_below(low))};
+    const evidence same{outcome::same, std::max(log_ratio.chance_above(high), log_ratio.chance_below(low))};
     const evidence less{outcome::less, log_ratio.chance_above(low)};
     const std::array<evidence, 3> all{less, same, more};
     return *std::ranges::min_element(all, {}, &evidence::p);
@@ -52,24 +57,50 @@ std::vector<outcome> decide_together(std::span<const evidence> all) {
     return outcomes;
 }
 
-support support_of(expectation expected, outcome found) {
-    switch (found) {
+tails tails_of(const estimate& log_ratio, double band) {
+    const double high = std::log1p(band);
+    // An interval without width would lie within a band that has none.
+    const double same = band > 0 ? std::max(log_ratio.chance_above(high), log_ratio.chance_below(-high)) : 1;
+    return {log_ratio.chance_above(0), log_ratio.chance_below(0), same, log_ratio.chance_above(high)};
+}
+
+outcome direction_of(const tails& p, double level) {
+    if (p.same <= level) return outcome::same;
+    if (p.less <= level) return outcome::less;
+    if (p.more <= level) return outcome::more;
+    return outcome::undecided;
+}
+
+support support_of(expectation expected, const tails& p, double level) {
+    if (expected == expectation::not_more && p.not_more <= level) return support::favours;
+    switch (direction_of(p, level)) {
         case outcome::less: return support::favours;
-        case outcome::same: return expected == expectation::not_more ? support::favours : support::no_difference;
+        case outcome::same: return support::no_difference;
         case outcome::more: return support::contradicts;
         case outcome::undecided: break;
     }
     return support::undecided;
 }
 
-verdict_kind verdict_of(support primary, std::span<const support> secondary) {
-    if (primary == support::undecided) return verdict_kind::undecided;
-    if (primary == support::favours) {
-        const bool everywhere = std::ranges::all_of(secondary, [](support s) { return s == support::favours; });
-        return everywhere ? verdict_kind::holds : verdict_kind::holds_when;
+std::vector<double> levels_together(std::span<const tested> all) {
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(least(all[i]), i); });
+    std::vector<double> levels(all.size(), 0);
+    for (std::size_t done = 0; done < order.size(); ++done) {
+        const double level = one_sided / static_cast<double>(order.size() - done);
+        if (least(all[order[done]]) > level) break;
+        levels[order[done]] = level;
     }
-    if (any_is(secondary, support::favours)) return verdict_kind::holds_when;
-    return primary == support::contradicts ? verdict_kind::does_not_hold : verdict_kind::no_difference;
+    return levels;
+}
+
+verdict_kind verdict_of(std::span<const support> primary) {
+    const bool otherwise = any_is(primary, support::contradicts) || any_is(primary, support::no_difference);
+    if (any_is(primary, support::favours) && otherwise) return verdict_kind::in_part;
+    if (primary.empty() || any_is(primary, support::undecided)) return verdict_kind::undecided;
+    if (all_are(primary, support::favours)) return verdict_kind::holds;
+    return all_are(primary, support::no_difference) ? verdict_kind::no_difference : verdict_kind::does_not_hold;
 }
 
 }  // namespace aabblab

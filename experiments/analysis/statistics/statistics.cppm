@@ -99,6 +99,10 @@ inline constexpr std::size_t draws_of_a_level = 1000;
 /// Of one condition's mean.
 [[nodiscard]] estimate bootstrap(const cells& measured);
 
+/// The mean of what several machines found, each of which knows nothing of the others. As in the bootstrap, machines
+/// that disagree make a wide interval, with as many degrees of freedom as there are machines, less one.
+[[nodiscard]] estimate mean_of(std::span<const estimate> machines);
+
 /// a - b, of two that know nothing of each other.
 [[nodiscard]] estimate difference_of(const estimate& a, const estimate& b);
 
@@ -108,24 +112,19 @@ enum class expectation : unsigned char {
     not_more  ///< it is not more than 1
 };
 
-/// Where the ratio of two things lies against the band of those that make no difference, 1/1.05 to 1.05.
-enum class outcome : unsigned char {
-    less,      ///< the interval lies below the band
-    same,      ///< within it
-    more,      ///< above it
-    undecided  ///< it cannot be told
-};
+/// Where the ratio of two things lies: against the band of those that make no difference, 1/1.05 to 1.05, as
+/// `evidence_of` has it, or against 1, as `direction_of`.
+enum class outcome : unsigned char { less, same, more, undecided };
 
 inline constexpr double equivalence_band = 0.05;
 
-/// The outcome that is nearest to being shown, and its p-value. Where no more is expected than not_more, `same` stands
-/// for all that is not more.
+/// The outcome that is nearest to being shown, and its p-value.
 struct evidence {
     outcome nearest;
     double p;
 };
 /// @param log_ratio of the logarithm of a ratio
-[[nodiscard]] evidence evidence_of(const estimate& log_ratio, expectation expected = expectation::less);
+[[nodiscard]] evidence evidence_of(const estimate& log_ratio);
 
 /// The nearest outcome where the 95 % interval shows it, else undecided.
 [[nodiscard]] outcome decide(const evidence& e);
@@ -133,14 +132,45 @@ struct evidence {
 [[nodiscard]] std::vector<outcome> decide_together(std::span<const evidence> all);
 
 enum class support : unsigned char { favours, no_difference, contradicts, undecided };
-[[nodiscard]] support support_of(expectation expected, outcome found);
 
-enum class verdict_kind : unsigned char { holds, holds_when, no_difference, does_not_hold, undecided };
+/// One-sided p-values of what may be said of a ratio: how likely it is to see what was measured if it were not so.
+struct tails {
+    double less;      ///< it is below 1
+    double more;      ///< it is above 1
+    double same;      ///< it is within the band
+    double not_more;  ///< it is not above the band
+};
+/// @param log_ratio of the logarithm of a ratio
+/// @param band 0.05 for 1/1.05 to 1.05; 0 for none, in which nothing is the same
+[[nodiscard]] tails tails_of(const estimate& log_ratio, double band = equivalence_band);
 
-/// The rule. The primary endpoint decides; where a secondary one does not agree, the claim holds only under conditions:
-/// - primary undecided: undecided;
-/// - primary favours: holds, if every secondary does, else holds when: what is undecided has not been shown;
-/// - primary otherwise: holds when, if a secondary favours, else no difference or does not hold, as the primary says.
-[[nodiscard]] verdict_kind verdict_of(support primary, std::span<const support> secondary);
+/// In each tail, as a 95 % interval has it.
+inline constexpr double one_sided = 0.025;
+
+/// Which way a ratio goes: the same where it is shown to lie within the band, else less or more where it is shown to
+/// lie on one side of 1, by however little. Only what may lie on either side of 1 is undecided.
+[[nodiscard]] outcome direction_of(const tails& p, double level = one_sided);
+/// The same as a claim takes it. What is not more than the band allows favours a claim of not_more, whatever its
+/// direction.
+[[nodiscard]] support support_of(expectation expected, const tails& p, double level = one_sided);
+
+/// What a claim says of a ratio, and what was measured.
+struct tested {
+    expectation expected;
+    tails p;
+};
+/// The level at which each of several is decided, by Holm's step-down rule: the chance that any outcome is wrong is
+/// kept below 5 %. 0 where nothing can be said of one.
+[[nodiscard]] std::vector<double> levels_together(std::span<const tested> all);
+
+enum class verdict_kind : unsigned char { holds, in_part, no_difference, does_not_hold, undecided };
+
+/// The rule, of the primary endpoints of a claim. What a further measurement of those that are undecided could still
+/// change is not said:
+/// - holds in part, where some favour it and some are decided otherwise;
+/// - else undecided, where one is, or there is none;
+/// - holds, or no difference, where all say so;
+/// - else does not hold.
+[[nodiscard]] verdict_kind verdict_of(std::span<const support> primary);
 
 }  // namespace aabblab

@@ -1,0 +1,215 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.claims;
+
+import aabblab.conditions;
+import aabblab.numbers;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// From here on a ratio is told as so many times, below it in per cent.
+constexpr double told_as_times = 1.5;
+/// Ratios that differ by no more are told as one.
+constexpr double told_as_one = 1.1;
+
+std::string_view noun_of(quantity compared) {
+    switch (compared) {
+        case quantity::time: return "time";
+        case quantity::bytes: return "bytes";
+        case quantity::box_tests: return "box tests";
+        case quantity::work: return "work";
+        case quantity::slowdown: break;
+    }
+    return "worst slowdown";
+}
+
+std::string times_text(double factor) {
+    return factor < 9.95 ? fmt::format("{:.1f}", factor) : grouped(static_cast<std::size_t>(std::llround(factor)));
+}
+
+/// "12", or "1.2" where it is little.
+std::string percent_text(double share) {
+    const double percent = 100 * share;
+    return percent < 1.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
+}
+
+/// "1.2 to 3.4", or one of them where both read alike or are nearly the same.
+std::string span_text(const std::string& low, const std::string& high, bool nearly_one) {
+    return low == high || nearly_one ? high : low + " to " + high;
+}
+
+/// Ratios below 1, or above it, as factors above 1: the mildest and the strongest.
+struct extent {
+    double mild;
+    double strong;
+
+    [[nodiscard]] bool is_narrow() const { return strong / mild <= told_as_one; }
+    [[nodiscard]] double middle() const { return std::sqrt(mild * strong); }
+    [[nodiscard]] std::string times() const {
+        return is_narrow() ? times_text(middle()) : span_text(times_text(mild), times_text(strong), false);
+    }
+};
+
+std::string less_of_time(const extent& e) {
+    if (e.mild >= told_as_times) return e.times() + " times as fast";
+    if (e.strong >= told_as_times) return "up to " + times_text(e.strong) + " times as fast";
+    return span_text(percent_text(1 - 1 / e.mild), percent_text(1 - 1 / e.strong), false) + " % less time";
+}
+
+/// The strongest first: fewer is what is hoped for.
+std::string less_of(const extent& e, std::string_view noun) {
+    return span_text(percent_text(1 / e.strong), percent_text(1 / e.mild), false) + " % of the " + std::string(noun);
+}
+
+std::string more_of(const extent& e, std::string_view noun) {
+    if (e.mild >= told_as_times) return fmt::format("{} times the {}", e.times(), noun);
+    if (e.strong >= told_as_times) return fmt::format("up to {} times the {}", times_text(e.strong), noun);
+    return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1), false), noun);
+}
+
+extent extent_of(std::span<const endpoint> all) {
+    extent found{std::max(all[0].ratio, 1 / all[0].ratio), 0};
+    for (const endpoint& e : all) {
+        const double factor = std::max(e.ratio, 1 / e.ratio);
+        found = {std::min(found.mild, factor), std::max(found.strong, factor)};
+    }
+    return found;
+}
+
+/// What is found of an endpoint, as a sentence tells it.
+enum class told_as : unsigned char { less, more, same, not_more, open };
+told_as kind_of(const endpoint& e) {
+    switch (e.direction) {
+        case outcome::less: return told_as::less;
+        case outcome::more: return told_as::more;
+        case outcome::same: return told_as::same;
+        case outcome::undecided: break;
+    }
+    return e.found == support::favours ? told_as::not_more : told_as::open;
+}
+
+/// Endpoints that are all told alike: "up to 2.1 times as fast".
+std::string predicate_of(std::span<const endpoint> all, told_as how) {
+    const quantity compared = all.front().compared;
+    const std::string_view noun = noun_of(compared);
+    switch (how) {
+        case told_as::less:
+            return compared == quantity::time ? less_of_time(extent_of(all)) : less_of(extent_of(all), noun);
+        case told_as::more: return more_of(extent_of(all), noun);
+        case told_as::same: return "no difference";
+        case told_as::not_more: return fmt::format("no more {}", noun);
+        case told_as::open: break;
+    }
+    return "open";
+}
+
+/// "10,000"; what is no whole number as it is.
+std::string number_text(const std::string& value) {
+    return value.find_first_not_of("0123456789") == std::string::npos ? grouped(std::stoull(value)) : value;
+}
+
+/// "10,000 objects", "a displacement of 0.1".
+std::string place_text(const std::string& factor, const std::string& value) {
+    if (factor == "objects") return number_text(value) + (value == "1" ? " object" : " objects");
+    if (factor == "axes") return value + (value == "1" ? " axis" : " axes");
+    if (factor == "inversions") return number_text(value) + " inversions an element";
+    return "a " + factor + " of " + number_text(value);
+}
+
+/// Neighbours on a line that are told alike.
+struct stretch {
+    told_as how;
+    std::vector<endpoint> endpoints;
+};
+
+std::vector<stretch> stretches_of(std::span<const endpoint> line) {
+    std::vector<stretch> all;
+    for (const endpoint& e : line) {
+        if (all.empty() || all.back().how != kind_of(e)) all.push_back({kind_of(e), {}});
+        all.back().endpoints.push_back(e);
+    }
+    return all;
+}
+
+/// "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
+std::string where_text(const std::vector<stretch>& all, std::size_t i) {
+    const std::string& factor = all[i].endpoints.front().along;
+    const std::string first = value_of(all[i].endpoints.front().where, factor);
+    const std::string last = value_of(all[i].endpoints.back().where, factor);
+    if (all.size() == 1) return "";
+    if (i == 0 && all[i].endpoints.size() > 1) return " up to " + place_text(factor, last);
+    if (i + 1 == all.size() && all[i].endpoints.size() > 1) return " from " + place_text(factor, first) + " on";
+    if (first == last) return " at " + place_text(factor, first);
+    return " from " + number_text(first) + " to " + place_text(factor, last);
+}
+
+std::string subject_text(const endpoint& e) {
+    return e.subject->empty() ? "" : " " + *e.subject;
+}
+
+std::string ordered_clause(std::span<const endpoint> line) {
+    const std::vector<stretch> all = stretches_of(line);
+    std::string text;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        text += (i == 0 ? "" : ", ") + predicate_of(all[i].endpoints, all[i].how);
+        if (i == 0) text += subject_text(line.front());
+        text += where_text(all, i);
+    }
+    return text;
+}
+
+/// The mildest and the strongest where they are not told alike; of those that are open, only that there are some.
+std::string unordered_clause(std::vector<endpoint> line) {
+    const std::string subject = subject_text(line.front());
+    const std::size_t count = line.size();
+    std::erase_if(line, [](const endpoint& e) { return kind_of(e) == told_as::open; });
+    if (line.empty()) return "open" + subject;
+    std::ranges::sort(line, {}, &endpoint::ratio);
+    const std::vector<stretch> all = stretches_of(line);
+    const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
+    const std::string text = all.size() == 1
+                                 ? predicate_of(all.front().endpoints, all.front().how) + subject
+                                 : "from " + text_of(line.front()) + " to " + text_of(line.back()) + subject;
+    return text + (line.size() == count ? "" : fmt::format(", {} of {} conditions open", count - line.size(), count));
+}
+
+}  // namespace
+
+std::string clause_of(std::span<const endpoint> all, const std::string& subject) {
+    std::vector<endpoint> line;
+    std::ranges::copy_if(all, std::back_inserter(line), [&](const endpoint& e) { return e.subject == subject; });
+    if (line.empty()) return "";
+    const std::string& along = line.front().along;
+    if (along.empty()) return unordered_clause(std::move(line));
+    std::ranges::stable_sort(line, {}, [&](const endpoint& e) { return number_of(e.where, along); });
+    return ordered_clause(line);
+}
+
+std::string sentence_of(std::span<const endpoint> all, const std::string& lead) {
+    if (all.empty()) return "There are no measurements that decide it.";
+    std::vector<std::string> subjects;
+    for (const endpoint& e : all)
+        if (e.subject && std::ranges::find(subjects, *e.subject) == subjects.end()) subjects.push_back(*e.subject);
+    std::string text;
+    for (const std::string& subject : subjects) text += (text.empty() ? "" : "; ") + clause_of(all, subject);
+    if (!lead.empty()) text = lead + ": " + text;
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text + ".";
+}
+
+}  // namespace aabblab

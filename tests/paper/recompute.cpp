@@ -1,0 +1,42 @@
+#include <catch2/catch_test_macros.hpp>
+#include <fstream>
+#include <string>
+
+#include "../experiments/program.hpp"
+#include "../experiments/temporary_folder.hpp"
+
+#include "worlds.hpp"
+
+import aabblab.claims;
+import aabblab.conditions;
+import aabblab.reproduction;
+
+TEST_CASE("A program of another language finds the same ratios, intervals and verdicts in the rows") {
+    const temporary_folder folder;
+    worlds::write_world(folder.path(), 0.9, 0.03);
+    const aabblab::measurements results(folder.path());
+    write_reproduction(folder.path(), results, judged(results), {}, {});
+    const auto recomputed = [&] {
+        return run_command({"python3", AABBLAB_CONFIGS "/../../tests/paper/recompute.py", folder.path().string()});
+    };
+    const program_result same = recomputed();
+    INFO(same.out + same.err);
+    CHECK(same.status == 0);
+    CHECK(same.out.ends_with("of 14 claims recomputed, 0 differences\n"));
+
+    // It would notice: a ratio told as another, or a verdict.
+    const auto told_otherwise = [&](const char* file, const std::string& what, const std::string& instead) {
+        const std::string text = bytes_of_file(folder / file);
+        const std::size_t at = text.find(what);
+        REQUIRE(at != std::string::npos);
+        std::ofstream(folder / file, std::ios::binary)
+            << text.substr(0, at) << instead << text.substr(at + what.size());
+        const int status = recomputed().status;
+        std::ofstream(folder / file, std::ios::binary) << text;
+        return status;
+    };
+    CHECK(told_otherwise("endpoints.csv", ",0.9", ",0.7") == 1);
+    CHECK(told_otherwise("endpoints.csv", ",less,for", ",more,for") == 1);
+    CHECK(told_otherwise("verdicts.csv", ",holds,", ",undecided,") == 1);
+    CHECK(recomputed().status == 0);
+}

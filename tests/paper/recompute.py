@@ -1,0 +1,488 @@
+#!/usr/bin/env python3
+"""Recomputes the verdicts of a reproduction from its rows, without any code of the program that judged them.
+
+recompute.py FOLDER: reads results.csv of every experiment and c6/process-N.json, computes every ratio that
+FOLDER/endpoints.csv names with its interval, decides it by the rule of paper/reproduce/rule.md, and compares with what
+endpoints.csv and verdicts.csv say. Ends with 1 where a number differs in its third digit or a verdict differs.
+"""
+
+import csv
+import json
+import math
+import pathlib
+import statistics
+import sys
+
+BAND = math.log(1.05)
+ONE_SIDED = 0.025
+DRAWS = 1000
+KINDS = ["prepare", "sort", "partition", "sweep", "build", "tree", "triangle"]
+MASK = (1 << 64) - 1
+
+
+# SplitMix64 (Steele, Lea, Flood 2014), since the same data give the same draws.
+def splitmix(state):
+    state = (state + 0x9E3779B97F4A7C15) & MASK
+    z = state
+    z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
+    z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK
+    return state, z ^ (z >> 31)
+
+
+class Draw:
+    """One level drawn anew: "none", "processes", "seeds" or "repeats"."""
+
+    def __init__(self, processes, seeds, level, state):
+        self.level, self.state = level, state
+        self.processes = self.places(processes, level == "processes")
+        self.seeds = self.places(seeds, level == "seeds")
+
+    def places(self, count, drawn):
+        if not drawn:
+            return range(count)
+        found = []
+        for _ in range(count):
+            self.state, number = splitmix(self.state)
+            found.append(number % count)
+        return found
+
+    def mean(self, cells):
+        """Over cells, a dictionary by process and seed, the mean of the medians of their repeats."""
+        state, medians = self.state, []
+        for p in self.processes:
+            for s in self.seeds:
+                cell = cells.get((p, s))
+                if not cell:
+                    continue
+                if self.level == "repeats":
+                    drawn = []
+                    for _ in cell:
+                        state, number = splitmix(state)
+                        drawn.append(cell[number % len(cell)])
+                    medians.append(statistics.median(drawn))
+                else:
+                    medians.append(statistics.median(cell))
+        return sum(medians) / len(medians) if medians else math.nan
+
+
+def bootstrap(size, statistic):
+    """Value, standard error and degrees of freedom."""
+    processes, seeds, repeats = size
+    value = statistic(Draw(processes, seeds, "none", 0))
+
+    def variance(level, count):
+        if count < 2:
+            return 0.0
+        state, values = 1, []
+        for _ in range(DRAWS):
+            state, number = splitmix(state)
+            found = statistic(Draw(processes, seeds, level, number))
+            if math.isfinite(found):
+                values.append(found)
+        return statistics.variance(values) * count / (count - 1) if len(values) > 1 else 0.0
+
+    noise = variance("repeats", repeats)
+    of_processes, of_seeds = variance("processes", processes), variance("seeds", seeds)
+    parts = [
+        (max(0.0, of_processes - noise), of_processes, processes - 1),
+        (max(0.0, of_seeds - noise), of_seeds, seeds - 1),
+        (noise, noise, processes * seeds * (repeats - 1)),
+    ]
+    total = sum(part for part, _, _ in parts)
+    if total <= 0:
+        return value, 0.0, 1.0
+    below = sum(seen * seen / degrees for part, seen, degrees in parts if part > 0 and degrees > 0)
+    return value, math.sqrt(total), total * total / below
+
+
+def beta_fraction(a, b, x):
+    """The continued fraction of the incomplete beta function, by Lentz's method."""
+    tiny = 1e-300
+    c, d = 1.0, 1 - (a + b) * x / (a + 1)
+    d = 1 / (d if abs(d) > tiny else tiny)
+    found = d
+    for m in range(1, 10000):
+        for n in (
+            m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+            -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1)),
+        ):
+            d = 1 + n * d
+            d = 1 / (d if abs(d) > tiny else tiny)
+            c = 1 + n / c
+            c = c if abs(c) > tiny else tiny
+            found *= d * c
+        if abs(d * c - 1) < 1e-15:
+            break
+    return found
+
+
+def beta(a, b, x):
+    if x <= 0 or x >= 1:
+        return 0.0 if x <= 0 else 1.0
+    front = math.exp(
+        math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log(1 - x)
+    )
+    if x < (a + 1) / (a + b + 2):
+        return front * beta_fraction(a, b, x) / a
+    return 1 - front * beta_fraction(b, a, 1 - x) / b
+
+
+def student_above(t, degrees):
+    """The chance of a greater value."""
+    tail = beta(degrees / 2, 0.5, degrees / (degrees + t * t)) / 2
+    return tail if t >= 0 else 1 - tail
+
+
+def student_quantile(degrees):
+    low, high = 0.0, 1e6
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if student_above(middle, degrees) > ONE_SIDED else (low, middle)
+    return (low + high) / 2
+
+
+def chance_above(estimate, limit):
+    value, error, degrees = estimate
+    return student_above((limit - value) / error, degrees) if error > 0 else float(value >= limit)
+
+
+def chance_below(estimate, limit):
+    value, error, degrees = estimate
+    return student_above((value - limit) / error, degrees) if error > 0 else float(value <= limit)
+
+
+# Rows.
+
+
+def numbers(text):
+    return float(text) if text else None
+
+
+def factors_of(row):
+    settings = json.loads(row["scene_parameters"])
+    found = {"scene": row["scene"]}
+    for name, value in settings.items():
+        if name == "frames":
+            continue
+        if name == "meshes":
+            value = "+".join(value)
+        found[name] = value if isinstance(value, str) else f"{value:g}" if isinstance(value, float) else str(value)
+    return found
+
+
+def metric(name, row):
+    frames = int(row["frames"])
+    later = max(frames - 1, 1)
+    if name == "tree_bytes":
+        parts = [numbers(row["bytes_nodes"]), numbers(row["bytes_indices"])]
+        return None if None in parts else sum(parts)
+    if name == "box_tests":
+        return numbers(row["box_tests"]) / later
+    if name == "work":
+        return (numbers(row["comparisons"]) + (numbers(row["moves"]) or 0)) / later
+    if name == "bytes":  # of global search
+        parts = [numbers(row["bytes_" + part]) for part in ("projections", "partition", "sweep")]
+        return sum(part or 0 for part in parts)
+    if name == "frame_cpu_ms":
+        if not row["update_cpu_ms"] or frames == 1:
+            return numbers(row["first_cpu_ms"])
+        return sum(float(row[part + "_cpu_ms"]) for part in ("update", "search", "detect")) / later
+    return float(row[name]) / later if frames > 1 else None
+
+
+def choices_of(text):
+    found = {}
+    for word in text.split():
+        name, _, value = word.partition("=")
+        found[name] = value
+    return found
+
+
+class Rows:
+    """The rows of one condition."""
+
+    def __init__(self, rows):
+        self.rows = rows
+        self.seeds = sorted({int(r["seed"]) if r["seed"] else -1 for r in rows})
+        self.processes = max(int(r["process"]) for r in rows) + 1
+
+    def of(self, who):
+        return [
+            r
+            for r in self.rows
+            if not r["engine"] and r["status"] == "exact" and all(r[k] == v for k, v in who.items())
+        ]
+
+    def place(self, row):
+        return int(row["process"]), self.seeds.index(int(row["seed"]) if row["seed"] else -1)
+
+    def logs(self, who, name, an_object=False):
+        found = {}
+        for r in self.of(who):
+            value = metric(name, r)
+            if value:
+                found.setdefault(self.place(r), []).append(
+                    math.log(value / (float(r["objects"]) if an_object else 1))
+                )
+        return found
+
+    def log_ratios(self, arm, base, name):
+        against = {(r["seed"], r["repeat"]): r for r in self.of(base)}
+        found = {}
+        for r in self.of(arm):
+            other = against.get((r["seed"], r["repeat"]))
+            value, below = metric(name, r), other and metric(name, other)
+            if value and below:
+                found.setdefault(self.place(r), []).append(math.log(value / below))
+        return found
+
+    def size(self, cells):
+        return self.processes, len(self.seeds), max(len(cell) for cell in cells.values())
+
+
+class Results:
+    def __init__(self, folder):
+        self.folder = folder
+        self.read = {}
+
+    def conditions(self, experiment):
+        if experiment not in self.read:
+            groups = {}
+            with open(self.folder / experiment / "results.csv", newline="", encoding="utf-8") as file:
+                for row in csv.DictReader(file):
+                    groups.setdefault(json.dumps(factors_of(row)), []).append(row)
+            self.read[experiment] = [(json.loads(key), Rows(rows)) for key, rows in groups.items()]
+        return self.read[experiment]
+
+    def condition(self, experiment, where):
+        for factors, rows in self.conditions(experiment):
+            if all(where.get(name) == value for name, value in factors.items()):
+                return rows
+        # A claim that tells its places by other names has the meshes among them.
+        for factors, rows in self.conditions(experiment):
+            if "meshes" in where and factors.get("meshes") == where["meshes"]:
+                return rows
+        raise SystemExit(f"{experiment} has no condition {where}")
+
+
+def mean_ratio(size, cells):
+    return bootstrap(size, lambda draw: draw.mean(cells))
+
+
+def ratio(results, experiment, text, where):
+    name, _, arms = text.partition(" of ")
+    arm, _, base = arms.partition(" over ")
+    rows = results.condition(experiment, where)
+    cells = rows.log_ratios(choices_of(arm), choices_of(base), name)
+    return mean_ratio(rows.size(cells), cells)
+
+
+def growth_of_work(results, sort, where):
+    """What the straight line through work an element against log N adds at ten times as many, of C2."""
+    sizes = []
+    for factors, rows in results.conditions("c2"):
+        if factors["displacement"] == where["displacement"]:
+            sizes.append((math.log10(float(factors["objects"])), rows.logs({"sort": sort}, "work", True), rows))
+
+    def growth(draw):
+        x = [log_n for log_n, _, _ in sizes]
+        y = [math.exp(draw.mean(cells)) for _, cells, _ in sizes]
+        mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+        slope = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+        return math.log(max(1e-6, 1 + slope / mean_y))
+
+    _, cells, rows = sizes[0]
+    return bootstrap(rows.size(cells), growth)
+
+
+CUT = {"sort": "insertion", "partition": "axial_cut", "sweep": "one_axis"}
+CELL_SIZES = ["4", "8", "16", "32", "64"]
+
+
+def grid(size):
+    return {"sort": "insertion", "partition": "uniform_grid:cell_size=" + size, "sweep": "one_axis"}
+
+
+def regret(results, where):
+    """The worst slowdown over scenes of as many objects, each against its best cell size, of C5."""
+    scenes = [rows for factors, rows in results.conditions("c5") if factors["objects"] == where["objects"]]
+
+    def is_grid(rows, size):
+        made = [float(r["subsets"]) / max(int(r["frames"]) - 1, 1) for r in rows.of(grid(size)) if r["subsets"]]
+        return not made or statistics.median(made) > 1
+
+    sizes = [size for size in CELL_SIZES if all(is_grid(rows, size) for rows in scenes)]
+    over_cut = [[rows.log_ratios(grid(size), CUT, "frame_cpu_ms") for size in sizes] for rows in scenes]
+
+    def worst(draw, size):
+        found = []
+        for scene in over_cut:
+            ratios = [draw.mean(cells) for cells in scene]
+            found.append((0 if size is None else ratios[size]) - min(ratios))
+        return max(found)
+
+    def statistic(draw):
+        safest = min(worst(draw, size) for size in range(len(sizes)))
+        if where["comparison"] == "axial_cut over the safest cell size":
+            return worst(draw, None) - safest
+        return -safest if "over the safest" in where["comparison"] else worst(draw, None)
+
+    return bootstrap(scenes[0].size(over_cut[0][0]), statistic)
+
+
+def growth_with_world(results, where):
+    conditions = results.conditions("c5_world")
+    small, large = conditions[0][1], conditions[-1][1]
+    what = where["comparison"]
+    if what.startswith("bytes of axial_cut"):
+        above, below = large.logs(CUT, "bytes"), small.logs(CUT, "bytes")
+    else:
+        who = grid("2" if "cells of 2" in what else "auto")
+        if what.startswith("time"):
+            above, below = (rows.log_ratios(who, CUT, "frame_cpu_ms") for rows in (small, large))
+        else:
+            above, below = (rows.logs(who, "bytes") for rows in (small, large))
+    size = small.size(above)
+    return bootstrap(size, lambda draw: draw.mean(above) - draw.mean(below))
+
+
+def between_conditions(results, experiment, text, where):
+    """Time an object over that at the least value of a factor, of C13."""
+    name, _, who = text.partition(" an object of ")
+    factor, _, value = where["over"].partition(" ")
+    place = {k: v for k, v in where.items() if k not in ("over", "quantity")}
+    large = results.condition(experiment, place)
+    small = results.condition(experiment, {**place, factor: value})
+    above, below = (rows.logs(choices_of(who), name, True) for rows in (large, small))
+    return bootstrap(large.size(above), lambda draw: draw.mean(above) - draw.mean(below))
+
+
+def of_tests(folder, text):
+    arm, _, base = text.partition(" over ")
+    cells = {}
+    for process in range(1000):
+        file = folder / "c6" / f"process-{process}.json"
+        if not file.exists():
+            break
+        times = {}
+        for one in json.loads(file.read_text(encoding="utf-8"))["benchmarks"]:
+            if one.get("run_type") == "iteration":
+                unit = {"us": 1e3, "ms": 1e6}.get(one.get("time_unit"), 1)
+                times.setdefault(one["run_name"], []).append(one["cpu_time"] * unit)
+        cells[process, 0] = [math.log(a / b) for a, b in zip(times[arm], times[base])]
+    return mean_ratio((len(cells), 1, max(len(cell) for cell in cells.values())), cells)
+
+
+def estimate_of(results, endpoint):
+    experiment, _, text = endpoint["source"].partition(": ")
+    where = dict(part.split("=", 1) for part in endpoint["where"].split("; "))
+    if experiment == "c6":
+        return of_tests(results.folder, text)
+    if text.startswith("growth of comparisons"):
+        return growth_of_work(results, text.rpartition(" of sort=")[2], where)
+    if text == "regret":
+        return regret(results, where)
+    if text == "growth":
+        return growth_with_world(results, where)
+    if " an object of " in text:
+        return between_conditions(results, experiment, text, where)
+    return ratio(results, experiment, text, where)
+
+
+# The rule.
+
+
+def tails(estimate):
+    return {
+        "less": chance_above(estimate, 0),
+        "more": chance_below(estimate, 0),
+        "same": max(chance_above(estimate, BAND), chance_below(estimate, -BAND)),
+        "not more": chance_above(estimate, BAND),
+    }
+
+
+def least(p, expected):
+    return min(p["less"], p["more"], p["not more"] if expected == "not more" else p["same"])
+
+
+def holm(endpoints):
+    order = sorted(range(len(endpoints)), key=lambda i: (least(endpoints[i]["p"], endpoints[i]["expected"]), i))
+    for e in endpoints:
+        e["level"] = 0.0
+    for done, i in enumerate(order):
+        level = ONE_SIDED / (len(order) - done)
+        if least(endpoints[i]["p"], endpoints[i]["expected"]) > level:
+            break
+        endpoints[i]["level"] = level
+
+
+def direction(e):
+    for found in ("same", "less", "more"):
+        if e["p"][found] <= e["level"]:
+            return found
+    return "open"
+
+
+def outcome(e):
+    if e["expected"] == "not more" and e["p"]["not more"] <= e["level"]:
+        return "for"
+    return {"same": "no difference", "less": "for", "more": "against", "open": "undecided"}[direction(e)]
+
+
+def verdict(endpoints):
+    found = {e["outcome"] for e in endpoints if e["endpoint"] == "primary"}
+    if "for" in found and found & {"against", "no difference"}:
+        return "holds in part"
+    if not found or "undecided" in found:
+        return "undecided"
+    return {("for",): "holds", ("no difference",): "no difference"}.get(tuple(found), "does not hold")
+
+
+def agree(a, b):
+    """To three digits: by less than one unit of the third."""
+    return a == b or abs(a - b) < 10 ** (math.floor(math.log10(max(abs(a), abs(b), 1e-300))) - 2)
+
+
+def main(folder):
+    results = Results(folder)
+    with open(folder / "endpoints.csv", newline="", encoding="utf-8") as file:
+        endpoints = list(csv.DictReader(file))
+    with open(folder / "verdicts.csv", newline="", encoding="utf-8") as file:
+        verdicts = [list(row.values()) for row in csv.DictReader(file)]
+    differences = 0
+
+    def differs(text):
+        nonlocal differences
+        differences += 1
+        print(text)
+
+    for e in endpoints:
+        value, error, degrees = estimate_of(results, e)
+        reach = error * student_quantile(degrees) if error > 0 else 0
+        e["p"] = tails((value, error, degrees))
+        for name, mine in (("ratio", value), ("low", value - reach), ("high", value + reach)):
+            if not agree(math.exp(mine), float(e[name])):
+                differs(f"{e['claim']} {e['where']}: {name} is {math.exp(mine):.4g}, not {e[name]}")
+    holm([e for e in endpoints if e["endpoint"] == "primary"])
+    claims = {}
+    for e in endpoints:
+        claims.setdefault(e["claim"], []).append(e)
+    for of_claim in claims.values():
+        holm([e for e in of_claim if e["endpoint"] != "primary"])
+    stated = {row[0]: row[2] for row in verdicts}
+    for claim, of_claim in claims.items():
+        for e in of_claim:
+            told = e["outcome"]
+            e["outcome"] = outcome(e)
+            if told != e["outcome"]:
+                differs(f"{claim} {e['where']}: {e['outcome']}, not {told}")
+            if e["direction"] != direction(e):
+                differs(f"{claim} {e['where']}: {direction(e)}, not {e['direction']}")
+        if verdict(of_claim) != stated[claim]:
+            differs(f"{claim}: {verdict(of_claim)}, not {stated[claim]}")
+    print(f"{len(endpoints)} ratios of {len(claims)} claims recomputed, {differences} differences")
+    return 1 if differences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1])))

@@ -1,0 +1,161 @@
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "../experiments/temporary_folder.hpp"
+
+import aabblab.claims;
+import aabblab.reproduction;
+import aabblab.statistics;
+import aabblab.tables;
+
+using aabblab::claim_result;
+using aabblab::verdict_kind;
+
+namespace {
+
+claim_result claim(const std::string& id, verdict_kind verdict, double ratio, aabblab::interval range) {
+    claim_result c;
+    c.id = id;
+    c.claim = "What the paper says in " + id;
+    c.measured = "one over the other";
+    c.verdict = verdict;
+    c.sentence = "The verdict on " + id + " in words.";
+    c.because = "The figures of " + id + ".";
+    c.has_primary = true;
+    c.primary.ratio = ratio;
+    c.primary.range = range;
+    return c;
+}
+
+aabblab::reproduction made_up() {
+    aabblab::reproduction all;
+    all.headline = {"The first sentence.", "The second one.", "The third one."};
+    all.claims = {claim("C1", verdict_kind::holds, 0.5, {0.4, 0.6}),
+                  claim("C7a", verdict_kind::in_part, 0.0182, {0.018, 0.019}),
+                  claim("C7b", verdict_kind::undecided, 2, {0.1, 19}),
+                  claim("C8", verdict_kind::no_difference, 1.01, {0.99, 1.03})};
+    claim_result unmeasured = claim("C9", verdict_kind::undecided, 0, {});
+    unmeasured.has_primary = false;
+    all.claims.push_back(unmeasured);
+    all.bands = {"bands", "Verdicts by band.", {{{"", false}, {"0 %", false}}, {{"C1", "holds"}}}};
+    all.null_control = {"null_control", "Nothing to be found.", {{{"ratio"}}, {{"1"}}}};
+    return all;
+}
+
+struct reports {
+    std::string html;
+    std::string markdown;
+    std::string macros;
+};
+
+reports written(const aabblab::reproduction& all) {
+    const temporary_folder folder;
+    write_reproduction(folder.path(), all, {}, {});
+    return {bytes_of_file(folder / "report.html"), bytes_of_file(folder / "report.md"),
+            bytes_of_file(folder / "macros.tex")};
+}
+
+/// The row of a claim on the page.
+std::string row_of(const std::string& page, const std::string& id) {
+    const std::size_t begin = page.find("href=\"#" + id + "\"");
+    REQUIRE(begin != std::string::npos);
+    return page.substr(begin, page.find("</a>", begin) - begin);
+}
+
+std::size_t count_of(std::string_view part, std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("Reports begin with the headline, and before it with what disturbed the run") {
+    aabblab::reproduction all = made_up();
+    const reports quiet = written(all);
+    all.disturbance = "Another program kept a core busy.";
+    const reports disturbed = written(all);
+    for (const auto& [undisturbed, told] :
+         {std::pair(quiet.html, disturbed.html), std::pair(quiet.markdown, disturbed.markdown)}) {
+        std::size_t before = 0;
+        for (const std::string& sentence : all.headline) {
+            const std::size_t at = told.find(sentence);
+            REQUIRE(at != std::string::npos);
+            CHECK(at > before);
+            before = at;
+        }
+        CHECK(told.find(all.disturbance) < told.find(all.headline.front()));
+        CHECK(told.find("What the paper says in") > before);
+        CHECK(undisturbed.find(all.disturbance) == std::string::npos);
+    }
+}
+
+TEST_CASE("Every claim that was measured has its interval drawn in its row, beside its verdict in words") {
+    const aabblab::reproduction all = made_up();
+    const std::string page = written(all).html;
+    CHECK(count_of("class=\"claim ", page) == all.claims.size());
+    for (const claim_result& c : all.claims) {
+        const std::string row = row_of(page, c.id);
+        CHECK(row.find(c.claim) != std::string::npos);
+        CHECK(row.find(c.sentence) != std::string::npos);
+        CHECK(count_of("<svg class=\"interval\"", row) == (c.has_primary ? 1 : 0));
+        if (c.has_primary) CHECK(count_of(ratio_text(c.primary), row) == 2);
+        CHECK(page.find("<h2 id=\"" + c.id + "\">") != std::string::npos);
+    }
+}
+
+TEST_CASE("What lies beyond the scale of the rows is an arrow with its number") {
+    const std::string page = written(made_up()).html;
+    const auto texts = [&](const std::string& id) {
+        std::string all;
+        const std::string row = row_of(page, id);
+        const std::regex text("<text[^>]*>([^<]*)</text>");
+        for (std::sregex_iterator i(row.begin(), row.end(), text), end; i != end; ++i) all += (*i)[1].str() + " ";
+        return all;
+    };
+    CHECK(texts("C1") == "0.25 0.5 1 2 4 ");
+    CHECK(count_of("<path", row_of(page, "C1")) == 0);
+    CHECK(texts("C7a") == "0.25 0.5 1 2 4 0.0182 ");
+    CHECK(count_of("<path", row_of(page, "C7a")) == 1);
+    CHECK(count_of("<circle", row_of(page, "C7a")) == 0);
+    CHECK(texts("C7b") == "0.25 0.5 1 2 4 0.100 19.0 ");
+    CHECK(count_of("<path", row_of(page, "C7b")) == 2);
+    // Places are parts of the width, none beyond it.
+    const std::regex place("=\"(-?[0-9.]+)%\"");
+    for (std::sregex_iterator i(page.begin(), page.end(), place), end; i != end; ++i) {
+        const double percent = std::stod((*i)[1]);
+        CHECK((0 <= percent && percent <= 100));
+    }
+}
+
+TEST_CASE("The rule is drawn once, and every verdict that there can be is explained") {
+    const std::string page = written(made_up()).html;
+    CHECK(count_of("<svg class=\"rule\"", page) == 1);
+    for (const char* word : {"less", "the same", "more", "direction open"})
+        CHECK(page.find(">" + std::string(word) + "</text>") != std::string::npos);
+    for (const char* word : {"Holds", "Holds in part", "No difference", "Does not hold", "Undecided"})
+        CHECK(page.find(">" + std::string(word) + "</span></dt>") != std::string::npos);
+    CHECK(page.find("Verdicts by band.") != std::string::npos);
+}
+
+TEST_CASE("The page asks the network for nothing and runs nothing") {
+    const std::string page = written(made_up()).html;
+    for (const char* part : {"<script", "<link rel=\"stylesheet", "@import", "url(", "<iframe", "onload"})
+        CHECK(page.find(part) == std::string::npos);
+    const std::regex address(R"((src|href)="([^"]{0,5}))");
+    for (std::sregex_iterator i(page.begin(), page.end(), address), end; i != end; ++i) {
+        const std::string to = (*i)[2];
+        CHECK((to.starts_with("data:") || to.starts_with("#")));
+    }
+}
+
+TEST_CASE("The paper learns from its numbers which claims there are, and what each has") {
+    const std::string macros = written(made_up()).macros;
+    CHECK(macros.find("\\aabbset{claims}{C1,C7a,C7b,C8,C9}") != std::string::npos);
+    CHECK(macros.find("\\aabbset{headline}{The first sentence. The second one. The third one.}") != std::string::npos);
+    CHECK(macros.find("\\aabbset{C7a.sentence}{The verdict on C7a in words.}") != std::string::npos);
+}
