@@ -96,7 +96,7 @@ draft improved_search(const measurements& m) {
                 is_large(c));
     for (const condition& c : conditions)
         if (is_brownian(c) && is_large(c) && !drifts_little(c))
-            add(told(candidate_of(c, improved, traditional, "frame_cpu_ms"), "with 10,000 of them", "displacement"),
+            add(told(candidate_of(c, improved, traditional, "frame_cpu_ms"), "at other displacements", "displacement"),
                 false);
     for (const condition& c : m.of("three_lists"))
         add(told(candidate_of(c, improved_lists, traditional_lists, "frame_cpu_ms", {{"sweep", "all_axes"}}),

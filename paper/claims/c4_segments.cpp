@@ -110,7 +110,7 @@ draft more_segments(const measurements& m) {
         for (int axes = 1; axes <= 3; ++axes) {
             const bool in_clusters = value_of(c.of(), "scene") == "clustered";
             add(c, axes, "256", "8", "8",
-                in_clusters ? "in clusters" : "at the limit of one cut a box, over eight segments an axis")
+                in_clusters ? "in clusters" : "at the limit of one cut a box, compared with eight segments an axis")
                 .primary = !in_clusters && axes > 1;
         }
     for (const condition& c : conditions)
@@ -130,7 +130,7 @@ draft more_segments(const measurements& m) {
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes)
             add(c, axes, "auto", "256", "the limit",
-                "with as many as the automatic choice makes, over the limit, on " + value_of(c.of(), "scene"))
+                "with as many as the automatic choice makes, compared with the limit, on " + value_of(c.of(), "scene"))
                 .expected = expectation::not_more;
     if (conditions.empty()) return made;
     claim.tables.push_back({"c4_auto", "Segments on each axis, and time, with the automatic choice and at the limit.",

@@ -237,7 +237,7 @@ draft cut_against_grid(const measurements& m) {
             return made.candidates.emplace_back(std::move(c));
         };
         add(
-            "axial_cut over the safest cell size", "over four scenes, over that of the safest cell size",
+            "axial_cut over the safest cell size", "compared with the safest cell size, over four scenes",
             [&](const resample& d) { return all.worst_regret_of_cut(d) - all.least_worst_regret(d); },
             quantity::slowdown, expectation::less)
             .primary = objects == "1000" || objects == "10000";
@@ -246,7 +246,7 @@ draft cut_against_grid(const measurements& m) {
             [&](const resample& d) { return -all.least_worst_regret(d); }, quantity::slowdown, expectation::less);
         add(
             "axial_cut over each scene's best cell size",
-            "in the worst of four scenes with the cut, over its best cell size",
+            "with the cut in the worst of four scenes, compared with the best cell size there",
             [&](const resample& d) { return all.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
     }
     const std::vector<condition>& worlds = m.of("c5_world");

@@ -143,13 +143,15 @@ draft triangle_for_box(const measurements& m) {
         c.source = "c6: test/" + test + frame + " over test/" + over + frame;
         made.candidates.push_back(told(std::move(c), subject));
     };
-    add_test("triangle_box", "box", "", "over a box boxed anew", true);
-    add_test("triangle_box", "rotated_box_6", "", "over a rotated box by six axes", true);
-    add_test("triangle_box", "rotated_box_15", "", "over a rotated box by fifteen axes", true);
-    add_test("triangle_box_moller", "box", "", "over a box boxed anew, with M\u00f6ller's original", false);
+    add_test("triangle_box", "box", "", "compared with testing a box made anew after the motion", true);
+    add_test("triangle_box", "rotated_box_6", "", "compared with testing a rotated box by six axes", true);
+    add_test("triangle_box", "rotated_box_15", "", "compared with testing a rotated box by fifteen axes", true);
+    add_test("triangle_box_moller", "box", "",
+             "compared with testing a box made anew after the motion, with M\u00f6ller's original", false);
     add_test("triangle_box_moller", "rotated_box_15", "",
-             "over a rotated box by fifteen axes, with M\u00f6ller's original", false);
-    add_test("triangle_aabb", "box", "", "over a box boxed anew, where the triangle's own box is tested", false);
+             "compared with testing a rotated box by fifteen axes, with M\u00f6ller's original", false);
+    add_test("triangle_aabb", "box", "",
+             "compared with testing a box made anew after the motion, where the triangle's own box is tested", false);
     for (const char* test : {"triangle_box", "triangle_aabb"})
         add_test(test, "box", std::string(in_place), "where nothing is carried", false);
     for (const condition& c : m.of("figure2"))

@@ -53,9 +53,9 @@ draft balanced_tree(const measurements& m) {
     claim.measured = "time a query, canonical tree split at the median over the same split otherwise";
     claim.experiments = {"table1"};
     const std::vector<condition>& conditions = m.of("table1");
-    const std::pair<const char*, const char*> others[] = {{"mean", "over a split at the mean"},
-                                                          {"midpoint", "over one at the middle of the box"},
-                                                          {"sah", "over one by surface area"}};
+    const std::pair<const char*, const char*> others[] = {{"mean", "compared with a split at the mean"},
+                                                          {"midpoint", "compared with one in the middle of the box"},
+                                                          {"sah", "compared with one by surface area"}};
     for (const auto& [build, subject] : others)
         for (const condition& c : conditions) {
             made.candidates.push_back(told(

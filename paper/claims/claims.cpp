@@ -5,6 +5,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -72,6 +73,11 @@ claim_result finished(const draft& made, const std::vector<endpoint>& all) {
     claim_result claim = made.claim;
     claim.verdict = verdict_of(all);
     claim.sentence = sentence_of(all, claim.lead);
+    std::vector<endpoint> of_primary_lines;
+    std::ranges::copy_if(all, std::back_inserter(of_primary_lines), [&](const endpoint& e) {
+        return std::ranges::any_of(all, [&](const endpoint& p) { return p.is_primary && p.subject == e.subject; });
+    });
+    claim.brief = sentence_of(of_primary_lines, claim.lead);
     std::vector<endpoint> beside;
     for (const candidate& c : made.beside)
         if (c.known()) beside.push_back(endpoint_of(c, claim.expected));

@@ -53,6 +53,7 @@ struct claim_result {
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
     std::string sentence;  ///< the verdict in words: which way, how much and where
+    std::string brief;     ///< the same of the lines that primary endpoints are on
     std::string because;   ///< the figures that decide
     bool has_primary = false;
     endpoint primary;                      ///< the first of those that are

@@ -50,13 +50,19 @@ std::string disturbance_of(std::span<const measurements> machines) {
         const double waiting = std::max(0.0, 100 * (1 - found.cpu_ms / found.wall_ms));
         const double difference = found.differences.empty() ? 0 : 100 * quartiles_of(found.differences).median;
         if (waiting <= most_waiting && difference <= most_difference) continue;
-        text += fmt::format(
-            "{}The machine was not quiet{}: one repeat differs from the next by {:.1f} % in the median, and of the "
-            "time "
-            "of all frames the program waited {:.1f} % for a processor; on a quiet one these are below {:.0f} and "
-            "{:.0f} %.",
-            text.empty() ? "" : " ", machines.size() > 1 ? " (" + m.name() + ")" : "", difference, waiting,
-            most_difference, most_waiting);
+        text += (text.empty() ? "The machine" : " The machine") +
+                (machines.size() > 1 ? " of " + m.name() : std::string()) + " was not quiet:";
+        if (difference > most_difference)
+            text += fmt::format(
+                " one repeat differs from the next by {:.1f} % in the median, on a quiet one by less than "
+                "{:.0f} %.",
+                difference, most_difference);
+        if (waiting > most_waiting)
+            text += fmt::format(
+                " of the time of all frames the program waited {:.1f} % for a processor, on a quiet one "
+                "less than {:.0f} %.",
+                waiting, most_waiting);
+        text += " Intervals are wider for it, and more is undecided.";
     }
     return text;
 }

@@ -33,20 +33,34 @@ std::size_t count_of(std::span<const claim_result> claims, verdict_kind verdict)
     return static_cast<std::size_t>(std::ranges::count(claims, verdict, &claim_result::verdict));
 }
 
+/// "Of 14 claims 2 hold, 6 hold in part, 5 do not hold and 1 is undecided."
+std::string counts_of(std::span<const claim_result> claims) {
+    std::vector<std::string> parts;
+    const auto add = [&](verdict_kind verdict, const char* one, const char* many) {
+        if (const std::size_t count = count_of(claims, verdict); count > 0)
+            parts.push_back(fmt::format("{} {}", count, count == 1 ? one : many));
+    };
+    add(verdict_kind::holds, "holds", "hold");
+    add(verdict_kind::in_part, "holds in part", "hold in part");
+    add(verdict_kind::does_not_hold, "does not hold", "do not hold");
+    add(verdict_kind::no_difference, "shows no difference", "show no difference");
+    add(verdict_kind::undecided, "is undecided", "are undecided");
+    std::string text = fmt::format("Of {} claims", claims.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        text += (i == 0 ? " " : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return text + ".";
+}
+
 }  // namespace
 
 std::vector<std::string> headline_of(std::span<const claim_result> claims) {
-    const std::size_t others =
-        count_of(claims, verdict_kind::no_difference) + count_of(claims, verdict_kind::undecided);
     return {
-        "To find which boxes overlap, the paper sorts them with Shell sort and cuts the axes; over insertion sort "
-        "without cuts that is " +
+        "To find which boxes overlap, the paper sorts them with Shell sort and cuts the axes; compared with insertion "
+        "sort without cuts: " +
             first_clause(claims, "C1") + ".",
-        "To find which triangles meet, it compresses the tree of boxes; that is " + first_clause(claims, "C7a") +
-            "; in searching it, " + first_clause(claims, "C7b") + ".",
-        fmt::format("Of {} claims {} hold, {} hold in part, {} do not hold, and {} show no difference or are open.",
-                    claims.size(), count_of(claims, verdict_kind::holds), count_of(claims, verdict_kind::in_part),
-                    count_of(claims, verdict_kind::does_not_hold), others)};
+        "To find which triangles meet, it compresses the tree of boxes; compared with the tree as it was: " +
+            first_clause(claims, "C7a") + ", and to search it " + first_clause(claims, "C7b") + ".",
+        counts_of(claims)};
 }
 
 }  // namespace aabblab

@@ -115,7 +115,7 @@ std::string predicate_of(std::span<const endpoint> all, told_as how) {
         case told_as::not_more: return fmt::format("no more {}", noun);
         case told_as::open: break;
     }
-    return "open";
+    return "undecided";
 }
 
 /// "10,000"; what is no whole number as it is.
@@ -178,14 +178,15 @@ std::string unordered_clause(std::vector<endpoint> line) {
     const std::string subject = subject_text(line.front());
     const std::size_t count = line.size();
     std::erase_if(line, [](const endpoint& e) { return kind_of(e) == told_as::open; });
-    if (line.empty()) return "open" + subject;
+    if (line.empty()) return "undecided" + subject;
     std::ranges::sort(line, {}, &endpoint::ratio);
     const std::vector<stretch> all = stretches_of(line);
     const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
     const std::string text = all.size() == 1
                                  ? predicate_of(all.front().endpoints, all.front().how) + subject
                                  : "from " + text_of(line.front()) + " to " + text_of(line.back()) + subject;
-    return text + (line.size() == count ? "" : fmt::format(", {} of {} conditions open", count - line.size(), count));
+    return text +
+           (line.size() == count ? "" : fmt::format(", {} of {} conditions undecided", count - line.size(), count));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ void add_claim_rows(page& out, const reproduction& all) {
                         "class=\"word\">{}:</span> "
                         "{}</p></div><div>",
                         class_of(c.verdict), c.id, c.id, html_text(c.claim), html_text(capitalised(text_of(c))),
-                        html_text(c.sentence)));
+                        html_text(c.brief)));
         if (c.has_primary)
             out.raw(fmt::format("<p class=\"ratio\">{}</p>{}", ratio_text(c.primary), interval_picture(c.primary)));
         else

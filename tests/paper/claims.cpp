@@ -191,7 +191,7 @@ TEST_CASE("A sentence tells which way a line goes, how much and from where") {
     CHECK(told({at("100", 0.9, less)}) == "10 % less time on boxes.");
     CHECK(told({at("100", 3, more)}) == "3.0 times the time on boxes.");
     CHECK(told({at("100", 1.004, same)}) == "No difference on boxes.");
-    CHECK(told({at("100", 1.004, undecided)}) == "Open on boxes.");
+    CHECK(told({at("100", 1.004, undecided)}) == "Undecided on boxes.");
     CHECK(told({at("100", 0.36, less)}, quantity::bytes) == "36 % of the bytes on boxes.");
     // In the order of numbers, not of words or of the file.
     CHECK(told({at("1000", 0.8, less), at("100", 1.3, more), at("10000", 0.25, less)}) ==
@@ -204,9 +204,9 @@ TEST_CASE("A sentence tells which way a line goes, how much and from where") {
     for (endpoint& e : scenes) e.along.clear();
     CHECK(told(scenes) == "From 2.5 times as fast to 30 % more time on boxes.");
     scenes[0].direction = undecided;
-    CHECK(told(scenes) == "From 2.0 times as fast to 30 % more time on boxes, 1 of 3 conditions open.");
+    CHECK(told(scenes) == "From 2.0 times as fast to 30 % more time on boxes, 1 of 3 conditions undecided.");
     scenes[1].subject.reset();
-    CHECK(told(scenes) == "2.0 times as fast on boxes, 1 of 2 conditions open.");
+    CHECK(told(scenes) == "2.0 times as fast on boxes, 1 of 2 conditions undecided.");
     CHECK(aabblab::sentence_of({}) == "There are no measurements that decide it.");
     CHECK(aabblab::sentence_of(std::vector{at("1", 2, more)}, "Of an element") ==
           "Of an element: 2.0 times the time on boxes.");
@@ -242,9 +242,9 @@ TEST_CASE("A run that waited for a processor, or whose repeats differ, says so")
     CHECK(told(0, 0).empty());
     CHECK(told(0, 0.1).empty());
     CHECK(told(1, 0) ==
-          "The machine was not quiet: one repeat differs from the next by 0.0 % in the median, and of the "
-          "time of all frames the program waited 25.0 % for a processor; on a quiet one these are below 5 "
-          "and 2 %.");
+          "The machine was not quiet: of the time of all frames the program waited 25.0 % for a processor, on a quiet "
+          "one "
+          "less than 2 %. Intervals are wider for it, and more is undecided.");
     CHECK(told(0, 0.6).starts_with("The machine was not quiet: one repeat differs from the next by 18.2 %"));
 }
 

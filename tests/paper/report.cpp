@@ -24,6 +24,7 @@ claim_result claim(const std::string& id, verdict_kind verdict, double ratio, aa
     c.measured = "one over the other";
     c.verdict = verdict;
     c.sentence = "The verdict on " + id + " in words.";
+    c.brief = "The verdict on " + id + " in brief.";
     c.because = "The figures of " + id + ".";
     c.has_primary = true;
     c.primary.ratio = ratio;
@@ -101,7 +102,8 @@ TEST_CASE("Every claim that was measured has its interval drawn in its row, besi
     for (const claim_result& c : all.claims) {
         const std::string row = row_of(page, c.id);
         CHECK(row.find(c.claim) != std::string::npos);
-        CHECK(row.find(c.sentence) != std::string::npos);
+        CHECK(row.find(c.brief) != std::string::npos);
+        CHECK(page.find(c.sentence) != std::string::npos);
         CHECK(count_of("<svg class=\"interval\"", row) == (c.has_primary ? 1 : 0));
         if (c.has_primary) CHECK(count_of(ratio_text(c.primary), row) == 2);
         CHECK(page.find("<h2 id=\"" + c.id + "\">") != std::string::npos);
