@@ -1,10 +1,14 @@
 module;
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <future>
 #include <iterator>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 module aabblab.stiff;
@@ -34,12 +38,30 @@ series depth_line(const std::string& label, const trajectory& t) {
     return line;
 }
 
+/// The trajectory by each method, as many at once as there are processors: nothing is timed.
+std::vector<trajectory> played_by(const std::vector<method>& methods, const dropped_balls& balls, double step,
+                                  const stiff_setting& setting) {
+    std::vector<trajectory> all(methods.size());
+    std::atomic<std::size_t> begun = 0;
+    const auto play = [&](const std::function<void(double)>& progress) {
+        for (std::size_t m = begun++; m < methods.size(); m = begun++) {
+            progress(static_cast<double>(m) / static_cast<double>(methods.size()));
+            all[m] = balls.play(methods[m].who, *integrator_named("velocity_verlet"), step, 1, true);
+        }
+    };
+    std::vector<std::future<void>> others;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+        others.push_back(std::async(std::launch::async, play, [](double) {}));
+    play(setting.progress);
+    for (std::future<void>& other : others) other.get();
+    return all;
+}
+
 /// What each method does to the trajectory, with one step of time.
 void hold_methods(const dropped_balls& balls, const std::string& file, const std::string& size,
                   const stiff_setting& setting, stiff_result& result) {
-    const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double step = balls.seconds(1e-3);
-    const trajectory right = balls.play(setting.who, verlet, step, 1, true);
+    const trajectory right = balls.play(setting.who, *integrator_named("velocity_verlet"), step, 1, true);
     figure plot{
         .name = "departure_" + file,
         .caption = "How far balls of " + size +
@@ -58,10 +80,10 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
                  .lines = {depth_line("exact", right)},
                  .marks = {}};
     const std::vector<method> all = all_methods();
+    const std::vector<trajectory> played = played_by(all, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
     for (std::size_t m = 0; m < all.size(); ++m) {
-        setting.progress(static_cast<double>(m) / static_cast<double>(all.size()));
-        const trajectory t = balls.play(all[m].who, verlet, step, 1, true);
+        const trajectory& t = played[m];
         const std::vector<double> far = balls.departures(t, right);
         const auto first = std::ranges::find_if(far, [](double d) { return !(d <= 0); });
         const std::string subject = all[m].label + ", " + size;
