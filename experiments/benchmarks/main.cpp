@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
         std::cerr << "aabblab: benchmark: cannot use '" << arguments[1] << "'; see ./aabblab benchmark --help\n";
         return bad_input;
     }
-    aabblab::stay_on_idlest_processor();
+    const aabblab::idlest_processor pinned;
     aabblab::add_sort_benchmarks();
     aabblab::add_partition_benchmarks();
     aabblab::add_sweep_benchmarks();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -110,7 +111,8 @@ void print_overall(std::span<const scene_summary> scenes) {
 
 /// Shows a scene as soon as its last seed is played.
 std::vector<std::string> play_here(const experiment& e, results_folder& results, printed shown) {
-    if (e.records(metric_group::time)) stay_on_idlest_processor();
+    std::optional<idlest_processor> pinned;
+    if (e.records(metric_group::time)) pinned.emplace();
     std::vector<std::string> failures;
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
@@ -175,7 +177,8 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
 }
 
 bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
-    if (e.records(metric_group::time)) stay_on_idlest_processor();
+    std::optional<idlest_processor> pinned;
+    if (e.records(metric_group::time)) pinned.emplace();
     results_folder results(folder, record_of(e), existing_results::resume);
     bool right = true;
     for (const scene_choice& scene : e.scenes)

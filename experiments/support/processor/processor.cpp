@@ -32,18 +32,17 @@ std::map<std::size_t, double> busy_ticks() {
 
 }  // namespace
 
-void stay_on_idlest_processor() {
+idlest_processor::idlest_processor() {
     // A tick is a hundredth of a second.
     constexpr auto moment = std::chrono::milliseconds(60);
-    cpu_set_t allowed;
-    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
-    const std::map<std::size_t, double> before = busy_ticks();
+    if (sched_getaffinity(0, sizeof before_, &before_) != 0 || CPU_COUNT(&before_) < 2) return;
+    const std::map<std::size_t, double> busy_before = busy_ticks();
     std::this_thread::sleep_for(moment);
     double least = std::numeric_limits<double>::infinity();
     std::size_t idlest = CPU_SETSIZE;
     for (const auto& [number, ticks] : busy_ticks()) {
-        const auto then = before.find(number);
-        if (number >= CPU_SETSIZE || !CPU_ISSET(number, &allowed) || then == before.end()) continue;
+        const auto then = busy_before.find(number);
+        if (number >= CPU_SETSIZE || !CPU_ISSET(number, &before_) || then == busy_before.end()) continue;
         // Of equals the last: interrupts tend to go to the first.
         if (ticks - then->second > least) continue;
         least = ticks - then->second;
@@ -53,7 +52,11 @@ void stay_on_idlest_processor() {
     cpu_set_t one;
     CPU_ZERO(&one);
     CPU_SET(idlest, &one);
-    sched_setaffinity(0, sizeof one, &one);
+    stays_ = sched_setaffinity(0, sizeof one, &one) == 0;
+}
+
+idlest_processor::~idlest_processor() {
+    if (stays_) sched_setaffinity(0, sizeof before_, &before_);
 }
 
 }  // namespace aabblab

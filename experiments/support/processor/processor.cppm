@@ -1,10 +1,23 @@
+module;
+#include <sched.h>
+
 /// Where this process runs.
 export module aabblab.processor;
 
 export namespace aabblab {
 
-/// Keeps this thread on one processor, so that its caches stay warm: of those that it may run on the one that has been
-/// the least busy for the last moment. Where the system does not allow it, all stays as it is.
-void stay_on_idlest_processor();
+/// Keeps this thread on one processor while it lives, so that its caches stay warm: of those that it may run on the one
+/// that has been the least busy for the last moment. Where the system does not allow it, all stays as it is.
+class idlest_processor {
+public:
+    idlest_processor();
+    idlest_processor(const idlest_processor&) = delete;
+    idlest_processor& operator=(const idlest_processor&) = delete;
+    ~idlest_processor();
+
+private:
+    cpu_set_t before_;
+    bool stays_ = false;
+};
 
 }  // namespace aabblab
