@@ -53,7 +53,7 @@ table half_steps(const std::vector<condition>& conditions) {
 
 /// Simple models far apart, as many as there are in both sizes.
 static bool is_far_apart(const condition& c) {
-    return value_of(c.of(), "density") == "0.005" && value_of(c.of(), "objects") == "20000";
+    return value_of(c.of(), "density") == "0.001" && value_of(c.of(), "objects") == "100000";
 }
 
 bool is_primary_of_c11(const condition& c) {
@@ -89,7 +89,7 @@ draft whole_algorithm(const measurements& m) {
             claim.remark =
                 "Of the traditional method's time global search takes " + share_of(c) + " where models touch";
         else if (is_far_apart(c) && !claim.remark.empty())
-            claim.remark += ", and " + share_of(c) + " with 20,000 simple ones far apart";
+            claim.remark += ", and " + share_of(c) + " with 100,000 simple ones far apart";
     if (!claim.remark.empty()) claim.remark += ".";
     claim.tables.push_back(
         {"c11_stages", "Time a frame of both stages over that of the traditional method.", half_steps(conditions)});

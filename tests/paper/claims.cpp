@@ -359,7 +359,7 @@ TEST_CASE("Where nothing is split, splitting is not judged") {
 
 TEST_CASE("The whole algorithm is judged where global search counts, too") {
     const auto all = reproduction_where("c11", [](const worlds::played& p, aabblab::row& r) {
-        const bool far_apart = p.value_of("density") == "0.005";
+        const bool far_apart = p.value_of("density") == "0.001";
         r.update_ms = r.search_ms = 1;
         r.detect_ms = far_apart ? 1 : 98;
         if (p.has("axial_cut") && far_apart) r.search_ms = 0.1;
@@ -369,7 +369,7 @@ TEST_CASE("The whole algorithm is judged where global search counts, too") {
     CHECK(text_of(c11) == "holds in part");
     CHECK(c11.sentence.find("% more time where detailed models touch") != std::string::npos);
     CHECK(c11.sentence.find("23 % less time with simple models far apart") != std::string::npos);
-    CHECK(c11.sentence.ends_with("% with 20,000 simple ones far apart."));
+    CHECK(c11.sentence.ends_with("% with 100,000 simple ones far apart."));
     CHECK(c11.tables.back().content.rows.front().back() == "2.00");
     CHECK(c11.tables.back().content.rows.back().back() == "66.7");
     CHECK(c11.figures.front().lines.front().points.size() > 1);

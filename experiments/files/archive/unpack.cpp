@@ -25,7 +25,7 @@ namespace {
 /// A folder of a new name, for nobody else to read.
 std::filesystem::path make_temporary_folder() {
     std::error_code error;
-    std::string name = (std::filesystem::temp_directory_path(error) / "aabblab-XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
     if (error || !mkdtemp(name.data()))
         throw aabb::input_error("an archive cannot be unpacked: there is no folder for temporary files (TMPDIR)");
     return name;
