@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -77,6 +78,16 @@ bool is_quick(const std::filesystem::path& folder) {
     return read_manifest(folder / recorded_experiments(folder).front()).quick;
 }
 
+/// A run and its copy are no two machines that agree.
+void require_different(std::span<const measurements> runs) {
+    std::map<std::string, std::string> names;  // by what seals them
+    for (const measurements& run : runs) {
+        if (!is_sealed_record(run.folder())) continue;
+        const auto [known, is_new] = names.emplace(seal_of_record(run.folder()), run.name());
+        if (!is_new) throw aabb::input_error(known->second + " and " + run.name() + " are the same run");
+    }
+}
+
 /// Judges what was measured and writes the report.
 /// @returns the exit status
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
@@ -87,8 +98,9 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
         if (is_quick(run.folder()) != is_quick(first.folder()))
             throw aabb::input_error(first.name() + " and " + run.name() +
                                     " are of different sizes, quick and full, and cannot be judged together");
+    require_different(runs);
     const reproduction all = judged(runs);
-    write_reproduction(out, first, all, sections_of_reproduction(first.folder(), is_quick(first.folder())), failures);
+    write_reproduction(out, runs, all, sections_of_reproduction(first.folder(), is_quick(first.folder())), failures);
     print(verdict_text(all));
     if (!failures.empty())
         print(fmt::format("\n{} answers were wrong; compositions among them have no times:\n", failures.size()));

@@ -26,6 +26,8 @@ void seal_record(const std::filesystem::path& folder);
 /// Of a run that begins: takes it away.
 void unseal_record(const std::filesystem::path& folder);
 [[nodiscard]] bool is_sealed_record(const std::filesystem::path& folder);
+/// Of a sealed one: the same for copies, and for nothing else.
+[[nodiscard]] std::string seal_of_record(const std::filesystem::path& folder);
 
 /// Where it is sealed, every file is there and as it was, whatever the ends of its lines, and no other.
 /// @throws aabb::input_error where that is not so.
@@ -33,9 +35,8 @@ void verify_record(const std::filesystem::path& folder);
 
 /// What a report says of results that are not sealed.
 inline constexpr const char* unsealed_note =
-    "the results are not sealed, since the run was not finished or is of an earlier version: nothing shows whether "
-    "rows "
-    "are missing or were altered";
+    "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS, and "
+    "nothing shows whether rows are missing or were altered";
 
 }  // namespace aabblab
 

@@ -69,6 +69,10 @@ bool is_sealed_record(const std::filesystem::path& folder) {
     return std::filesystem::exists(folder / sums_name);
 }
 
+std::string seal_of_record(const std::filesystem::path& folder) {
+    return sum_of(folder / sums_name);
+}
+
 void verify_record(const std::filesystem::path& folder) {
     if (!is_sealed_record(folder)) return;
     const sums found = sums_of(folder);
@@ -84,9 +88,10 @@ void verify_record(const std::filesystem::path& folder) {
     for (const auto& [file, sum] : found)
         if (!stated.contains(file))
             throw aabb::input_error((folder / file).string() + " was added after the run: SHA256SUMS does not name it");
-    for (const std::string& experiment : recorded_experiments(folder))
-        if (const std::filesystem::path table = folder / experiment / "results.csv"; !std::filesystem::exists(table))
-            throw aabb::input_error(table.string() + " is missing, and its manifest.json is there");
+    for (const auto& [file, sum] : stated)
+        if (const std::filesystem::path manifest(file); manifest.filename() == "manifest.json")
+            if (const auto table = folder / manifest.parent_path() / "results.csv"; !std::filesystem::exists(table))
+                throw aabb::input_error(table.string() + " is missing, and its manifest.json is there");
 }
 
 }  // namespace aabblab

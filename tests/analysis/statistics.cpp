@@ -184,6 +184,10 @@ TEST_CASE("A claim of less is favoured by less only, one of not more by all that
     CHECK(found(expectation::less, 1, 0.01) == support::no_difference);
     CHECK(found(expectation::less, 1.2, 0.01) == support::contradicts);
     CHECK(found(expectation::less, 0.96, 0.03) == support::undecided);
+    // Less than 1, from 0.937 to 0.983, and yet no more than the band: a narrower interval would lie within it.
+    CHECK(found(expectation::less, 0.96, 0.012) == support::no_difference);
+    CHECK(found(expectation::less, 0.96, 0.001) == support::no_difference);
+    CHECK(found(expectation::less, 0.945, 0.012) == support::favours);
     CHECK(found(expectation::not_more, 1, 0.01) == support::favours);
     CHECK(found(expectation::not_more, 1.2, 0.01) == support::contradicts);
     // 0.96, from 0.90 to 1.02, is not above 1.05, whether or not it is less than 1.

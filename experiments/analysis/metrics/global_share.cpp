@@ -10,13 +10,13 @@ namespace aabblab {
 metric global_share_metric() {
     return {"global_share",
             "%",
-            "share of global search in the time of the frames after frame 0",
+            "share of global search in the processor time of the frames after frame 0",
             metric_group::time,
             better::neither,
             [](const row& r) -> std::optional<double> {
-                const double global = r.update_ms.value_or(0) + r.search_ms.value_or(0);
-                return r.detect_ms && r.frames > 1 ? std::optional(100 * global / (global + *r.detect_ms))
-                                                   : std::nullopt;
+                if (!r.update_cpu_ms || !r.detect_cpu_ms || r.frames == 1) return std::nullopt;
+                const double global = *r.update_cpu_ms + *r.search_cpu_ms;
+                return 100 * global / (global + *r.detect_cpu_ms);
             }};
 }
 

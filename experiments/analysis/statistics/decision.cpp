@@ -61,7 +61,8 @@ tails tails_of(const estimate& log_ratio, double band) {
     const double high = std::log1p(band);
     // An interval without width would lie within a band that has none.
     const double same = band > 0 ? std::max(log_ratio.chance_above(high), log_ratio.chance_below(-high)) : 1;
-    return {log_ratio.chance_above(0), log_ratio.chance_below(0), same, log_ratio.chance_above(high)};
+    return {log_ratio.chance_above(0), log_ratio.chance_below(0), same, log_ratio.chance_above(high),
+            std::abs(log_ratio.value) <= high};
 }
 
 outcome direction_of(const tails& p, double level) {
@@ -73,7 +74,10 @@ outcome direction_of(const tails& p, double level) {
 
 support support_of(expectation expected, const tails& p, double level) {
     if (expected == expectation::not_more && p.not_more <= level) return support::favours;
-    switch (direction_of(p, level)) {
+    const outcome direction = direction_of(p, level);
+    // However wide the interval is: a narrower one would show it to be the same.
+    if (direction != outcome::undecided && p.within) return support::no_difference;
+    switch (direction) {
         case outcome::less: return support::favours;
         case outcome::same: return support::no_difference;
         case outcome::more: return support::contradicts;

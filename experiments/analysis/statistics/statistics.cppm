@@ -135,10 +135,11 @@ enum class support : unsigned char { favours, no_difference, contradicts, undeci
 
 /// One-sided p-values of what may be said of a ratio: how likely it is to see what was measured if it were not so.
 struct tails {
-    double less;      ///< it is below 1
-    double more;      ///< it is above 1
-    double same;      ///< it is within the band
-    double not_more;  ///< it is not above the band
+    double less;          ///< it is below 1
+    double more;          ///< it is above 1
+    double same;          ///< it is within the band
+    double not_more;      ///< it is not above the band
+    bool within = false;  ///< the ratio itself lies within the band, wherever its interval reaches
 };
 /// @param log_ratio of the logarithm of a ratio
 /// @param band 0.05 for 1/1.05 to 1.05; 0 for none, in which nothing is the same
