@@ -1,4 +1,6 @@
 module;
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -82,7 +84,7 @@ draft whole_algorithm(const measurements& m) {
     if (conditions.empty()) return made;
     const auto share_of = [](const condition& c) {
         const auto share = c.spread(methods()[0].who, measured("global_share"));
-        return share ? three_digits(share->median) + " %" : "an unknown share";
+        return share ? fmt::format("{:.2g} %", share->median) : "an unknown share";
     };
     for (const condition& c : conditions)
         if (is_primary_of_c11(c))

@@ -23,7 +23,7 @@ draft fewer_box_tests(const measurements& m) {
     const selection uncut{{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
     std::vector<const condition*> drifting;
     for (const condition& c : m.of("figure1")) {
-        const bool drifts = value_of(c.of(), "scene") == "brownian";
+        const bool drifts = is_brownian(c);
         if (drifts && value_of(c.of(), "displacement") == "0.1") drifting.push_back(&c);
         made.candidates.push_back(told(candidate_of(c, improved, uncut, "box_tests"),
                                        drifts ? "on drifting boxes" : "in other scenes", "", quantity::box_tests));

@@ -84,13 +84,31 @@ constexpr sort_told sorts[] = {{"insertion", "with insertion sort", true},
                                {"shell:gaps=tokuda", "with Tokuda's gaps", false},
                                {"shell:gaps=shell", "with Shell's own gaps", false}};
 
-/// As it is at most sizes, in two digits.
-std::string inversions_of(const std::vector<const condition*>& conditions) {
+std::optional<double> inversions_of(const condition& c) {
+    const auto found = c.spread({{kind::sort, "insertion"}}, an_object(measured("inversions")));
+    return found ? std::optional(found->median) : std::nullopt;
+}
+
+/// As it is at most sizes.
+std::optional<double> inversions_of(const std::vector<const condition*>& conditions) {
     std::vector<double> all;
     for (const condition* c : conditions)
-        if (const auto found = c->spread({{kind::sort, "insertion"}}, an_object(measured("inversions"))))
-            all.push_back(found->median);
-    return all.empty() ? "-" : three_digits(quartiles_of(all).median);
+        if (const auto one = inversions_of(*c)) all.push_back(*one);
+    return all.empty() ? std::nullopt : std::optional(quartiles_of(all).median);
+}
+
+/// Sizes that tell of growth: with fewer elements the passes of the greatest gaps are cut short; and so far from the
+/// origin that coordinates cannot move by a hundredth of an edge, the input is more ordered than elsewhere.
+std::vector<const condition*> comparable(std::vector<const condition*> conditions) {
+    constexpr double fewest = 10'000;
+    constexpr double most_off = 0.1;
+    std::erase_if(conditions, [](const condition* c) { return number_of(c->of(), "objects") < fewest; });
+    const std::optional<double> usual = inversions_of(conditions);
+    std::erase_if(conditions, [&](const condition* c) {
+        const std::optional<double> here = inversions_of(*c);
+        return usual && here && std::abs(*here - *usual) > most_off * *usual;
+    });
+    return conditions;
 }
 
 }  // namespace
@@ -102,15 +120,17 @@ draft linear_sort(const measurements& m) {
     claim.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too";
     claim.measured =
         "comparisons and moves for an element at ten times as many elements over those now, by the straight line "
-        "through them against log N";
-    claim.lead = "Work an element at ten times as many elements";
+        "through them against log N, from 10,000 elements on";
+    claim.lead = "For an element at ten times as many";
     claim.expected = expectation::not_more;
     claim.experiments = {"c2"};
     std::map<std::string, std::vector<const condition*>> by_displacement;
     for (const condition& c : m.of("c2")) by_displacement[value_of(c.of(), "displacement")].push_back(&c);
     for (const sort_told& one : sorts)
-        for (const auto& [displacement, conditions] : by_displacement) {
+        for (const auto& [displacement, of_all_sizes] : by_displacement) {
             sizes all;
+            const std::vector<const condition*> conditions = comparable(of_all_sizes);
+            if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
                 all.log_n.push_back(std::log10(number_of(c->of(), "objects")));
                 all.per_element.push_back(c->logs({{kind::sort, one.sort}}, an_object(work())));
@@ -119,8 +139,9 @@ draft linear_sort(const measurements& m) {
             c.where = {{"scene", "line"},
                        {"sort", one.sort},
                        {"displacement", displacement},
-                       {"inversions", inversions_of(conditions)},
                        {"elements", sizes_text(conditions)}};
+            if (const auto inversions = inversions_of(conditions))
+                c.observed = {{"inversions", three_digits(*inversions)}};
             c.log_ratios = {
                 bootstrap(all.per_element.front().size(), [&](const resample& d) { return all.growth(d); })};
             c.primary = one.is_primary && displacement == "0.1";

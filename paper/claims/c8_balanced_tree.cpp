@@ -51,11 +51,11 @@ draft balanced_tree(const measurements& m) {
     claim.id = "C8";
     claim.claim = "The balanced (median) tree is searched faster than an unbalanced one";
     claim.measured = "time a query, canonical tree split at the median over the same split otherwise";
+    claim.lead = "Split at the median";
     claim.experiments = {"table1"};
     const std::vector<condition>& conditions = m.of("table1");
-    const std::pair<const char*, const char*> others[] = {{"mean", "compared with a split at the mean"},
-                                                          {"midpoint", "compared with one in the middle of the box"},
-                                                          {"sah", "compared with one by surface area"}};
+    const std::pair<const char*, const char*> others[] = {
+        {"mean", "against the mean"}, {"midpoint", "against the middle of the box"}, {"sah", "against surface area"}};
     for (const auto& [build, subject] : others)
         for (const condition& c : conditions) {
             made.candidates.push_back(told(

@@ -75,7 +75,7 @@ claim_result finished(const draft& made, const std::vector<endpoint>& all) {
     claim.sentence = sentence_of(all, claim.lead);
     std::vector<endpoint> of_primary_lines;
     std::ranges::copy_if(all, std::back_inserter(of_primary_lines), [&](const endpoint& e) {
-        return std::ranges::any_of(all, [&](const endpoint& p) { return p.is_primary && p.subject == e.subject; });
+        return std::ranges::any_of(all, [&](const endpoint& p) { return p.is_primary && is_same_line(p, e); });
     });
     claim.brief = sentence_of(of_primary_lines, claim.lead);
     std::vector<endpoint> beside;
@@ -133,12 +133,12 @@ void add_machine(std::vector<draft>& all, const std::vector<draft>& more) {
 
 table endpoint_table(std::span<const endpoint> all, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> places;
-    for (const endpoint& e : all) places.push_back(e.where);
+    for (const endpoint& e : all) places.push_back(place_of(e));
     const place_columns columns(places);
     table t{columns.head(), {}};
     t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
     for (const endpoint& e : all) {
-        std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(e.where));
+        std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(place_of(e)));
         cells.push_back(ratio_digits_of(e.ratio));
         cells.push_back(ratio_digits_of(e.range.low) + " to " + ratio_digits_of(e.range.high));
         cells.push_back(outcome(e));
@@ -203,9 +203,36 @@ candidate candidate_of(const condition& c, const selection& arm, const selection
     return made;
 }
 
+estimate between(const cells& above, const cells& below) {
+    if (above.empty() || below.empty()) return {std::nan("")};
+    return bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); });
+}
+
+factors place_of(const endpoint& e) {
+    factors place = e.where;
+    place.insert(place.end(), e.observed.begin(), e.observed.end());
+    return place;
+}
+
+std::vector<endpoint> primaries_of(const claim_result& claim) {
+    std::vector<endpoint> all;
+    if (claim.has_primary) all.push_back(claim.primary);
+    std::ranges::copy_if(claim.secondary, std::back_inserter(all), &endpoint::is_primary);
+    return all;
+}
+
+std::vector<endpoint> secondaries_of(const claim_result& claim) {
+    std::vector<endpoint> all;
+    std::ranges::remove_copy_if(claim.secondary, std::back_inserter(all), &endpoint::is_primary);
+    return all;
+}
+
+bool is_brownian(const condition& c) {
+    return value_of(c.of(), "scene") == "brownian";
+}
+
 bool is_drifting(const condition& c) {
-    return value_of(c.of(), "scene") == "brownian" && value_of(c.of(), "objects") == "10000" &&
-           value_of(c.of(), "displacement") == "0.1";
+    return is_brownian(c) && value_of(c.of(), "objects") == "10000" && value_of(c.of(), "displacement") == "0.1";
 }
 
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
@@ -299,8 +326,19 @@ table verdict_table(const reproduction& all) {
         cells.push_back(c.has_primary
                             ? ratio_digits_of(c.primary.range.low) + " to " + ratio_digits_of(c.primary.range.high)
                             : "-");
+        const std::vector<endpoint> others = secondaries_of(c);
         for (const support what : {support::favours, support::contradicts, support::no_difference, support::undecided})
-            cells.push_back(std::to_string(count_of(c.secondary, what)));
+            cells.push_back(std::to_string(count_of(others, what)));
+    }
+    return t;
+}
+
+table brief_table(const reproduction& all) {
+    table t{{{"", false}, {"claim", false}, {"verdict", false}, {"primary ratios", false}}, {}};
+    for (const claim_result& c : all.claims) {
+        std::string ratios;
+        for (const endpoint& e : primaries_of(c)) ratios += (ratios.empty() ? "" : ", ") + ratio_digits_of(e.ratio);
+        t.rows.push_back({c.id, c.claim, text_of(c), ratios.empty() ? "-" : ratios});
     }
     return t;
 }

@@ -23,6 +23,7 @@ enum class quantity : unsigned char { time, bytes, box_tests, work, slowdown };
 /// One ratio of a claim: where it was measured, what it is, and what it says.
 struct endpoint {
     factors where;
+    factors observed{};  ///< measured there, so no part of what tells it from others: inversions an element
     double ratio = 0;
     interval range{};  ///< 95 %, of this endpoint alone
     expectation expected = expectation::less;
@@ -32,9 +33,9 @@ struct endpoint {
     bool is_primary = false;
     quantity compared = quantity::time;
     /// What a sentence calls the line of endpoints that it is on: "on drifting boxes". None where it is not told.
-    std::optional<std::string> subject;
-    std::string along;   ///< the factor that orders the line; empty where nothing does
-    std::string source;  ///< of which rows it is: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
+    std::optional<std::string> subject{};
+    std::string along{};   ///< the factor that orders the line; empty where nothing does
+    std::string source{};  ///< of which rows it is: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
 };
 
 /// A table of a report.
@@ -77,6 +78,10 @@ struct open_choice {
     };
     std::vector<alternative> alternatives;  ///< ours first
 };
+/// Every primary endpoint of a claim.
+[[nodiscard]] std::vector<endpoint> primaries_of(const claim_result& claim);
+/// And every other one.
+[[nodiscard]] std::vector<endpoint> secondaries_of(const claim_result& claim);
 /// Whether the outcome depends on the choice: "no", "yes", or "undecided" where an alternative cannot be told.
 [[nodiscard]] std::string dependence_of(const open_choice& choice);
 
@@ -87,7 +92,7 @@ struct reproduction {
     std::string disturbance;            ///< a sentence, where the machine was not quiet
     std::vector<open_choice> choices;
     std::vector<named_table> tables;  ///< table 1
-    std::vector<figure> figures;      ///< of all claims together
+    std::vector<figure> figures;      ///< beside those of claims
     named_table bands;                ///< the verdicts under narrower and wider bands of no difference
     named_table null_control;         ///< ratios where there is nothing to be found
 };
@@ -111,6 +116,8 @@ struct reproduction {
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> all, const std::string& lead = {});
 /// Claim by claim: verdict, primary ratio with its interval, and where it was measured.
 [[nodiscard]] table verdict_table(const reproduction& all);
+/// The same in few words, as README has it.
+[[nodiscard]] table brief_table(const reproduction& all);
 /// What the paper leaves open.
 [[nodiscard]] table choice_table(const reproduction& all);
 
@@ -129,6 +136,7 @@ struct candidate {
     std::optional<std::string> subject{};
     std::string along{};
     std::string source{};
+    factors observed{};  ///< as an endpoint has it
 
     /// Whether every machine measured it.
     [[nodiscard]] bool known() const;
@@ -153,8 +161,14 @@ struct draft {
 /// By the rule of aabblab.statistics.
 [[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> all);
 
-/// One of these clauses; empty where nothing on the line is measured.
-[[nodiscard]] std::string clause_of(std::span<const endpoint> all, const std::string& subject);
+/// Whether a sentence tells them together.
+[[nodiscard]] inline bool is_same_line(const endpoint& a, const endpoint& b) {
+    return a.subject == b.subject && a.compared == b.compared;
+}
+/// Where it was measured and what was found there.
+[[nodiscard]] factors place_of(const endpoint& e);
+/// The clause on the line of one of them.
+[[nodiscard]] std::string clause_of(std::span<const endpoint> all, const endpoint& one);
 /// What it all comes to, in three sentences.
 [[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
 /// Whether the machine was quiet: a sentence where it was not.
@@ -185,6 +199,9 @@ private:
 /// @param more factors beside the condition's own
 [[nodiscard]] candidate candidate_of(const condition& c, const selection& arm, const selection& base,
                                      const std::string& metric, factors more = {});
+/// The mean of one less that of the other; of conditions between which nothing is played in the same repeat, so that
+/// cells of one process and seed are compared.
+[[nodiscard]] estimate between(const cells& above, const cells& below);
 /// The same, told on a line.
 [[nodiscard]] candidate told(candidate c, const std::string& subject, const std::string& along = "",
                              quantity compared = quantity::time);
@@ -201,6 +218,7 @@ private:
 
 /// The condition that claims on global search are decided in first: 10,000 cubes that drift by a tenth of their edge.
 [[nodiscard]] bool is_drifting(const condition& c);
+[[nodiscard]] bool is_brownian(const condition& c);
 /// Those of other claims, which what the paper leaves open is held against.
 [[nodiscard]] bool is_primary_of_c7(const condition& c);
 [[nodiscard]] bool is_primary_of_c11(const condition& c);

@@ -62,7 +62,7 @@ std::string disturbance_of(std::span<const measurements> machines) {
                 " of the time of all frames the program waited {:.1f} % for a processor, on a quiet one "
                 "less than {:.0f} %.",
                 waiting, most_waiting);
-        text += " Intervals are wider for it, and more is undecided.";
+        text += " Ratios may be off by more than their intervals say.";
     }
     return text;
 }

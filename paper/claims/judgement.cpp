@@ -47,8 +47,8 @@ findings found_by(std::span<const entry> all, std::size_t machine, double band) 
     return found;
 }
 
-/// What every machine finds; where they differ, nothing is decided.
-void decide_together(std::span<const entry> all, double band) {
+/// What every machine finds of endpoints that are decided together; where machines differ, nothing is decided.
+void settle(std::span<const entry> all, double band) {
     if (all.empty()) return;
     for (std::size_t machine = 0; machine < all.front().one->log_ratios.size(); ++machine) {
         const findings found = found_by(all, machine, band);
@@ -84,6 +84,7 @@ endpoint endpoint_of(const candidate& c, expectation expected, double band) {
     const tails p = tails_of(log_ratio, band);
     const support alone = support_of(own, p);
     return {c.where,
+            c.observed,
             std::exp(log_ratio.value),
             {std::exp(range.low), std::exp(range.high)},
             own,
@@ -108,9 +109,9 @@ std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double
         auto made = all[i].begin();
         for (const candidate& c : drafts[i].candidates)
             if (c.known()) (c.primary ? primaries : others).push_back({&drafts[i], &c, &*made++});
-        decide_together(others, band);
+        settle(others, band);
     }
-    decide_together(primaries, band);
+    settle(primaries, band);
     return all;
 }
 

@@ -103,6 +103,11 @@ told_as kind_of(const endpoint& e) {
     return e.found == support::favours ? told_as::not_more : told_as::open;
 }
 
+/// Time is what is compared where nothing else is said.
+std::string of_what(quantity compared) {
+    return compared == quantity::time ? "" : " in the " + std::string(noun_of(compared));
+}
+
 /// Endpoints that are all told alike: "up to 2.1 times as fast".
 std::string predicate_of(std::span<const endpoint> all, told_as how) {
     const quantity compared = all.front().compared;
@@ -111,11 +116,11 @@ std::string predicate_of(std::span<const endpoint> all, told_as how) {
         case told_as::less:
             return compared == quantity::time ? less_of_time(extent_of(all)) : less_of(extent_of(all), noun);
         case told_as::more: return more_of(extent_of(all), noun);
-        case told_as::same: return "no difference";
+        case told_as::same: return "no difference" + of_what(compared);
         case told_as::not_more: return fmt::format("no more {}", noun);
         case told_as::open: break;
     }
-    return "undecided";
+    return "undecided" + of_what(compared);
 }
 
 /// "10,000"; what is no whole number as it is.
@@ -149,8 +154,8 @@ std::vector<stretch> stretches_of(std::span<const endpoint> line) {
 /// "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
 std::string where_text(const std::vector<stretch>& all, std::size_t i) {
     const std::string& factor = all[i].endpoints.front().along;
-    const std::string first = value_of(all[i].endpoints.front().where, factor);
-    const std::string last = value_of(all[i].endpoints.back().where, factor);
+    const std::string first = value_of(place_of(all[i].endpoints.front()), factor);
+    const std::string last = value_of(place_of(all[i].endpoints.back()), factor);
     if (all.size() == 1) return "";
     if (i == 0 && all[i].endpoints.size() > 1) return " up to " + place_text(factor, last);
     if (i + 1 == all.size() && all[i].endpoints.size() > 1) return " from " + place_text(factor, first) + " on";
@@ -177,8 +182,9 @@ std::string ordered_clause(std::span<const endpoint> line) {
 std::string unordered_clause(std::vector<endpoint> line) {
     const std::string subject = subject_text(line.front());
     const std::size_t count = line.size();
+    const std::string undecided = predicate_of(line, told_as::open);
     std::erase_if(line, [](const endpoint& e) { return kind_of(e) == told_as::open; });
-    if (line.empty()) return "undecided" + subject;
+    if (line.empty()) return undecided + subject;
     std::ranges::sort(line, {}, &endpoint::ratio);
     const std::vector<stretch> all = stretches_of(line);
     const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
@@ -191,23 +197,23 @@ std::string unordered_clause(std::vector<endpoint> line) {
 
 }  // namespace
 
-std::string clause_of(std::span<const endpoint> all, const std::string& subject) {
+std::string clause_of(std::span<const endpoint> all, const endpoint& one) {
     std::vector<endpoint> line;
-    std::ranges::copy_if(all, std::back_inserter(line), [&](const endpoint& e) { return e.subject == subject; });
-    if (line.empty()) return "";
-    const std::string& along = line.front().along;
+    std::ranges::copy_if(all, std::back_inserter(line), [&](const endpoint& e) { return is_same_line(e, one); });
+    const std::string& along = one.along;
     if (along.empty()) return unordered_clause(std::move(line));
-    std::ranges::stable_sort(line, {}, [&](const endpoint& e) { return number_of(e.where, along); });
+    std::ranges::stable_sort(line, {}, [&](const endpoint& e) { return number_of(place_of(e), along); });
     return ordered_clause(line);
 }
 
 std::string sentence_of(std::span<const endpoint> all, const std::string& lead) {
     if (all.empty()) return "There are no measurements that decide it.";
-    std::vector<std::string> subjects;
-    for (const endpoint& e : all)
-        if (e.subject && std::ranges::find(subjects, *e.subject) == subjects.end()) subjects.push_back(*e.subject);
     std::string text;
-    for (const std::string& subject : subjects) text += (text.empty() ? "" : "; ") + clause_of(all, subject);
+    for (auto e = all.begin(); e != all.end(); ++e) {
+        const auto is_of_its_line = [&](const endpoint& other) { return is_same_line(*e, other); };
+        if (!e->subject || std::any_of(all.begin(), e, is_of_its_line)) continue;
+        text += (text.empty() ? "" : "; ") + clause_of(all, *e);
+    }
     if (!lead.empty()) text = lead + ": " + text;
     text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
     return text + ".";

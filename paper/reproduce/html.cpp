@@ -101,15 +101,16 @@ void add_claim_rows(page& out, const reproduction& all) {
                         class_of(c.verdict), c.id, c.id, html_text(c.claim), html_text(capitalised(text_of(c))),
                         html_text(c.brief)));
         if (c.has_primary)
-            out.raw(fmt::format("<p class=\"ratio\">{}</p>{}", ratio_text(c.primary), interval_picture(c.primary)));
+            out.raw(
+                fmt::format("<p class=\"ratio\">{}</p>{}", ratio_text(c.primary), interval_picture(primaries_of(c))));
         else
             out.raw("<p class=\"ratio\">not measured</p>");
         out.raw("</div></a>\n");
     }
     out.raw("</div>\n");
     out.paragraph(
-        "Each row: what the paper says, the verdict, and the first primary ratio with its 95 % interval, on one scale "
-        "for all. Left of 1 favours the claim; the shaded band makes no difference.",
+        "Each row: what the paper says, the verdict, the first primary ratio with its 95 % interval, and all of them "
+        "drawn, on one scale for all. Left of 1 favours the claim; the shaded band makes no difference.",
         "soft");
 }
 
@@ -160,21 +161,17 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
     out.raw("<h1>The paper, reproduced</h1>\n<div class=\"headline\">\n");
     for (const std::string& sentence : all.headline) out.paragraph(sentence);
     out.raw("</div>\n");
-    out.paragraph(
-        fmt::format(
-            "\"{}\": its table, its figures and {} claims, tested. {}, {} size. Commit {}, {}, {}. {} rows of {} "
-            "scenes; up to {} processes, {} seeds and {} repeats in all.",
-            paper_title, all.claims.size(), made.date, made.size, made.commit, made.compiler, made.cpu, made.rows,
-            made.scenes, made.processes, made.seeds, made.repeats),
-        "soft");
+    out.paragraph(fmt::format("\"{}\": its table, its figures, its claims and one of SMB, which it follows: {} in all. "
+                              "{}, {} size. Commit {}, {}, {}. {} rows of {} "
+                              "scenes; up to {} processes, {} seeds and {} repeats in all.",
+                              paper_title, all.claims.size(), made.date, made.size, made.commit, made.compiler,
+                              made.cpu, made.rows, made.scenes, made.processes, made.seeds, made.repeats),
+                  "soft");
     for (const std::string& note : made.notes) out.paragraph("Note: " + note + ".", "soft");
     add_claim_rows(out, all);
     add_rule(out, all);
     out.heading("bands", "Under other bands of no difference");
     out.add(all.bands);
-    // The rows show what the figure of verdicts does.
-    for (const figure& f : all.figures)
-        if (f.name != verdict_figure_name) out.add(f);
     for (const claim_result& c : all.claims) {
         out.heading(c.id, c.id + ": " + c.claim);
         out.raw(fmt::format("<p class=\"verdict {}\"><span class=\"word\">{}:</span> {}</p>\n", class_of(c.verdict),

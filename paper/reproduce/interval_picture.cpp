@@ -4,6 +4,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,11 +30,11 @@ double place_of(double ratio) {
 }
 
 // In pixels.
-constexpr double middle = 20;
-constexpr double axis = 34;
-constexpr double height = 50;
+constexpr double first_row = 16;
+constexpr double row_height = 12;
 
-std::string band_and_axis() {
+/// @param axis how far down it is
+std::string band_and_axis(double axis) {
     const double low = place_of(1 / (1 + equivalence_band));
     const double high = place_of(1 + equivalence_band);
     std::string svg = fmt::format(
@@ -52,29 +53,38 @@ std::string band_and_axis() {
 }
 
 /// What lies beyond the scale is an arrow at its end, with the number.
-std::string arrow(bool to_left, double number) {
+std::string arrow(bool to_left, double y, double number) {
     return fmt::format(
-        "<svg x=\"{}%\" y=\"{}\" overflow=\"visible\"><path d=\"M{} -6 L0 0 L{} 6z\"/></svg>"
-        "<text x=\"{}%\" y=\"11\" text-anchor=\"{}\">{}</text>",
-        to_left ? 1 : 99, middle, to_left ? 9 : -9, to_left ? 9 : -9, to_left ? 1 : 99, to_left ? "start" : "end",
+        "<svg x=\"{}%\" y=\"{}\" overflow=\"visible\"><path d=\"M{} -5 L0 0 L{} 5z\"/></svg>"
+        "<text x=\"{}%\" y=\"{}\" text-anchor=\"{}\">{}</text>",
+        to_left ? 1 : 99, y, to_left ? 8 : -8, to_left ? 8 : -8, to_left ? 4 : 96, y - 4, to_left ? "start" : "end",
         ratio_digits_of(number));
+}
+
+std::string interval_at(const endpoint& e, double y) {
+    const auto& [low, high] = e.range;
+    std::string svg = fmt::format("<line class=\"range\" x1=\"{:.2f}%\" x2=\"{:.2f}%\" y1=\"{}\" y2=\"{}\"/>",
+                                  low < least ? 2 : place_of(low), high > greatest ? 98 : place_of(high), y, y);
+    if (least <= e.ratio && e.ratio <= greatest)
+        svg += fmt::format("<circle cx=\"{:.2f}%\" cy=\"{}\" r=\"4\"/>", place_of(e.ratio), y);
+    if (low < least) svg += arrow(true, y, e.ratio < least ? e.ratio : low);
+    if (high > greatest) svg += arrow(false, y, e.ratio > greatest ? e.ratio : high);
+    return svg;
 }
 
 }  // namespace
 
-std::string interval_picture(const endpoint& e) {
-    const auto& [low, high] = e.range;
-    std::string svg =
-        fmt::format("<svg class=\"interval\" role=\"img\" aria-label=\"{}\" width=\"100%\" height=\"{}\">",
-                    html_text("ratio " + ratio_text(e)), height);
-    svg += band_and_axis();
-    svg += fmt::format("<line class=\"range\" x1=\"{:.2f}%\" x2=\"{:.2f}%\" y1=\"{}\" y2=\"{}\"/>",
-                       low < least ? 2 : place_of(low), high > greatest ? 98 : place_of(high), middle, middle);
-    if (least <= e.ratio && e.ratio <= greatest)
-        svg += fmt::format("<circle cx=\"{:.2f}%\" cy=\"{}\" r=\"5\"/>", place_of(e.ratio), middle);
-    if (low < least) svg += arrow(true, e.ratio < least ? e.ratio : low);
-    if (high > greatest) svg += arrow(false, e.ratio > greatest ? e.ratio : high);
-    return svg + "</svg>";
+std::string interval_picture(std::span<const endpoint> all) {
+    const double axis = first_row + row_height * static_cast<double>(all.size());
+    std::string label;
+    std::string intervals;
+    for (const endpoint& e : all) {
+        label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
+        intervals += interval_at(e, first_row + row_height * static_cast<double>(&e - all.data()));
+    }
+    return fmt::format("<svg class=\"interval\" role=\"img\" aria-label=\"{}\" width=\"100%\" height=\"{}\">",
+                       html_text(label), axis + 16) +
+           band_and_axis(axis) + intervals + "</svg>";
 }
 
 std::string rule_picture() {

@@ -77,9 +77,10 @@ void add_claim(macros& to, const claim_result& c) {
     set("ratio", c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
     set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
     set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
-    to.set(c.id + ".endpoints", c.secondary.size());
+    const std::vector<endpoint> others = secondaries_of(c);
+    to.set(c.id + ".endpoints", others.size());
     const auto count = [&](const char* key, support what) {
-        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(c.secondary, what, &endpoint::found)));
+        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::found)));
     };
     count("for", support::favours);
     count("against", support::contradicts);

@@ -23,7 +23,7 @@ std::string markdown_of(const reproduction& all, std::span<const report_section>
             " rows, up to " + std::to_string(made.processes) + " processes, up to " + std::to_string(made.seeds) +
             " seeds.\n\n";
     for (const std::string& note : made.notes) text += "Note: " + note + ".\n\n";
-    text += to_markdown(verdict_table(all)) + "\n";
+    text += to_markdown(brief_table(all)) + "\n";
     for (const claim_result& c : all.claims) text += "- " + c.id + ", " + text_of(c) + ": " + c.sentence + "\n";
     text += "\n";
     const auto add_table = [&](const named_table& t) { text += t.caption + "\n\n" + to_markdown(t.content) + "\n"; };

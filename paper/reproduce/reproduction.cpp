@@ -130,17 +130,19 @@ provenance provenance_of(const measurements& results, const reproduction& all) {
     return made;
 }
 
-void write_reproduction(const std::filesystem::path& folder, const reproduction& all,
-                        std::span<const report_section> sections, const std::vector<std::string>& failures) {
-    write_reproduction(folder, measurements(folder), all, sections, failures);
-}
-
-void write_reproduction(const std::filesystem::path& folder, const measurements& results,
+void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
                         const std::vector<std::string>& failures) {
     reproduction all = judged_claims;
     all.figures.push_back(verdict_figure(all));
-    const provenance made = provenance_of(results, all);
+    provenance made = provenance_of(runs.front(), all);
+    for (const measurements& other : runs.subspan(1)) {
+        const provenance its = provenance_of(other, all);
+        made.notes.push_back("ratios and verdicts are of this run and of " + other.name() + " together (" + its.date +
+                             ", commit " + its.commit + ", " + its.cpu +
+                             "); figures, tables of times, the null control and open choices are of this one");
+        for (const std::string& note : its.notes) made.notes.push_back(other.name() + ": " + note);
+    }
     std::filesystem::create_directories(folder / "tables");
     std::vector<named_table> tables = all.tables;
     tables.push_back({"verdicts", "The verdicts.", verdict_table(all)});

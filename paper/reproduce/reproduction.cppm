@@ -26,19 +26,18 @@ struct report_section {
     std::vector<named_table> tables;
 };
 
-/// Writes into the folder, which holds the results of the paper's experiments:
+/// Writes into the folder:
 /// - verdicts.csv and endpoints.csv, all claims in one table each;
 /// - tables/NAME.csv, .md, .tex, and figures/NAME.csv, .gp, .svg, .pdf;
 /// - report.html, one page that needs no other file, and report.md;
 /// - macros.tex, every number that the LaTeX report names.
+/// @param runs what was judged; the report shows the first one's figures
 /// @param sections of the reports alone
 /// @param failures what validation found, a sentence each
 /// @throws aabb::input_error where a file cannot be read or written, or figures cannot be drawn.
-void write_reproduction(const std::filesystem::path& folder, const reproduction& all,
-                        std::span<const report_section> sections, const std::vector<std::string>& failures);
-/// The same of results that stand elsewhere.
-void write_reproduction(const std::filesystem::path& folder, const measurements& results, const reproduction& all,
-                        std::span<const report_section> sections, const std::vector<std::string>& failures);
+void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
+                        const reproduction& all, std::span<const report_section> sections,
+                        const std::vector<std::string>& failures);
 
 }  // namespace aabblab
 
@@ -65,9 +64,9 @@ inline constexpr std::string_view paper_title = "Research on Collision Detection
 
 inline constexpr std::string_view verdict_figure_name = "verdicts";
 
-/// The claim's first ratio with its interval, against the band of no difference, as SVG for the page. All claims have
-/// the same scale; what lies beyond it is an arrow with its number.
-[[nodiscard]] std::string interval_picture(const endpoint& e);
+/// Ratios with their intervals, below each other, against the band of no difference, as SVG for the page. All claims
+/// have the same scale; what lies beyond it is an arrow with its number.
+[[nodiscard]] std::string interval_picture(std::span<const endpoint> all);
 
 /// The rule as SVG for the page: where an interval may lie, and what that means.
 [[nodiscard]] std::string rule_picture();

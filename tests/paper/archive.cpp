@@ -21,8 +21,11 @@ import aabblab.record;
 namespace {
 
 /// The results of a run that is finished, as `reproduce` leaves them.
-void write_finished_run(const std::filesystem::path& folder) {
-    worlds::write_world(folder, 0.6, 0.05);
+void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6) {
+    worlds::write_world(folder, ratio, 0.05);
+    // A study of errors has results of its own; any experiment does for one.
+    for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick))
+        if (e.name == "c10") worlds::write_experiment(folder / "errors", e, [](const auto&, auto&) {});
     std::ofstream(folder / "failures.txt") << "";
     aabblab::seal_record(folder);
 }
@@ -78,6 +81,14 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
     CHECK(bytes_of_file(folder / "b/report.html") == page);
     CHECK(bytes_of_file(folder / "b/macros.tex") == bytes_of_file(folder / "a/macros.tex"));
     CHECK(bytes_of_file(folder / "again.tar.xz") == bytes_of_file(folder / "run.tar.xz"));
+
+    const program_result copied = judge({results, folder / "run.tar.xz"}, folder / "both");
+    CHECK(copied.status == 2);
+    CHECK(copied.err.find("results and " + (folder / "run.tar.xz").string() + " are the same run") !=
+          std::string::npos);
+    write_finished_run(folder / "other", 0.7);
+    REQUIRE(judge({folder / "other", folder / "run.tar.xz"}, folder / "both").status == 0);
+    CHECK(bytes_of_file(folder / "both/report.md").find("run.tar.xz together (") != std::string::npos);
 
     std::mt19937 random(1);
     for (const std::filesystem::path& file : aabblab::archived_files(results)) {
@@ -139,6 +150,8 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
     refused("c3/manifest.json is missing", [](const auto& results) { std::filesystem::remove_all(results / "c3"); });
     refused("c3/results.csv is missing",
             [](const auto& results) { std::filesystem::remove(results / "c3/results.csv"); });
+    refused("errors/c10/results.csv is missing",
+            [](const auto& results) { std::filesystem::remove(results / "errors/c10/results.csv"); });
     refused("c6/process-3.json was added after the run", [](const auto& results) {
         std::filesystem::copy(results / "c6/process-0.json", results / "c6/process-3.json");
     });
@@ -153,7 +166,7 @@ TEST_CASE("Results that are not finished are judged, and the report says so") {
     std::filesystem::remove_all(results / "c3");
     const program_result r = judge({results}, folder / "out");
     CHECK(r.status == 0);
-    CHECK(r.err.find("results: the results are not sealed, since the run was not finished") != std::string::npos);
+    CHECK(r.err.find("results: the results are not sealed: the run was not finished") != std::string::npos);
     CHECK(bytes_of_file(folder / "out/report.html").find("Note: the results are not sealed") != std::string::npos);
 }
 

@@ -13,9 +13,9 @@ import aabblab.reproduction;
 
 TEST_CASE("A program of another language finds the same ratios, intervals and verdicts in the rows") {
     const temporary_folder folder;
-    worlds::write_world(folder.path(), 0.9, 0.03);
+    worlds::write_world(folder.path(), 0.9, 0.15);
     const aabblab::measurements results(folder.path());
-    write_reproduction(folder.path(), results, judged(results), {}, {});
+    write_reproduction(folder.path(), {&results, 1}, judged(results), {}, {});
     const auto recomputed = [&] {
         return run_command({"python3", AABBLAB_CONFIGS "/../../tests/paper/recompute.py", folder.path().string()});
     };

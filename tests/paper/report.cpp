@@ -8,6 +8,7 @@
 #include "../experiments/temporary_folder.hpp"
 
 import aabblab.claims;
+import aabblab.conditions;
 import aabblab.reproduction;
 import aabblab.statistics;
 import aabblab.tables;
@@ -55,7 +56,8 @@ struct reports {
 
 reports written(const aabblab::reproduction& all) {
     const temporary_folder folder;
-    write_reproduction(folder.path(), all, {}, {});
+    const aabblab::measurements none(folder.path());
+    write_reproduction(folder.path(), {&none, 1}, all, {}, {});
     return {bytes_of_file(folder / "report.html"), bytes_of_file(folder / "report.md"),
             bytes_of_file(folder / "macros.tex")};
 }

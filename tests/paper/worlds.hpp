@@ -166,45 +166,52 @@ inline double time_of(const played& p, double ratio) {
 
 /// Everything that a claim says is less takes `ratio` of what it is compared with, and nothing else does; what is timed
 /// is off by up to `noise`.
-inline void write_world(const std::filesystem::path& folder, double ratio, double noise,
-                        aabblab::experiment_size size = aabblab::experiment_size::quick) {
+/// @param disturb what is not in the processor time
+inline void write_world(
+    const std::filesystem::path& folder, double ratio, double noise,
+    aabblab::experiment_size size = aabblab::experiment_size::quick,
+    const std::function<void(aabblab::row&)>& disturb = [](aabblab::row&) {}) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
     const auto scaled = [](std::optional<std::uint64_t>& number, double by) {
         number = static_cast<std::uint64_t>(static_cast<double>(number.value_or(0)) * by);
     };
     for (const aabblab::experiment& e : all_experiments(size))
-        write_experiment(folder, e, [&](const played& p, aabblab::row& r) {
-            const double time = time_of(p, ratio) * std::exp(noise * normal(random));
-            const bool sorting = e.name == "c3";
-            const bool meshes = r.triangles && e.name != "c11" && e.name != "c9_geometry";
-            r.update_ms = meshes ? 50 : time;
-            r.search_ms = sorting || meshes ? 50 : time;
-            r.detect_ms = r.triangles ? time : 0;
-            if ((e.name == "figure1" || e.name == "three_lists") && p.has("axial_cut"))
-                scaled(count_in(r, "box_tests"), ratio);
-            if (e.name == "figure2" || e.name == "figure2_million")
-                for (const char* part : {"nodes", "indices"})
-                    if (p.has("compressed")) scaled(bytes_in(r, part), ratio);
-            if (e.name.starts_with("smb_"))
-                for (const char* part : {"projections", "partition", "sweep"})
-                    bytes_in(r, part) = static_cast<std::uint64_t>(1000 * time_of(p, ratio) + 0.5);
-            if (e.name == "c5_world" && p.value_of("density") != "0.1")
-                for (const char* part : {"projections", "partition", "sweep"})
-                    scaled(bytes_in(r, part), p.has("axial_cut") ? ratio : 1 / ratio);
-            // As many segments as were wanted: the limit is far.
-            if (const std::size_t at = p.who[aabb::strategy_kind::partition].rfind('=');
-                e.name == "c4" && at != std::string::npos)
-                count_in(r, "segments_got") = p.who[aabb::strategy_kind::partition].ends_with("auto")
-                                                  ? 8
-                                                  : std::stoul(p.who[aabb::strategy_kind::partition].substr(at + 1));
-            // The limit acts.
-            if (e.name == "c10" && p.has("limit=on")) scaled(count_in(r, "segments_got"), 0.5);
-            // The work of an element grows with N where the claim is wrong.
-            if (e.name == "c2" && ratio > 1)
-                for (const char* work : {"comparisons", "moves"})
-                    scaled(count_in(r, work), std::log10(static_cast<double>(r.objects)));
-        });
+        write_experiment(
+            folder, e,
+            [&](const played& p, aabblab::row& r) {
+                const double time = time_of(p, ratio) * std::exp(noise * normal(random));
+                const bool sorting = e.name == "c3";
+                const bool meshes = r.triangles && e.name != "c11" && e.name != "c9_geometry";
+                r.update_ms = meshes ? 50 : time;
+                r.search_ms = sorting || meshes ? 50 : time;
+                r.detect_ms = r.triangles ? time : 0;
+                if ((e.name == "figure1" || e.name == "three_lists") && p.has("axial_cut"))
+                    scaled(count_in(r, "box_tests"), ratio);
+                if (e.name == "figure2" || e.name == "figure2_million")
+                    for (const char* part : {"nodes", "indices"})
+                        if (p.has("compressed")) scaled(bytes_in(r, part), ratio);
+                if (e.name.starts_with("smb_"))
+                    for (const char* part : {"projections", "partition", "sweep"})
+                        bytes_in(r, part) = static_cast<std::uint64_t>(1000 * time_of(p, ratio) + 0.5);
+                if (e.name == "c5_world" && p.value_of("density") != "0.1")
+                    for (const char* part : {"projections", "partition", "sweep"})
+                        scaled(bytes_in(r, part), p.has("axial_cut") ? ratio : 1 / ratio);
+                // As many segments as were wanted: the limit is far.
+                if (const std::size_t at = p.who[aabb::strategy_kind::partition].rfind('=');
+                    e.name == "c4" && at != std::string::npos)
+                    count_in(r, "segments_got") =
+                        p.who[aabb::strategy_kind::partition].ends_with("auto")
+                            ? 8
+                            : std::stoul(p.who[aabb::strategy_kind::partition].substr(at + 1));
+                // The limit acts.
+                if (e.name == "c10" && p.has("limit=on")) scaled(count_in(r, "segments_got"), 0.5);
+                // The work of an element grows with N where the claim is wrong.
+                if (e.name == "c2" && ratio > 1)
+                    for (const char* work : {"comparisons", "moves"})
+                        scaled(count_in(r, work), std::log10(static_cast<double>(r.objects)));
+            },
+            disturb);
     write_tests(folder, ratio, 1);
 }
 
