@@ -61,8 +61,9 @@ draft one_cut_a_box(const measurements& m) {
                 s.label = "edge " + span + " of the world";
                 s.points.push_back(point_of(number_of(c.of(), "huge"), one));
             }
-            made.candidates.push_back(span.empty() ? told(std::move(one), "on mixed sizes" + wanted)
-                                                   : told(std::move(one), "with huge boxes" + wanted));
+            made.candidates.push_back(span.empty()
+                                          ? told(std::move(one), "with that limit on mixed sizes" + wanted)
+                                          : told(std::move(one), "with at most one cut of huge boxes" + wanted));
         }
     for (const auto& [span, s] : by_span) f.lines.push_back(s);
     f.lines.push_back({"any number of cuts", series_style::level, {{1, 1, 1, 1}}});

@@ -59,7 +59,7 @@ public:
         text_ = fmt::format(
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
             "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
-            "<link rel=\"icon\" href=\"data:,\">\n<title>AABB Lab: the paper, reproduced</title>\n"
+            "<link rel=\"icon\" href=\"data:,\">\n<title>AABB Lab: the paper, put to the test</title>\n"
             "<style>\n{}</style></head><body>\n",
             embedded::report_css);
     }
@@ -158,15 +158,17 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
     page out(folder);
     if (!all.disturbance.empty()) out.paragraph(all.disturbance, "wrong");
     for (const std::string& failure : failures) out.paragraph("Wrong: " + failure + ".", "wrong");
-    out.raw("<h1>The paper, reproduced</h1>\n<div class=\"headline\">\n");
+    out.raw("<h1>The paper, put to the test</h1>\n<div class=\"headline\">\n");
     for (const std::string& sentence : all.headline) out.paragraph(sentence);
     out.raw("</div>\n");
-    out.paragraph(fmt::format("\"{}\": its table, its figures, its claims and one of SMB, which it follows: {} in all. "
-                              "{}, {} size. Commit {}, {}, {}. {} rows of {} "
-                              "scenes; up to {} processes, {} seeds and {} repeats in all.",
-                              paper_title, all.claims.size(), made.date, made.size, made.commit, made.compiler,
-                              made.cpu, made.rows, made.scenes, made.processes, made.seeds, made.repeats),
-                  "soft");
+    out.paragraph(
+        fmt::format(
+            "\"{}\": its table, its figures, its claims and one of the method that it follows (SMB, 2006): {} in all. "
+            "{}, {} size. Commit {}, {}, {}. {} rows of {} "
+            "scenes; up to {} processes, {} seeds and {} repeats in all.",
+            paper_title, all.claims.size(), made.date, made.size, made.commit, made.compiler, made.cpu, made.rows,
+            made.scenes, made.processes, made.seeds, made.repeats),
+        "soft");
     for (const std::string& note : made.notes) out.paragraph("Note: " + note + ".", "soft");
     add_claim_rows(out, all);
     add_rule(out, all);

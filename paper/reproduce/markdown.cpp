@@ -13,7 +13,7 @@ namespace aabblab {
 
 std::string markdown_of(const reproduction& all, std::span<const report_section> sections, const provenance& made,
                         const std::vector<std::string>& failures) {
-    std::string text = "# The paper, reproduced\n\n";
+    std::string text = "# The paper, put to the test\n\n";
     if (!all.disturbance.empty()) text += "**" + all.disturbance + "**\n\n";
     for (const std::string& failure : failures) text += "**Wrong:** " + failure + ".\n\n";
     for (const std::string& sentence : all.headline)
