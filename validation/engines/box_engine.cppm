@@ -26,7 +26,7 @@ public:
     [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
 
 protected:
-    [[nodiscard]] bool is_present(std::uint32_t id) const { return objects_.contains(id); }
+    [[nodiscard]] inline bool is_present(std::uint32_t id) const { return objects_.contains(id); }
 
     /// Takes the boxes of the present objects, whose ids are ascending.
     virtual void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;

@@ -17,10 +17,10 @@ struct numbered_box {
     box bounds;
     ID number;
 
-    static int dimension() { return 3; }
-    [[nodiscard]] ID id() const { return number; }
-    [[nodiscard]] NT min_coord(int axis) const { return bounds.min[axis]; }
-    [[nodiscard]] NT max_coord(int axis) const { return bounds.max[axis]; }
+    static inline int dimension() { return 3; }
+    [[nodiscard]] inline ID id() const { return number; }
+    [[nodiscard]] inline NT min_coord(int axis) const { return bounds.min[axis]; }
+    [[nodiscard]] inline NT max_coord(int axis) const { return bounds.max[axis]; }
 };
 
 }  // namespace aabb

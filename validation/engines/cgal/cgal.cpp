@@ -1,6 +1,8 @@
 module;
 #include <CGAL/box_intersection_d.h>
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -35,9 +37,13 @@ private:
     }
 
     void find(std::vector<index_pair>& pairs) override {
-        CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), [&](const numbered_box& a, const numbered_box& b) {
+        const auto collect = [&](const numbered_box& a, const numbered_box& b) {
             pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
-        });
+        };
+        // So few boxes CGAL scans in place of dividing them further. Its default of 10 takes up to three times as long
+        // on 1,000 to 100,000 cubes; and with boxes this small, pointers to them are not faster than they are.
+        const auto cutoff = static_cast<std::ptrdiff_t>(3 * std::sqrt(static_cast<double>(boxes_.size())));
+        CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), collect, cutoff);
     }
 
     std::vector<numbered_box> boxes_;
