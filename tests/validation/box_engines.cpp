@@ -9,6 +9,9 @@
 
 #include "support.hpp"
 
+// Imports, so it comes last.
+#include "left_out.hpp"
+
 import aabb.validation;
 
 using namespace aabb;
@@ -51,6 +54,9 @@ TEST_CASE("engines find every pair of overlapping boxes once") {
     }
     SECTION("random boxes, sparse") {
         require_found_by_all(random_boxes(random, 700, 0.2F));
+    }
+    SECTION("two that share one cell of a grid only, where cells are counted from zero") {
+        require_found_by_all({{{0.2F, 0.2F, -0.3F}, {0.8F, 0.8F, 0.3F}}, {{0.3F, 0.3F, 0.1F}, {0.7F, 0.7F, 0.65F}}});
     }
     SECTION("a lattice with many ties") {
         require_found_by_all(lattice_boxes(random, 600));
@@ -149,6 +155,17 @@ TEST_CASE("engines refuse bad boxes and bad ids") {
         bad[1] = {{0, 0, 2}, {1, 1, 1}};
         REQUIRE(refusal_in([&] { engine->update(bad); }) == "box 1 is inverted: its minimum is above its maximum");
     }
+}
+
+TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
+    if (is_left_out("ode_hash")) SKIP(refusal_of_engine("ode_hash"));
+    constexpr std::uint32_t most = 131'071;
+    const auto engine = make_box_engine("ode_hash");
+    for (std::uint32_t id = 0; id <= most; ++id) engine->insert(id);
+    const std::vector<box> boxes(most + 1, {{0, 0, 0}, {1, 1, 1}});
+    REQUIRE(
+        refusal_in([&] { engine->update(boxes); }) ==
+        "ode_hash takes at most 131071 objects, and here are 131072: ODE counts the bytes for their pairs in an int");
 }
 
 TEST_CASE("engines say what they hold") {

@@ -10,6 +10,9 @@
 
 #include "support.hpp"
 
+// Imports, so it comes last.
+#include "left_out.hpp"
+
 import aabb.validation;
 
 using namespace aabb;
@@ -43,10 +46,6 @@ std::vector<engine_info> mesh_engines() {
     std::vector<engine_info> all(engines().begin(), engines().end());
     std::erase_if(all, [](const engine_info& info) { return !info.collides_meshes; });
     return all;
-}
-
-bool is_left_out(const char* engine) {
-    return std::ranges::find(left_out_engines(), engine, &left_out_engine::name) != left_out_engines().end();
 }
 
 constexpr auto other = static_cast<std::size_t>(difference_class::other);

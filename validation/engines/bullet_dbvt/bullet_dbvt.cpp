@@ -1,0 +1,103 @@
+module;
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+module aabb.engines;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import :box_engine;
+import :engine;
+
+namespace aabb {
+
+namespace {
+
+btDbvtVolume volume_of(const box& b) {
+    return btDbvtVolume::FromMM({b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]});
+}
+
+/// Driven as Bullet's own broad phase drives it: a leaf is a little larger than its box and stays while it holds it.
+class bullet_dbvt final : public box_engine {
+public:
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        const auto leaves = static_cast<std::size_t>(tree_.m_leaves);
+        const std::size_t nodes = leaves ? 2 * leaves - 1 : 0;
+        const auto stack = static_cast<std::size_t>(tree_.m_stkStack.capacity());
+        return {{"engine",
+                 bytes_of(boxes_) + bytes_of(leaves_) + nodes * sizeof(btDbvtNode) + stack * sizeof(btDbvt::sStkNN)}};
+    }
+
+private:
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+        for (std::uint32_t id = 0; id < leaves_.size(); ++id)
+            if (leaves_[id] && !is_present(id)) {
+                tree_.remove(leaves_[id]);
+                leaves_[id] = nullptr;
+            }
+        boxes_.assign(boxes.begin(), boxes.end());
+        if (leaves_.size() < boxes.size()) leaves_.resize(boxes.size());
+        const btScalar margin = margin_for(ids);
+        for (const std::uint32_t id : ids) {
+            btDbvtVolume volume = volume_of(boxes[id]);
+            btDbvtNode*& leaf = leaves_[id];
+            if (!leaf) {
+                leaf = tree_.insert(volume, nullptr);
+                leaf->dataAsInt = static_cast<int>(id);
+            } else if (Intersect(leaf->volume, volume)) {
+                tree_.update(leaf, volume, margin);
+            } else {
+                tree_.update(leaf, volume);
+            }
+        }
+        tree_.optimizeIncremental(1);
+    }
+
+    /// Bullet's margin of 0.05, where objects are about 1 in size.
+    [[nodiscard]] btScalar margin_for(std::span<const std::uint32_t> ids) const {
+        double extents = 0;
+        for (const std::uint32_t id : ids)
+            for (int k = 0; k < 3; ++k) extents += double{boxes_[id].max[k]} - double{boxes_[id].min[k]};
+        const double margin = 0.05 * extents / (3 * std::max(1.0, static_cast<double>(ids.size())));
+        return static_cast<btScalar>(std::min(margin, double{std::numeric_limits<float>::max()}));
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        struct collector final : btDbvt::ICollide {
+            collector(const std::vector<box>& all, std::vector<index_pair>& found) : boxes(all), pairs(found) {}
+            using btDbvt::ICollide::Process;
+            void Process(const btDbvtNode* one, const btDbvtNode* other) override {
+                const auto a = static_cast<std::uint32_t>(one->dataAsInt);
+                const auto b = static_cast<std::uint32_t>(other->dataAsInt);
+                if (overlaps(boxes[a], boxes[b])) pairs.push_back(ordered_pair(a, b));
+            }
+            const std::vector<box>& boxes;
+            std::vector<index_pair>& pairs;
+        };
+        collector collect(boxes_, pairs);
+        tree_.collideTTpersistentStack(tree_.m_root, tree_.m_root, collect);
+    }
+
+    std::vector<box> boxes_;
+    std::vector<btDbvtNode*> leaves_;  // by id; null where absent
+    btDbvt tree_;
+};
+
+}  // namespace
+
+engine bullet_dbvt_engine() {
+    return {.name = "bullet_dbvt",
+            .summary = "Bullet's dynamic tree of boxes, collided with itself",
+            .exact = true,
+            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<bullet_dbvt>(); }};
+}
+
+}  // namespace aabb

@@ -1,0 +1,130 @@
+module;
+#include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+module aabb.engines;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import :box_engine;
+import :engine;
+
+namespace aabb {
+
+namespace {
+
+/// The greatest floats moved to where no extent of a world is infinite. All ends keep their order, if not strictly.
+box in_reach(box b) {
+    constexpr float most = 1e37F;
+    for (int k = 0; k < 3; ++k) {
+        b.min[k] = std::clamp(b.min[k], -most, most);
+        b.max[k] = std::clamp(b.max[k], -most, most);
+    }
+    return b;
+}
+
+/// With half as much again on each side, and more than nothing where all lie in a plane.
+box world_around(const box& all) {
+    box world = all;
+    for (int k = 0; k < 3; ++k) {
+        const float far = std::max(std::abs(all.min[k]), std::abs(all.max[k]));
+        const float margin = (all.max[k] - all.min[k]) / 2 + far / 1024 + 1e-20F;
+        world.min[k] -= margin;
+        world.max[k] += margin;
+    }
+    return world;
+}
+
+btVector3 corner_of(const vec3f& v) {
+    return {v[0], v[1], v[2]};
+}
+
+/// Bullet counts coordinates in whole steps of a world that it wants to know in advance. That keeps their order, if not
+/// strictly, and in one step lower ends come before upper ones: it finds all that overlaps, and some that does not.
+class bullet_sap final : public box_engine {
+public:
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        std::size_t all = bytes_of(boxes_) + bytes_of(proxies_) + bytes_of(objects_);
+        if (sweep_) {
+            using handle = bt32BitAxisSweep3::Handle;
+            using edge = bt32BitAxisSweep3::Edge;
+            const auto pairs = static_cast<std::size_t>(sweep_->getOverlappingPairCache()->getNumOverlappingPairs());
+            all += objects_.size() * (sizeof(handle) + 6 * sizeof(edge));
+            all += pairs * (sizeof(btBroadphasePair) + 2 * sizeof(int));  // with their places in the hash table
+        }
+        return {{"engine", all}};
+    }
+
+private:
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+        boxes_.assign(boxes.begin(), boxes.end());
+        box all = empty_box();
+        for (const std::uint32_t id : ids) all = merged(all, in_reach(boxes[id]));
+        if (proxies_.size() < boxes.size() || (!ids.empty() && !contains(world_, all))) begin(all, boxes.size());
+        for (std::uint32_t id = 0; id < proxies_.size(); ++id)
+            if (proxies_[id] && !is_present(id)) {
+                sweep_->destroyProxy(proxies_[id], nullptr);
+                proxies_[id] = nullptr;
+            }
+        for (const std::uint32_t id : ids) place(id, in_reach(boxes[id]));
+    }
+
+    void begin(const box& all, std::size_t objects) {
+        world_ = world_around(all);
+        proxies_.assign(objects, nullptr);
+        objects_.assign(objects + 1, 0);
+        // Without the tree that Bullet keeps beside it for rays.
+        sweep_ = std::make_unique<bt32BitAxisSweep3>(corner_of(world_.min), corner_of(world_.max),
+                                                     static_cast<unsigned>(objects), nullptr, true);
+    }
+
+    void place(std::uint32_t id, const box& b) {
+        btBroadphaseProxy*& proxy = proxies_[id];
+        if (proxy) {
+            sweep_->setAabb(proxy, corner_of(b.min), corner_of(b.max), nullptr);
+        } else {
+            proxy = sweep_->createProxy(corner_of(b.min), corner_of(b.max), 0, nullptr, 1, 1, nullptr);
+            objects_[number_of(proxy)] = id;
+        }
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        if (!sweep_) return;
+        btOverlappingPairCache& cache = *sweep_->getOverlappingPairCache();
+        const auto count = static_cast<std::size_t>(cache.getNumOverlappingPairs());
+        if (count == 0) return;
+        for (const btBroadphasePair& found : std::span(cache.getOverlappingPairArrayPtr(), count)) {
+            const std::uint32_t a = objects_[number_of(found.m_pProxy0)];
+            const std::uint32_t b = objects_[number_of(found.m_pProxy1)];
+            if (overlaps(boxes_[a], boxes_[b])) pairs.push_back(ordered_pair(a, b));
+        }
+    }
+
+    /// Bullet numbers proxies from 1.
+    static std::size_t number_of(const btBroadphaseProxy* proxy) { return static_cast<std::size_t>(proxy->m_uniqueId); }
+
+    std::vector<box> boxes_;
+    std::vector<btBroadphaseProxy*> proxies_;  // by id; null where absent
+    std::vector<std::uint32_t> objects_;       // ids by number of the proxy
+    box world_ = empty_box();
+    std::unique_ptr<bt32BitAxisSweep3> sweep_;
+};
+
+}  // namespace
+
+engine bullet_sap_engine() {
+    return {.name = "bullet_sap",
+            .summary = "Bullet's incremental sweep on three axes; quadratic in a first frame, and where much moves",
+            .exact = true,
+            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<bullet_sap>(); }};
+}
+
+}  // namespace aabb

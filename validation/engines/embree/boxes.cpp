@@ -1,0 +1,176 @@
+module;
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+module aabb.engines;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import :box_engine;
+
+namespace aabb {
+
+namespace {
+
+struct release {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+
+/// Embree's calls throw nothing: it is asked afterwards what failed first.
+void require_success(RTCDevice device) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree fails with its error " + std::to_string(error));
+}
+
+/// Where what Embree allocates and gives back is added up; null when nobody asks.
+thread_local std::ptrdiff_t* charged = nullptr;
+
+class charge_to {
+public:
+    explicit charge_to(std::ptrdiff_t& account) { charged = &account; }
+    charge_to(const charge_to&) = delete;
+    charge_to& operator=(const charge_to&) = delete;
+    ~charge_to() { charged = nullptr; }
+};
+
+/// The only device of the process, never given back. With the last one would go Embree's limit of one thread, and a
+/// second thread begin, which takes time from whoever is timed next.
+RTCDevice the_device() {
+    static const RTCDevice made = [] {
+        const RTCDevice device = rtcNewDevice("threads=1");
+        require_success(device);
+        const auto note = [](void*, std::ptrdiff_t bytes, bool) {
+            if (charged) *charged += bytes;
+            return true;
+        };
+        rtcSetDeviceMemoryMonitorFunction(device, note, nullptr);
+        return device;
+    }();
+    return made;
+}
+
+/// Embree builds with denormals taken for zero, and leaves out what reaches beyond 1.844e18. Moved to what it can work
+/// with, all coordinates keep their order, if not strictly: what overlaps still does.
+float workable(float x) {
+    constexpr float most = 1e18F;
+    return std::abs(x) < std::numeric_limits<float>::min() ? 0 : std::clamp(x, -most, most);
+}
+
+RTCBounds workable(const box& b) {
+    RTCBounds made{};
+    made.lower_x = workable(b.min[0]);
+    made.lower_y = workable(b.min[1]);
+    made.lower_z = workable(b.min[2]);
+    made.upper_x = workable(b.max[0]);
+    made.upper_y = workable(b.max[1]);
+    made.upper_z = workable(b.max[2]);
+    return made;
+}
+
+class embree_boxes final : public box_engine {
+public:
+    explicit embree_boxes(RTCBuildQuality quality) : quality_(quality) {}
+
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        return {{"engine", bytes_of(boxes_) + bytes_of(ids_) + bytes_of(bounds_) + static_cast<std::size_t>(held_)}};
+    }
+
+private:
+    /// What a search has found so far: numbers of boxes, not yet ids.
+    struct finding {
+        std::vector<index_pair>& pairs;
+        bool out_of_memory = false;
+    };
+
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+        ids_.assign(ids.begin(), ids.end());
+        boxes_.clear();
+        bounds_.clear();
+        for (const std::uint32_t id : ids) {
+            boxes_.push_back(boxes[id]);
+            bounds_.push_back(workable(boxes[id]));
+        }
+        if (ids_.size() < 2) return;
+        const charge_to here(held_);
+        if (!scene_) begin();
+        rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(bounds_.size()));
+        rtcCommitGeometry(geometry_.get());
+        rtcCommitScene(scene_.get());
+        require_success(the_device());
+    }
+
+    void begin() {
+        geometry_.reset(rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_USER));
+        require_success(the_device());
+        rtcSetGeometryBuildQuality(geometry_.get(), quality_);
+        rtcSetGeometryUserData(geometry_.get(), this);
+        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* asked) {
+            *asked->bounds_o = static_cast<const embree_boxes*>(asked->geometryUserPtr)->bounds_[asked->primID];
+        };
+        rtcSetGeometryBoundsFunction(geometry_.get(), bounds_of_one, nullptr);
+        scene_.reset(rtcNewScene(the_device()));
+        require_success(the_device());
+        // Embree heeds the quality of a geometry in scenes of low quality only.
+        rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_LOW);
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
+        rtcAttachGeometry(scene_.get(), geometry_.get());
+    }
+
+    void find(std::vector<index_pair>& pairs) override {
+        if (ids_.size() < 2) return;
+        const auto known = static_cast<std::ptrdiff_t>(pairs.size());
+        finding found{pairs};
+        rtcCollide(scene_.get(), scene_.get(), collect, &found);
+        require_success(the_device());
+        if (found.out_of_memory) throw std::bad_alloc();
+        // Only now: while it searches, Embree may still take denormals for zero.
+        const auto apart = [&](index_pair p) { return !overlaps(boxes_[p.a], boxes_[p.b]); };
+        pairs.erase(std::remove_if(pairs.begin() + known, pairs.end(), apart), pairs.end());
+        for (auto p = pairs.begin() + known; p != pairs.end(); ++p) *p = {ids_[p->a], ids_[p->b]};
+    }
+
+    /// Embree reports all pairs in the leaves that overlap, each from both sides. No exception may pass through it.
+    static void collect(void* to, RTCCollision* collisions, unsigned count) {
+        finding& found = *static_cast<finding*>(to);
+        try {
+            for (const RTCCollision& c : std::span(collisions, count))
+                if (c.primID0 < c.primID1) found.pairs.push_back({c.primID0, c.primID1});
+        } catch (const std::bad_alloc&) {
+            found.out_of_memory = true;
+        }
+    }
+
+    RTCBuildQuality quality_;
+    std::ptrdiff_t held_ = 0;  // bytes that Embree holds
+    std::vector<box> boxes_;
+    std::vector<std::uint32_t> ids_;
+    std::vector<RTCBounds> bounds_;
+    std::unique_ptr<RTCGeometryTy, release> geometry_;
+    std::unique_ptr<RTCSceneTy, release> scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<global_stage> make_embree_boxes(bool refit) {
+    return std::make_unique<embree_boxes>(refit ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_LOW);
+}
+
+}  // namespace aabb
