@@ -145,7 +145,7 @@ TEST_CASE("boxes move by the displacement, in either unit") {
                 play(info.name, {{"unit", unit}, {"objects", objects}, {"frames", "3"}});
         }
     }
-    REQUIRE(moving == 8);
+    REQUIRE(moving == 11);
 }
 
 TEST_CASE("overlapping pairs grow with the number of boxes, not with its square") {
@@ -274,6 +274,56 @@ TEST_CASE("flat and line move on two axes and on one; the others tell nothing") 
     const auto line = play("line");
     REQUIRE((!is_flat(line, 0) && is_flat(line, 1) && is_flat(line, 2)));
     for (const auto* frames : {&flat, &line}) REQUIRE(std::abs(edge(frames->back().boxes[7], 2) - 1) < 1e-6);
+}
+
+TEST_CASE("needles are as long as told on one axis, a third of them on each") {
+    for (const std::string length : {"1.5", "7", "20"}) {
+        CAPTURE(length);
+        const auto frames = play("needles", {{"length", length}});
+        for (std::size_t i = 0; i < 1000; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const double wanted = i % 3 == static_cast<std::size_t>(k) ? std::stod(length) : 1;
+                REQUIRE(std::abs(edge(frames.back().boxes[i], k) - wanted) < 1e-4);
+            }
+        const double neighbours = neighbours_in(frames[0]);
+        CHECK(neighbours > 1);
+        CHECK(neighbours < 3);
+    }
+}
+
+TEST_CASE("hollow_sphere is a sphere with nothing inside, wherever its cubes drift") {
+    const auto frames = play("hollow_sphere", {{"displacement", "1"}});
+    const double radius = (edge(world_of(frames)) - 1) / 2;
+    REQUIRE(radius > 10);
+    for (const frame& f : frames)
+        for (const aabb::box& b : f.boxes) {
+            const double from_centre = way(b, {});
+            REQUIRE(std::abs(from_centre - radius) < 0.01 * radius);
+        }
+    const double neighbours = neighbours_in(frames.back());
+    CHECK(neighbours > 1.7);
+    CHECK(neighbours < 2.3);
+    // No step is longer than the sphere is wide, and none is lost.
+    const auto wild = play("hollow_sphere", {{"displacement", "1e9"}});
+    REQUIRE(std::abs(ways_in(wild).mean / (2 * radius) - 1) < 0.01);
+}
+
+TEST_CASE("far lies as far from the origin as told, and its cubes touch where floats are coarse") {
+    const auto frames = play("far", {{"distance", "1e6"}});
+    const aabb::box world = world_of(frames);
+    for (int k = 0; k < 3; ++k) {
+        REQUIRE(world.min[k] >= 1e6F);
+        REQUIRE(world.max[k] < 1e6F + 20);
+    }
+    // Floats are a sixteenth apart there.
+    std::size_t touching = 0;
+    for (const aabb::index_pair& p : pairs_of(frames[0], false)) {
+        const aabb::box& a = frames[0].boxes[p.a];
+        const aabb::box& b = frames[0].boxes[p.b];
+        for (int k = 0; k < 3; ++k) touching += a.max[k] == b.min[k] || b.max[k] == a.min[k];
+    }
+    REQUIRE(touching > 20);
+    REQUIRE(std::abs(neighbours_in(frames[0]) - 2) < 0.7);
 }
 
 TEST_CASE("teleport leaves nothing where it was") {

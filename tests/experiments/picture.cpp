@@ -119,8 +119,9 @@ TEST_CASE("a picture of what lies far from the origin has an end") {
 
 TEST_CASE("scene draws every kind, without a recording where none is wanted") {
     const temporary_folder folder;
-    const std::string kind = GENERATE("brownian", "clustered", "flat", "free_fall", "lattice", "line", "mixed_sizes",
-                                      "one_huge", "pile", "population", "still", "teleport", "mesh_swarm");
+    const std::string kind =
+        GENERATE("brownian", "clustered", "far", "flat", "free_fall", "hollow_sphere", "lattice", "line", "mixed_sizes",
+                 "needles", "one_huge", "pile", "population", "still", "teleport", "mesh_swarm");
     const std::string objects = GENERATE("0", "1", "30");
     CAPTURE(kind, objects);
     const std::string file = folder / "scene.svg";
