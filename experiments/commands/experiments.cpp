@@ -65,6 +65,8 @@ void note_idle_engines(const experiment& e) {
             if (std::ranges::find(e.engines, engine.name) != e.engines.end() &&
                 !contender_of(engine, has_meshes(scene)))
                 note(engine.name + " has no part in " + scene.kind + ": it searches no boxes");
+        for (const external_engine& engine : e.externals)
+            if (has_meshes(scene)) note(engine.name + " has no part in " + scene.kind + ": it is given boxes only");
     }
 }
 

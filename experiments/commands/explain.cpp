@@ -67,6 +67,8 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
         for (const std::string& name : e.engines)
             if (name == engine.name && !contender_of(engine, has_meshes(scene)))
                 print("  " + name + " has no part in this scene: it searches no boxes\n");
+    for (const external_engine& engine : e.externals)
+        if (has_meshes(scene)) print("  " + engine.name + " has no part in this scene: it is given boxes only\n");
     if (has_meshes(scene)) return;
     std::string kinds;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)

@@ -21,6 +21,15 @@ import aabblab.scenes;
 
 export namespace aabblab {
 
+/// A program of others that finds pairs of boxes, in a process of its own: it is given a recording, and writes what it
+/// found and how long it took.
+struct external_engine {
+    std::string name;
+    std::vector<std::string> command;  ///< as it is written; the names of three files are added
+    std::string program;               ///< the first word of it, where it was found
+    bool exact = true;                 ///< a difference from the exact answer is a failure, not a measurement
+};
+
 /// A config with its lists multiplied out. All names, values and combinations in it are known to be good.
 struct experiment {
     std::string name;
@@ -28,6 +37,7 @@ struct experiment {
     std::string text;  ///< what stands in it
     bool quick = false;
     std::vector<std::string> engines;
+    std::vector<external_engine> externals;  ///< have no part in scenes of meshes
     std::vector<scene_choice> scenes;
     std::string content_digest;                   ///< of the scenes' meshes, and of the frames of files that they play
     std::vector<aabb::composition> compositions;  ///< scenes of boxes use the global search of each only

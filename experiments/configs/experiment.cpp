@@ -33,15 +33,24 @@ namespace aabblab {
 std::vector<aabb::composition> compositions_of(const document& doc, const node* compose);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
 
+namespace {
+
+/// Files have names that begin with it.
+void require_plain_name(const document& doc, const node& name) {
+    const std::string& text = doc.text_of("name", name);
+    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+    if (text.empty() || !std::ranges::all_of(text, fits))
+        doc.fail(name.line, "the name '" + text + "' must consist of letters, digits, - and _");
+}
+
+}  // namespace
+
 /// Results stand in a folder of this name.
 std::string name_of(const document& doc) {
     const node* name = doc.root().find("name");
     if (!name) doc.fail(1, "this config has no name; expected name = \"…\"");
-    const std::string& text = doc.text_of("name", *name);
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
-    if (text.empty() || !std::ranges::all_of(text, fits))
-        doc.fail(name->line, "the name '" + text + "' must consist of letters, digits, - and _");
-    return text;
+    require_plain_name(doc, *name);
+    return doc.text_of("name", *name);
 }
 
 namespace {
@@ -61,6 +70,51 @@ std::vector<std::string> engines_of(const document& doc) {
         names.push_back(one.text);
     }
     return names;
+}
+
+/// A program as it is named, or, as files are, from the folder of the config. One without a slash is looked for in
+/// PATH.
+std::string found_program(const document& doc, const std::string& name) {
+    return name.find('/') == std::string::npos ? name : found_file(name, doc.folder()).string();
+}
+
+external_engine external_of(const document& doc, const node& table) {
+    doc.require_table("external", table);
+    doc.require_keys(table, " of [[external]]", {"name", "command", "exact"});
+    external_engine engine;
+    const node* name = table.find("name");
+    if (!name) doc.fail(table.line, "this [[external]] has no name; expected name = \"…\"");
+    engine.name = doc.text_of("name", *name);
+    require_plain_name(doc, *name);
+    if (std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
+        std::ranges::count(aabb::left_out_engines(), engine.name, &aabb::left_out_engine::name) > 0)
+        doc.fail(name->line, "there is an engine '" + engine.name + "' already; give this one another name");
+    const node* command = table.find("command");
+    if (!command) doc.fail(table.line, "'" + engine.name + "' has no command; expected command = [\"…\"]");
+    for (const located_text& word : doc.texts_of("command", *command)) engine.command.push_back(word.text);
+    if (engine.command.empty() || engine.command[0].empty())
+        doc.fail(command->line, "the command of '" + engine.name + "' is empty; expected a program");
+    doc.at(command->line, [&] { engine.program = found_program(doc, engine.command[0]); });
+    if (const node* exact = table.find("exact")) {
+        if (exact->kind != node_kind::boolean) doc.fail_type("exact", *exact, "true or false");
+        engine.exact = exact->text == "true";
+    }
+    return engine;
+}
+
+std::vector<external_engine> externals_of(const document& doc) {
+    std::vector<external_engine> all;
+    const node* externals = doc.root().find("external");
+    if (!externals) return all;
+    if (externals->kind != node_kind::list)
+        doc.fail(externals->line, "external must stand in double brackets: [[external]]");
+    for (const node& table : externals->items) {
+        external_engine engine = external_of(doc, table);
+        if (std::ranges::find(all, engine.name, &external_engine::name) != all.end())
+            doc.fail(table.line, "two [[external]] have the name '" + engine.name + "'");
+        all.push_back(std::move(engine));
+    }
+    return all;
 }
 
 /// Names of groups, all of whose numbers are recorded, and of metrics, whose groups are and which tables show.
@@ -124,13 +178,14 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     const document doc(text, file);
     if (const node* curve = doc.root().find("curve"))
         doc.fail(curve->line, "[[curve]] is of a config of errors; ./aabblab errors runs it");
-    doc.require_keys(doc.root(), "", {"name", "seed", "engines", "scene", "compose", "measure", "quick"});
+    doc.require_keys(doc.root(), "", {"name", "seed", "engines", "external", "scene", "compose", "measure", "quick"});
     experiment e;
     e.file = file;
     e.text = text;
     e.quick = size == experiment_size::quick;
     e.name = name_of(doc);
     e.engines = engines_of(doc);
+    e.externals = externals_of(doc);
     e.compositions = compositions_of(doc, doc.root().find("compose"));
     read_measure(doc, size, e);
     read_processes(doc, e);
@@ -158,6 +213,10 @@ std::string hash_of(const experiment& e) {
     std::string all = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
     for (std::size_t i = 0; i < metric_groups.size(); ++i) all += e.records(static_cast<metric_group>(i)) ? '+' : '-';
     for (const std::string& engine : e.engines) all += "\n" + engine;
+    for (const external_engine& engine : e.externals) {
+        all += "\n" + engine.name + (engine.exact ? " exact" : " inexact");
+        for (const std::string& word : engine.command) all += " + " + word;
+    }
     for (const aabb::composition& c : e.compositions) {
         all += "\n";
         for (const aabb::strategy_kind kind : aabb::strategy_kinds) all += to_text(c[kind]) + " + ";

@@ -9,6 +9,7 @@ module;
 
 module aabblab.play;
 
+import :external;
 import :player;
 import aabb.pipeline;
 import aabb.policy;
@@ -60,6 +61,22 @@ std::optional<contender> contender_of(const aabb::engine_info& engine, bool mesh
     return who;
 }
 
+namespace {
+
+contender contender_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
+    contender who;
+    who.name.engine = engine.name;
+    who.exact = who.exact_boxes = engine.exact;
+    const auto told = std::make_shared<std::vector<told_times>>();
+    who.told = told;
+    who.make_global = [engine, exchange, told](aabb::instrumentation) {
+        return std::make_unique<external_search>(engine, *exchange, *told);
+    };
+    return who;
+}
+
+}  // namespace
+
 bool has_meshes(const scene_choice& scene) {
     const auto info = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
     return info != scene_kinds().end() && info->has_meshes;
@@ -80,6 +97,9 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
         const auto engine = std::ranges::find(aabb::engines(), name, &aabb::engine_info::name);
         if (std::optional<contender> who = contender_of(*engine, meshes)) all.push_back(*std::move(who));
     }
+    if (meshes) return all;
+    const auto exchange = std::make_shared<exchange_folder>(scene);
+    for (const external_engine& engine : e.externals) all.push_back(contender_of(engine, exchange));
     return all;
 }
 

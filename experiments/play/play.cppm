@@ -32,7 +32,8 @@ export namespace aabblab {
 /// scene.
 [[nodiscard]] std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes);
 
-/// Who plays a scene of the experiment: its compositions, then its engines.
+/// Who plays a scene of the experiment: its compositions, then its engines, then, where it is of boxes, its external
+/// engines.
 [[nodiscard]] std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene);
 
 /// What came out of playing a scene beside the exact answer, untimed.
@@ -77,7 +78,8 @@ struct timing {
     elapsed detect;
     std::string digest;
 };
-/// The scene is told what the contender itself finds.
+/// Of an external engine, what it says of itself, of wall time alone. The scene is told what the contender itself
+/// finds.
 [[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who);
 [[nodiscard]] timing time_scene(scene_play& scene, const contender& who);
 

@@ -23,11 +23,19 @@ import aabblab.stopwatch;
 
 export namespace aabblab {
 
+/// What an external engine says that it took for a frame.
+struct told_times {
+    double update_ms = 0;
+    double search_ms = 0;
+};
+
 /// A composition of ours or a reference system, ready to be made anew for each time it plays.
 struct contender {
     contender_name name;
     std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
     std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
+    /// The times of an external engine, by frame, once `make_global` has run it; null for all others, which are timed.
+    std::shared_ptr<const std::vector<told_times>> told;
     bool whole_boxes =
         true;  ///< false where global search sees parts of objects: its pairs are not held against theirs
     bool exact_boxes = true;  ///< a difference from the exact pairs of boxes is a failure, not a measurement

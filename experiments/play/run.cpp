@@ -28,7 +28,8 @@ struct timed_contender {
     bool strayed = false;
 };
 
-row row_of(const experiment& e, const scene_choice& scene, const scene_validation& all, const contender_validation& v) {
+row row_of(const experiment& e, const scene_choice& scene, const scene_validation& all, const contender& who,
+           const contender_validation& v) {
     row r;
     r.experiment = e.name;
     r.scene = scene;
@@ -42,7 +43,8 @@ row row_of(const experiment& e, const scene_choice& scene, const scene_validatio
     // Engines count nothing.
     const bool counted = std::ranges::any_of(v.counts, [](std::uint64_t n) { return n > 0; });
     if (e.records(metric_group::counts) && counted) std::ranges::copy(v.counts, r.counts.begin());
-    if (e.records(metric_group::bytes)) std::ranges::copy(v.bytes, r.bytes.begin());
+    // What an external engine holds nobody knows.
+    if (e.records(metric_group::bytes) && !who.told) std::ranges::copy(v.bytes, r.bytes.begin());
     if (e.records(metric_group::error)) {
         r.missing = v.missing;
         r.invented = v.invented;
@@ -105,9 +107,10 @@ bool goes_its_own_way(const scene_choice& scene, const contender& who) {
 std::string time_into(const scene_choice& scene, timed_contender& timed) {
     row& r = timed.result;
     const timing times = time_scene(scene, *timed.who);
-    const auto take = [](const elapsed& time, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
+    const bool told = timed.who->told != nullptr;
+    const auto take = [told](const elapsed& time, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
         wall_ms = time.wall_ms;
-        cpu_ms = time.cpu_ms;
+        if (!told) cpu_ms = time.cpu_ms;
     };
     take(times.build, r.build_ms, r.build_cpu_ms);
     take(times.first, r.first_ms, r.first_cpu_ms);
@@ -139,7 +142,7 @@ admission validated(const experiment& e, const scene_choice& scene, std::span<co
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())
-            all.timed.push_back({&contenders[i], row_of(e, scene, found, v)});
+            all.timed.push_back({&contenders[i], row_of(e, scene, found, contenders[i], v)});
         else
             all.failures.push_back(v.failure);
     }

@@ -1,0 +1,200 @@
+// Programs of others that join an experiment by the pairs and the times that they write.
+#include "program.hpp"
+
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.configs;
+import aabblab.results;
+
+namespace {
+
+/// Finds the right pairs, and makes up its times.
+const std::string good = R"(#!/bin/sh
+')" AABBLAB_UNDER_TEST R"(' pairs "$1" --engine brute_force --out "$2" >/dev/null || exit
+{ echo frame,update_ms,search_ms; for frame in 0 1 2 3; do echo $frame,0.5,1.25; done; } >"$3"
+)";
+
+std::string config_of(const std::string& kind, const std::string& more) {
+    return "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = [\"./mine\"]\n" + more +
+           "[[scene]]\nkind = \"" + kind + "\"\nobjects = 150\nframes = 3\n[measure]\nrepeats = 2\n";
+}
+
+/// Runs an experiment with the external engine `mine`, a script beside the config.
+program_result run_with(const temporary_folder& folder, const std::string& script, const std::string& kind = "brownian",
+                        const std::string& more = {}) {
+    std::filesystem::permissions(folder.write("mine", script), std::filesystem::perms::owner_all);
+    std::filesystem::remove_all(folder / "out");
+    return run_program(
+        {"run", folder.write("joined.toml", config_of(kind, more)).string(), "--out", (folder / "out").string()});
+}
+
+std::string refusal_of(const std::string& text) {
+    try {
+        (void)aabblab::parse_experiment(text, "test.toml", aabblab::experiment_size::full);
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("An external engine is held against the exact answer and has the times that it tells") {
+    const std::string kind = GENERATE("brownian", "population", "lattice", "mixed_sizes");
+    CAPTURE(kind);
+    const temporary_folder folder;
+    const program_result result = run_with(folder, good, kind);
+    INFO(result.err << result.out);
+    REQUIRE(result.status == 0);
+    REQUIRE(result.out.find("  mine  ") != std::string::npos);
+    const std::vector<aabblab::row> rows = aabblab::verified_rows(folder / "out");
+    REQUIRE(rows.size() == 4);
+    for (const aabblab::row& r : rows) {
+        CHECK(r.digest == rows[0].digest);
+        CHECK(r.status == "exact");
+        CHECK(r.bytes.back().has_value() == r.name.engine.empty());
+        if (r.name.engine.empty()) continue;
+        CHECK(r.name.engine == "mine");
+        CHECK(r.first_ms == 1.75);
+        CHECK(r.update_ms == 1.5);
+        CHECK(r.search_ms == 3.75);
+        CHECK_FALSE(r.update_cpu_ms.has_value());
+    }
+    // Nothing of what was exchanged stays.
+    CHECK(std::ranges::none_of(std::filesystem::directory_iterator(folder.path()), [](const auto& entry) {
+        return entry.path().string().ends_with(".aabbs") || entry.path().string().ends_with(".pairs.csv");
+    }));
+    CHECK(run_program({"compare", (folder / "out").string(), (folder / "out").string()}).status == 0);
+    CHECK(run_program({"validate", (folder / "joined.toml").string()}).status == 0);
+    CHECK(run_program({"explain", (folder / "joined.toml").string()}).out.find("  mine\n") != std::string::npos);
+}
+
+TEST_CASE("What an external engine gets wrong is a failure, and counted where it says that it may") {
+    const auto [fault, says] = GENERATE(table<std::string, std::string>({
+        {"sed -i 2d \"$2\"\n", " is missing\n"},
+        {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is reported, but not once in the exact answer\n"},
+        {"sed -i 1q \"$2\"\n", " is missing\n"},
+    }));
+    const temporary_folder folder;
+    const program_result result = run_with(folder, good + fault);
+    INFO(result.err << result.out);
+    REQUIRE(result.status == 1);
+    REQUIRE(result.err.starts_with("aabblab: mine is wrong on brownian ("));
+    REQUIRE(result.err.find(says) != std::string::npos);
+    REQUIRE(aabblab::read_rows(folder / "out/results.csv").size() == 2);
+    const program_result counted = run_with(folder, good + fault, "brownian", "exact = false\n");
+    INFO(counted.err << counted.out);
+    REQUIRE(counted.status == 0);
+    for (const aabblab::row& r : aabblab::verified_rows(folder / "out")) {
+        CHECK((r.status == "exact") == r.name.engine.empty());
+        CHECK((r.missing.value() + r.invented.value() > 0) == !r.name.engine.empty());
+    }
+}
+
+TEST_CASE("An answer of an external engine that is malformed gets one sentence and status 2") {
+    const auto [fault, says] = GENERATE(table<std::string, std::string>({
+        {"exit 3\n", "the external engine 'mine' ended with status 3"},
+        {"kill -9 $$\n", "the external engine 'mine' was ended by signal 9"},
+        {"rm \"$2\"\n", "the pairs of the external engine 'mine' are not there: it wrote no such file"},
+        {"rm \"$3\"\n", "the times of the external engine 'mine' are not there: it wrote no such file"},
+        {": >\"$2\"\n", "the pairs of the external engine 'mine' are an empty file; expected the line frame,a,b"},
+        {"sed -i 1d \"$3\"\n",
+         "the times of the external engine 'mine', line 1: expected the line frame,update_ms,search_ms"},
+        {"sed -i '2s/$/,7/' \"$2\"\n", "the pairs of the external engine 'mine', line 2: expected frame,a,b"},
+        {"sed -i '2s/.*/0,4/' \"$2\"\n", "the pairs of the external engine 'mine', line 2: expected frame,a,b"},
+        {"sed -i '2s/.*//' \"$2\"\n", "the pairs of the external engine 'mine', line 2: expected frame,a,b"},
+        {"sed -i '2s/.*/0,1,x/' \"$2\"\n",
+         "the pairs of the external engine 'mine', line 2: expected an object below 150"},
+        {"sed -i '2s/.*/0,-1,2/' \"$2\"\n",
+         "the pairs of the external engine 'mine', line 2: expected an object below 150"},
+        {"sed -i '2s/.*/0,1,150/' \"$2\"\n",
+         "the pairs of the external engine 'mine', line 2: expected an object below 150"},
+        {"echo 4,1,2 >>\"$2\"\n", ": expected a frame below 4"},
+        {"sed -i '2s/.*/0,7,7/' \"$2\"\n",
+         "the pairs of the external engine 'mine', line 2: object 7 is paired with itself"},
+        {"echo 0,1,2 >>\"$2\"\n", ": frames do not stand in order"},
+        {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", "the pairs of the external engine 'mine' have 5 6 twice in frame 0"},
+        {"sed -i '$d' \"$3\"\n", "the times of the external engine 'mine' end before frame 3"},
+        {"sed -i '3s/.*/2,1,1/' \"$3\"\n",
+         "the times of the external engine 'mine', line 3: expected frame 1; each stands once, in order"},
+        {"sed -i '3s/.*/1,-1,1/' \"$3\"\n",
+         "the times of the external engine 'mine', line 3: expected a time in milliseconds, finite and not negative"},
+        {"sed -i '3s/.*/1,nan,1/' \"$3\"\n",
+         "the times of the external engine 'mine', line 3: expected a time in milliseconds, finite and not negative"},
+        {"sed -i '3s/.*/1,1,2ms/' \"$3\"\n",
+         "the times of the external engine 'mine', line 3: expected a time in milliseconds, finite and not negative"},
+        {"echo 4,1,1 >>\"$3\"\n", "the times of the external engine 'mine', line 6: expected a frame below 4"},
+    }));
+    CAPTURE(fault);
+    const temporary_folder folder;
+    const program_result result = run_with(folder, good + fault);
+    INFO(result.out);
+    CAPTURE(result.err);
+    REQUIRE(result.status == 2);
+    REQUIRE(is_one_sentence(result.err));
+    REQUIRE(result.err.find(says + "\n") != std::string::npos);
+}
+
+TEST_CASE("An external engine that cannot be started gets one sentence and status 2") {
+    const temporary_folder folder;
+    folder.write("mine", good);  // which nobody may execute
+    const auto config = folder.write("joined.toml", config_of("brownian", ""));
+    const program_result refused = run_program({"run", config.string(), "--out", (folder / "out").string()});
+    CAPTURE(refused.err);
+    REQUIRE(refused.status == 2);
+    REQUIRE(is_one_sentence(refused.err));
+    REQUIRE(refused.err.find("mine cannot be started: Permission denied\n") != std::string::npos);
+}
+
+TEST_CASE("An external engine has no part in scenes of meshes") {
+    const temporary_folder folder;
+    std::filesystem::permissions(folder.write("mine", good), std::filesystem::perms::owner_all);
+    const auto config =
+        folder.write("meshes.toml",
+                     "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = \"./mine\"\n[[scene]]\n"
+                     "kind = \"mesh_swarm\"\nmeshes = [\"icosphere:triangles=20\"]\nobjects = 5\n"
+                     "frames = 1\n[measure]\nrepeats = 1\n");
+    const program_result result = run_program({"run", config.string(), "--out", (folder / "out").string()});
+    INFO(result.out);
+    REQUIRE(result.status == 0);
+    REQUIRE(result.err == "aabblab: mine has no part in mesh_swarm: it is given boxes only\n");
+}
+
+TEST_CASE("External engines in a config are checked, and are part of its hash") {
+    const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
+    const auto with = [&](const std::string& external) { return "name = \"x\"\n" + external + scene; };
+    const auto [external, says] = GENERATE(table<std::string, std::string>({
+        {"[external]\nname = \"a\"\ncommand = \"ls\"\n", ":2: external must stand in double brackets: [[external]]"},
+        {"[[external]]\ncommand = \"ls\"\n", ":2: this [[external]] has no name; expected name = \"…\""},
+        {"[[external]]\nname = \"a/b\"\ncommand = \"ls\"\n",
+         ":3: the name 'a/b' must consist of letters, digits, - and _"},
+        {"[[external]]\nname = \"cgal\"\ncommand = \"ls\"\n",
+         ":3: there is an engine 'cgal' already; give this one another name"},
+        {"[[external]]\nname = \"a\"\n", ":2: 'a' has no command; expected command = [\"…\"]"},
+        {"[[external]]\nname = \"a\"\ncommand = []\n", ":4: the command of 'a' is empty; expected a program"},
+        {"[[external]]\nname = \"a\"\ncommand = \"\"\n", ":4: the command of 'a' is empty; expected a program"},
+        {"[[external]]\nname = \"a\"\ncommand = \"./no/such\"\n", ":4: ./no/such: no such file"},
+        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\nexact = 1\n", ":5: exact is a number; expected true or false"},
+        {"[[external]]\nname = \"a\"\ncomand = \"ls\"\n", "did you mean 'command'?"},
+        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\n[[external]]\nname = \"a\"\ncommand = \"ls\"\n",
+         ":5: two [[external]] have the name 'a'"},
+        {"[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n", "accepted"},
+    }));
+    CAPTURE(external);
+    REQUIRE(refusal_of(with(external)).find(says) != std::string::npos);
+    const auto hash = [&](const std::string& text) {
+        return aabblab::hash_of(aabblab::parse_experiment(with(text), "x.toml", aabblab::experiment_size::full));
+    };
+    const std::string one = "[[external]]\nname = \"a\"\ncommand = \"ls\"\n";
+    REQUIRE(hash(one) != hash(""));
+    REQUIRE(hash(one) != hash("[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n"));
+    REQUIRE(hash(one) != hash(one + "exact = false\n"));
+}
