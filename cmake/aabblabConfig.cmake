@@ -29,6 +29,8 @@ if(NOT aabblab_scanning STREQUAL "NEW" AND NOT CMAKE_CXX_SCAN_FOR_MODULES)
     aabblab_refuse("aabblab is made of C++ modules, which are not looked for here: write cmake_minimum_required(VERSION 3.28) or set(CMAKE_CXX_SCAN_FOR_MODULES ON) before find_package.")
 endif()
 
+include(CMakeFindDependencyMacro)
+find_dependency(TBB)
 include(${CMAKE_CURRENT_LIST_DIR}/aabblabTargets.cmake)
 
 # The target and whatever its sources see through what it links.

@@ -19,6 +19,7 @@ needs=(
     'libfmt-dev                   fmt-devel                <fmt/core.h>'
     'nlohmann-json3-dev           json-devel               <nlohmann/json.hpp>'
     'libxxhash-dev                xxhash-devel             <xxhash.h>'
+    'libtbb-dev                   tbb-devel                <oneapi/tbb/task_arena.h>'
     'libssl-dev                   openssl-devel            <openssl/evp.h>'
     'libarchive-dev               libarchive-devel         <archive.h>'
 )

@@ -10,3 +10,4 @@ export import aabb.global_search;
 export import aabb.local_detection;
 export import aabb.pipeline;
 export import aabb.policy;
+export import aabb.simd;

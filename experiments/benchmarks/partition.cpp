@@ -45,10 +45,35 @@ void time_partition(benchmark::State& state, Partition partition, std::uint32_t 
     state.counters["bytes"] = static_cast<double>(aabb::bytes_of(partition) + subsets.bytes());
 }
 
+/// A partition that cuts first brings boxes to columns bucket by bucket.
+template <class Partition>
+void time_columns(benchmark::State& state, Partition partition, std::uint32_t objects) {
+    const sorted_frame frame(objects);
+    aabb::column_search<aabb::bucket_sort, Partition, aabb::simd_sweep, aabb::work_counters> counted({}, partition, {});
+    aabb::column_search<aabb::bucket_sort, Partition, aabb::simd_sweep, aabb::no_counters> search({}, partition, {});
+    aabb::work_counters work;
+    aabb::no_counters none;
+    counted.update(frame.boxes(), frame.objects(), work);
+    for (auto _ : state) {
+        search.update(frame.boxes(), frame.objects(), none);
+        benchmark::ClobberMemory();
+    }
+    state.counters["copies/n"] = static_cast<double>(work[aabb::work::subset_copies]) / objects;
+    state.counters["subsets"] = static_cast<double>(work[aabb::work::subsets]);
+    state.counters["bytes"] = static_cast<double>(search.partition_bytes());
+}
+
 }  // namespace
 
 void add_partition_benchmarks() {
     for_each_strategy(aabb::partitions{}, []<class Partition>(aabb::type_list<Partition>) {
+        if constexpr (aabb::ColumnPartition<Partition>)
+            for (const aabb::strategy_choice& choice : choices_of<Partition>())
+                for (const std::uint32_t objects : sizes)
+                    benchmark::RegisterBenchmark(
+                        case_name("partition", choice, objects).c_str(),
+                        [=](benchmark::State& state) { time_columns(state, made<Partition>(choice), objects); })
+                        ->Unit(benchmark::kMicrosecond);
         if constexpr (aabb::CuttingPartition<Partition>)
             for (const aabb::strategy_choice& choice : choices_of<Partition>())
                 for (const std::uint32_t objects : sizes)

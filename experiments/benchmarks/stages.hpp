@@ -10,11 +10,11 @@ namespace aabblab {
 void add_sort_benchmarks();
 
 /// All that a cutting partition does in a frame: it chooses axes, fits and distributes one list, which is what the
-/// sweep one_axis asks for.
+/// sweep one_axis asks for. One that cuts first puts boxes into groups or columns, with `bucket`.
 void add_partition_benchmarks();
 
 /// A sweep over the lists of a whole frame. One that keeps its pairs is brought from frame to frame instead, which
-/// includes the sorting of its lists.
+/// includes the sorting of its lists. Behind `sweep_columns`: one over the columns of a frame.
 void add_sweep_benchmarks();
 
 // The tests of local detection, one an iteration. The pairs are those that a walk tests (walked_pairs.cppm), which

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -54,6 +55,26 @@ void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
         pairs.clear();
         sweep.sweep(all, pairs, none);
         benchmark::DoNotOptimize(pairs.data());
+        benchmark::ClobberMemory();
+    }
+}
+
+/// Over the columns of a whole frame, cut and filled before.
+template <aabb::ColumnSweep Sweep>
+void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
+    const sorted_frame frame(objects);
+    aabb::column_lists columns;
+    aabb::bucket_sort sort;
+    aabb::no_counters none;
+    if (!columns.fill(frame.boxes(), {}, aabb::columns_partition().plan(frame.boxes(), aabb::everywhere), sort, none))
+        throw std::logic_error("the scene has a box that is not valid");
+    std::vector<aabb::index_pair> pairs;
+    aabb::work_counters counted;
+    sweep.sweep(columns.block(), pairs, counted);
+    report(state, counted, pairs.size(), objects);
+    for (auto _ : state) {
+        pairs.clear();
+        benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, none));
         benchmark::ClobberMemory();
     }
 }
@@ -123,6 +144,12 @@ void add(const aabb::strategy_choice& choice) {
         benchmark::RegisterBenchmark(case_name("sweep", choice, objects).c_str(), [=](benchmark::State& state) {
             time_sweep(state, made<Sweep>(choice), objects);
         })->Unit(benchmark::kMicrosecond);
+    if constexpr (aabb::ColumnSweep<Sweep>)
+        for (const std::uint32_t objects : sizes)
+            benchmark::RegisterBenchmark(
+                case_name("sweep_columns", choice, objects).c_str(),
+                [=](benchmark::State& state) { time_columns(state, made<Sweep>(choice), objects); })
+                ->Unit(benchmark::kMicrosecond);
 }
 
 template <aabb::CoherentSweep Sweep>

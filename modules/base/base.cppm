@@ -7,4 +7,5 @@ export import :error;
 export import :floating_point;
 export import :frame_state;
 export import :memory;
+export import :parallel;
 export import :shortest;

@@ -10,6 +10,11 @@ module;
 
 export module aabb.global_search;
 
+export import :chosen_axis;
+export import :column_groups;
+export import :column_lists;
+export import :column_plan;
+export import :column_search;
 export import :inversions;
 export import :membership;
 export import :pair_set;
@@ -170,6 +175,48 @@ public:
 private:
     [[no_unique_address]] Sort sort_;
     [[no_unique_address]] Sweep sweep_;
+    [[no_unique_address]] Counters counters_;
+    membership objects_;
+    frame_state frame_;
+};
+
+/// With a partition that cuts first there are no projection lists.
+template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
+class global_search<Sort, Partition, Sweep, Counters> {
+    static_assert(aabb::is_accepted<sentence_of<Sort, Partition, Sweep>()>);
+
+public:
+    global_search() : global_search(Sort{}, Partition{}, Sweep{}) {}
+    global_search(Sort sort, Partition partition, Sweep sweep)
+        : search_(std::move(sort), std::move(partition), std::move(sweep)) {}
+
+    void insert(std::uint32_t id) { objects_.insert(id); }
+    void remove(std::uint32_t id) { objects_.remove(id); }
+
+    void update(std::span<const box> boxes) {
+        frame_.begin();
+        require_ieee_arithmetic();
+        objects_.require_boxes_for_all(boxes.size());
+        search_.update(boxes, objects_, counters_);
+        objects_.settle();
+        frame_.taken();
+    }
+
+    void search(std::vector<index_pair>& pairs) {
+        frame_.require_taken();
+        require_ieee_arithmetic();
+        append_whole(pairs, [&] { search_.search(pairs, counters_); });
+    }
+
+    [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+    [[nodiscard]] static axis_set sorted_axes() noexcept { return 0; }
+    [[nodiscard]] std::size_t projection_bytes() const noexcept { return objects_.bytes(); }
+    [[nodiscard]] std::size_t sort_bytes() const noexcept { return search_.sort_bytes(); }
+    [[nodiscard]] std::size_t partition_bytes() const noexcept { return search_.partition_bytes(); }
+    [[nodiscard]] std::size_t sweep_bytes() const noexcept { return search_.sweep_bytes(); }
+
+private:
+    column_search<Sort, Partition, Sweep, Counters> search_;
     [[no_unique_address]] Counters counters_;
     membership objects_;
     frame_state frame_;

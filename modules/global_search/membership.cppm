@@ -24,11 +24,13 @@ public:
         const bool comes = state_[id] == state::absent;
         if (comes) arrivals_.push_back(id);
         state_[id] = comes ? state::coming : state::known;
+        ++size_;
     }
 
     /// @throws input_error when the object is not present.
     void remove(std::uint32_t id) {
         if (!contains(id)) throw input_error("object " + std::to_string(id) + " is removed but was never inserted");
+        --size_;
         if (state_[id] == state::coming) {
             std::erase(arrivals_, id);
             state_[id] = state::absent;
@@ -38,6 +40,8 @@ public:
         }
     }
 
+    /// How many are present.
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] inline bool contains(std::uint32_t id) const noexcept {
         return id < state_.size() && (state_[id] == state::coming || state_[id] == state::known);
     }
@@ -77,6 +81,7 @@ private:
 
     std::vector<state> state_;  // by id
     std::vector<std::uint32_t> arrivals_;
+    std::size_t size_ = 0;
     bool departures_ = false;
 };
 

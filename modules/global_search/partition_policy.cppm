@@ -1,5 +1,6 @@
 module;
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -7,6 +8,7 @@ export module aabb.global_search:partition_policy;
 
 import aabb.geometry;
 import aabb.policy;
+import :column_plan;
 import :membership;
 import :projection;
 
@@ -31,6 +33,17 @@ concept CuttingPartition =
         { fitted.subset_count() } -> std::convertible_to<std::uint32_t>;
         fitted.for_each_subset(id, b, visit);
         { fitted.copies(id, b) } -> std::convertible_to<std::uint64_t>;
+    };
+
+/// A partition that cuts before anything is sorted: `plan(boxes, within)` says into which columns boxes are cut, of
+/// which only what lies within the bounds counts; `group(n)` says how many of n boxes are cut together, and `threads()`
+/// how many threads take such groups.
+template <class P>
+concept ColumnPartition =
+    PartitionPolicy<P> && requires(const P policy, std::span<const box> boxes, const box& within) {
+        { policy.plan(boxes, within) } -> std::same_as<column_plan>;
+        { policy.group(boxes.size()) } -> std::same_as<std::size_t>;
+        { policy.threads() } -> std::same_as<unsigned>;
     };
 
 /// Into how many segments axes were to be cut, and were; summed over the axes.

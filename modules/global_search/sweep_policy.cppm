@@ -1,5 +1,6 @@
 module;
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@ export module aabb.global_search:sweep_policy;
 import aabb.counters;
 import aabb.geometry;
 import aabb.policy;
+import :column_plan;
 import :membership;
 import :projection;
 
@@ -51,5 +53,13 @@ concept CoherentSweep =
 /// Either of the two.
 template <class S>
 concept SweepPolicy = ListSweep<S> || CoherentSweep<S>;
+
+/// A sweep of columns, too. It returns how many tests of a vector it made.
+template <class S>
+concept ColumnSweep = SweepPolicy<S> && requires(S policy, const column_block& block, std::vector<index_pair>& pairs,
+                                                 no_counters none, work_counters some) {
+    { policy.sweep(block, pairs, none) } -> std::same_as<std::uint64_t>;
+    { policy.sweep(block, pairs, some) } -> std::same_as<std::uint64_t>;
+};
 
 }  // namespace aabb

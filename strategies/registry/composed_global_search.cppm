@@ -22,6 +22,8 @@ export namespace aabb::composed {
 
 template <CounterPolicy Counters, SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep>
 class composed_global_stage final : public global_stage {
+    static constexpr bool cuts = CuttingPartition<Partition> || ColumnPartition<Partition>;
+
 public:
     composed_global_stage(Sort sort, Partition partition, Sweep sweep)
         : search_(std::move(sort), std::move(partition), std::move(sweep)) {}
@@ -34,14 +36,14 @@ public:
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::vector<part_bytes> parts{{"projections", search_.projection_bytes()}, {"sort", search_.sort_bytes()}};
-        if constexpr (CuttingPartition<Partition>) parts.push_back({"partition", search_.partition_bytes()});
+        if constexpr (cuts) parts.push_back({"partition", search_.partition_bytes()});
         parts.push_back({"sweep", search_.sweep_bytes()});
         return parts;
     }
 
     [[nodiscard]] std::vector<std::string> left_out() const override {
         std::vector<std::string> absent;
-        if constexpr (!CuttingPartition<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
+        if constexpr (!cuts) absent.emplace_back("no partition: no cells, no copies of objects");
         if constexpr (CoherentSweep<Sweep>)
             absent.emplace_back("no projection lists beside those that the sweep keeps for itself");
         for (std::size_t k = 0; k < 3; ++k)

@@ -1,5 +1,4 @@
 module;
-#include <cstddef>
 #include <span>
 #include <string_view>
 
@@ -7,6 +6,7 @@ export module aabb.sort.insertion;
 
 import aabb.counters;
 import aabb.global_search;
+import aabb.sort.inserting;
 
 export namespace aabb {
 
@@ -18,29 +18,10 @@ struct insertion_sort {
     static constexpr std::string_view summary =
         "insertion sort, the traditional method: linear on almost sorted lists, else quadratic";
 
-    struct ignore_swaps {
-        template <class Entry>
-        constexpr void operator()(const Entry&, const Entry&) const noexcept {}
-    };
-
     /// @param on_swap gets the entry that is passed and the one that moves before it
     template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
     static constexpr void sort(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
-        for (std::size_t i = 1; i < list.size(); ++i) {
-            const Entry inserted = list[i];
-            std::size_t hole = i;
-            while (hole > 0) {
-                counters.add(work::comparisons);
-                if (!precedes(inserted, list[hole - 1])) break;
-                on_swap(list[hole - 1], inserted);
-                list[hole] = list[hole - 1];
-                counters.add(work::moves);
-                --hole;
-            }
-            if (hole == i) continue;
-            list[hole] = inserted;
-            counters.add(work::moves);
-        }
+        insert_each(list, counters, on_swap);
     }
 };
 

@@ -37,7 +37,7 @@ public:
 
     template <class... All>
     static constexpr std::string_view refuses() {
-        if ((CuttingPartition<All> || ...))
+        if (((CuttingPartition<All> || ColumnPartition<All>) || ...))
             return "incremental keeps its pairs between frames, but this partition makes other subsets in each frame; "
                    "it goes with none only";
         if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))

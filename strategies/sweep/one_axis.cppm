@@ -42,11 +42,7 @@ public:
         if (config_.axis != axis_choice::automatic) {
             axis_ = static_cast<int>(config_.axis) - 1;
         } else {
-            const spread along = spread_of(boxes, objects);
-            const double margin = chosen_ ? 1.5 : 1.0;
-            for (int k = 0; k < 3; ++k)
-                if (along.variance[k] > margin * along.variance[axis_]) axis_ = k;
-            chosen_ |= along.objects > 0;
+            axis_ = longest_.choose(boxes, objects);
         }
         return axis_set{1} << axis_;
     }
@@ -102,7 +98,7 @@ private:
 
     config config_;
     int axis_ = 0;
-    bool chosen_ = false;
+    chosen_axis longest_;
     std::vector<swept_box> swept_;  // the boxes of the subset at hand, in sorted order
 };
 

@@ -16,6 +16,7 @@ namespace {
 /// The rooms from the ground up: each may import those above it in this list, and itself.
 const std::vector<std::string> rooms = {
     "modules/base",
+    "modules/simd",
     "modules/counters",
     "modules/policy",
     "modules/geometry",

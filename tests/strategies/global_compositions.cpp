@@ -190,7 +190,8 @@ TEST_CASE("counted compositions do the same and say what they did") {
         std::ranges::sort(pairs);
         std::ranges::sort(counted_pairs);
         CHECK(pairs == counted_pairs);
-        CHECK(counted->counters()[work::comparisons] >= boxes.size() - 1);
+        // Whoever sorts by comparing counts those, whoever does not the entries moved.
+        CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= boxes.size() - 1);
         CHECK(counted->counters()[work::box_tests] > 0);
         CHECK(plain->counters()[work::box_tests] == 0);
     }

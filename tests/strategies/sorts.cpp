@@ -13,6 +13,7 @@
 
 import aabb;
 import aabb.sort.insertion;
+import aabb.sort.radix;
 import aabb.sort.shell;
 import aabb.strategies;
 
@@ -33,7 +34,7 @@ bool by_id(const projection& p, const projection& q) {
 }
 
 template <class Sort>
-void check_sorts(const Sort& sort) {
+void check_sorts(Sort sort) {
     REQUIRE(rc::check([&] {
         const std::vector<projection> given = any_list();
         std::vector<projection> list = given;
@@ -66,6 +67,41 @@ TEST_CASE("every sort sorts and loses nothing") {
         const auto config = configured<shell_sort>(std::vector<setting>{{std::string(gaps.name), std::string(choice)}});
         check_sorts(shell_sort(config));
     }
+}
+
+TEST_CASE("every sort takes all finite keys, and zeros of both signs as equal") {
+    const auto check = []<class... Sorts>(type_list<Sorts...>) {
+        const auto check_one = [](auto sort) {
+            auto list = list_of({});
+            for (std::uint32_t i = 0; i < 400; ++i) {
+                constexpr std::array<float, 8> keys{0.0F, -0.0F, 3.4e38F, -3.4e38F, 1e-45F, -1e-45F, 1.0F, -2.5F};
+                list.push_back({keys[i * 7 % 8], i});
+            }
+            no_counters none;
+            sort.sort(std::span(list), none);
+            CHECK(std::ranges::is_sorted(list, precedes));
+        };
+        (check_one(Sorts{}), ...);
+    };
+    check(sorts{});
+}
+
+TEST_CASE("radix sort leaves a list in order as it is, and passes over digits that all keys share") {
+    const auto moves = [](float step, bool backwards) {
+        std::vector<float> keys;
+        for (int i = 0; i < 1000; ++i) keys.push_back(1 + step * static_cast<float>(backwards ? 999 - i : i));
+        auto list = list_of(keys);
+        work_counters counted;
+        radix_sort sort;
+        sort.sort(std::span(list), counted);
+        CHECK(std::ranges::is_sorted(list, precedes));
+        return counted[work::moves];
+    };
+    CHECK(moves(0x1p-23F, false) == 0);
+    // Only the lowest digit differs: once to the other list, and back.
+    CHECK(moves(0x1p-23F, true) == 2000);
+    CHECK(moves(0x1p-13F, true) == 2000);
+    CHECK(moves(1.37F, true) == 4000);
 }
 
 TEST_CASE("insertion sort moves and compares as its inversions say") {

@@ -1,0 +1,196 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+export module aabb.global_search:column_groups;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.simd;
+import :column_plan;
+
+export namespace aabb {
+
+/// Boxes of one region of a scene, side by side in memory.
+struct column_group {
+    std::span<const box> boxes;
+    std::span<const std::uint32_t> ids;  ///< by place, with bits of `later_on`; empty where the place is the id
+};
+
+/// Puts the boxes of a large scene into groups of neighbours that fit a cache together; each is cut into columns for
+/// itself. Groups are columns too, only wider: a box is in each into which it reaches, and what it begins before is
+/// marked. A group's boxes stand in the order of their places, first those that begin there, whatever the threads.
+class column_groups {
+public:
+    /// So many groups, in the proportion of the columns; no more than those.
+    [[nodiscard]] static column_plan coarser(column_plan plan, double groups) {
+        const double ratio = std::sqrt(groups / plan.columns());
+        for (std::uint32_t& n : plan.across)
+            n = std::clamp(static_cast<std::uint32_t>(std::lround(n * ratio)), std::uint32_t{1}, n);
+        return plan;
+    }
+
+    void clear() noexcept { starts_.resize(1); }
+
+    /// @param ids of the boxes; empty where the place is the id
+    /// @returns whether all boxes are valid; if not, there are no groups.
+    /// @throws input_error when boxes reach into so many groups that there are more than 2^24 + 64 n copies of n boxes
+    [[nodiscard]] bool distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
+                                  const column_plan& plan, unsigned threads) {
+        clear();
+        plan_ = plan;
+        keys_.resize(boxes.size() + simd::width);
+        // Fewer boxes are not worth a thread.
+        constexpr std::size_t least = 4096;
+        parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, std::size_t{threads}));
+        wide_.resize(boxes.size() + simd::width * parts_.size());
+        for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { classify(boxes, p); });
+        if (!std::ranges::all_of(parts_, &part::valid)) return false;
+        make_room(boxes.size());
+        for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
+        return true;
+    }
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
+    [[nodiscard]] column_group group(std::uint32_t g) const noexcept {
+        const std::size_t begin = starts_[g];
+        const std::size_t n = starts_[g + 1] - begin;
+        return {std::span(boxes_).subspan(begin, n), std::span(ids_).subspan(begin, n)};
+    }
+
+    /// The region of a group; what begins or ends beyond it, does so elsewhere.
+    [[nodiscard]] box region(std::uint32_t g) const noexcept {
+        box b = everywhere;
+        const std::uint32_t at[2] = {g % plan_.across[0], g / plan_.across[0]};
+        for (std::size_t i = 0; i < 2; ++i) {
+            const int k = plan_.axis_across(i);
+            if (plan_.scale[k] <= 0) continue;
+            const float width = 65'536.0F / static_cast<float>(plan_.across[i]) / plan_.scale[k];
+            if (at[i] > 0) b.min[k] = plan_.origin[k] + static_cast<float>(at[i]) * width;
+            if (at[i] + 1 < plan_.across[i]) b.max[k] = plan_.origin[k] + static_cast<float>(at[i] + 1) * width;
+        }
+        return b;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all = bytes_of(keys_) + bytes_of(wide_) + bytes_of(boxes_) + bytes_of(ids_) + bytes_of(starts_);
+        for (const part& p : parts_) all += bytes_of(p.next) + bytes_of(p.next_copy);
+        return all;
+    }
+
+private:
+    /// Boxes that one thread takes.
+    struct part {
+        std::size_t begin;
+        std::size_t end;
+        std::size_t wide_begin;  // of those that reach into further groups, among all such
+        std::size_t wide_end;
+        std::vector<std::size_t> next;       // by group: how many begin there, then the place of the next one
+        std::vector<std::size_t> next_copy;  // the same of those that reach there
+        std::size_t copies;
+        bool valid;
+    };
+
+    [[nodiscard]] inline std::uint32_t column(const vec3f& p, std::size_t i) const noexcept {
+        const int k = plan_.axis_across(i);
+        return plan_.whole(p[k], k) * plan_.across[i] >> 16;
+    }
+
+    void classify(std::span<const box> boxes, std::size_t number) {
+        part& p = parts_[number];
+        const std::size_t each = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
+        p.begin = std::min(boxes.size(), number * each);
+        p.end = std::min(boxes.size(), p.begin + each);
+        p.next.assign(plan_.columns(), 0);
+        p.next_copy.assign(plan_.columns(), 0);
+        p.wide_begin = p.wide_end = p.begin + number * simd::width;
+        p.copies = 0;
+        const int u = plan_.axis_across(0);
+        const int v = plan_.axis_across(1);
+        const simd::words across = simd::all(plan_.across[0] | plan_.across[1] << 16);
+        simd::flags invalid{};
+        for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],
+                                                                     std::uint32_t present) {
+            invalid |= are_invalid(c);
+            const simd::words first = simd::upper_products(plan_.whole(c[u], u) | plan_.whole(c[v], v) << 16, across);
+            const simd::words last =
+                simd::upper_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
+            simd::store_lower_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
+            p.wide_end +=
+                simd::store_where(&wide_[p.wide_end], simd::places() + static_cast<std::uint32_t>(p.begin + i),
+                                  simd::bits(first != last) & present);
+        });
+        p.valid = simd::bits(invalid) == 0;
+        if (!p.valid) return;
+        for (std::size_t i = p.begin; i < p.end; ++i) ++p.next[keys_[i]];
+        for (std::size_t i = p.wide_begin; i < p.wide_end; ++i) {
+            for_each_further(boxes[wide_[i]], [&](std::uint32_t group, std::uint32_t) {
+                ++p.next_copy[group];
+                ++p.copies;
+            });
+            if (p.copies > most_copies(boxes.size())) refuse_copies(boxes.size());
+        }
+    }
+
+    /// Counts become places.
+    void make_room(std::size_t boxes) {
+        const std::uint32_t groups = plan_.columns();
+        starts_.resize(groups + 1);
+        std::size_t all = 0;
+        const auto place = [&](std::size_t& count) {
+            const std::size_t here = count;
+            count = all;
+            all += here;
+        };
+        for (std::uint32_t g = 0; g < groups; ++g) {
+            starts_[g] = all;
+            for (part& p : parts_) place(p.next[g]);
+            for (part& p : parts_) place(p.next_copy[g]);
+        }
+        starts_[groups] = all;
+        if (all > boxes + most_copies(boxes)) refuse_copies(boxes);
+        boxes_.resize(all);
+        ids_.resize(all);
+    }
+
+    void put(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
+        const auto write = [&](std::size_t place, std::size_t i, std::uint32_t later_on) {
+            boxes_[place] = boxes[i];
+            ids_[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | later_on;
+        };
+        for (std::size_t i = p.begin; i < p.end; ++i) write(p.next[keys_[i]]++, i, 0);
+        for (std::size_t i = p.wide_begin; i < p.wide_end; ++i)
+            for_each_further(boxes[wide_[i]], [&](std::uint32_t group, std::uint32_t later_on) {
+                write(p.next_copy[group]++, wide_[i], later_on);
+            });
+    }
+
+    template <class Visit>
+    void for_each_further(const box& b, Visit visit) const {
+        const std::uint32_t u0 = column(b.min, 0);
+        const std::uint32_t v0 = column(b.min, 1);
+        const std::uint32_t u1 = column(b.max, 0);
+        const std::uint32_t v1 = column(b.max, 1);
+        for (std::uint32_t v = v0; v <= v1; ++v)
+            for (std::uint32_t u = u0; u <= u1; ++u)
+                if (u != u0 || v != v0)
+                    visit(u + v * plan_.across[0], (u != u0 ? column_entry::later_on(plan_.axis_across(0)) : 0) |
+                                                       (v != v0 ? column_entry::later_on(plan_.axis_across(1)) : 0));
+    }
+
+    column_plan plan_;
+    std::vector<std::uint16_t> keys_;  // by box: its first group
+    std::vector<std::uint32_t> wide_;  // boxes that reach into further ones
+    std::vector<part> parts_;
+    std::vector<box> boxes_;  // group after group
+    std::vector<std::uint32_t> ids_;
+    std::vector<std::size_t> starts_{0};
+};
+
+}  // namespace aabb

@@ -1,0 +1,5 @@
+/// As many numbers at a time as a register of this processor takes.
+export module aabb.simd;
+
+export import :lanes;
+export import :rows;

@@ -1,0 +1,184 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <tuple>
+
+export module aabb.partition.columns;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
+import aabb.simd;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Cuts first and sorts afterwards: columns of equal width along one axis, each with its own short list. When to use:
+/// almost always; it reads every box twice and sorts nothing that is not swept.
+///
+/// The axis along which columns run, and how many there are, are what a model of evenly spread boxes finds cheapest for
+/// a sample of them.
+class columns_partition {
+public:
+    static constexpr std::string_view name = "columns";
+    static constexpr std::string_view summary = "cuts across one axis before anything is sorted";
+
+    struct config {
+        /// How many of the two axes across are cut.
+        std::uint32_t axes = 2;
+        /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 12,000,
+        /// which fill half a second-level cache with their entries.
+        std::optional<std::uint32_t> group;
+        /// How many threads take groups.
+        std::uint32_t threads = 1;
+    };
+    static constexpr std::tuple parameters{
+        integer_parameter{"axes", &config::axes, 0U, 2U,
+                          "how many axes are cut, beside the one that columns run along"},
+        integer_parameter{"group", &config::group, 1U, 1'000'000'000U, "boxes that are cut into columns together"},
+        integer_parameter{"threads", &config::threads, 1U, 256U, "how many threads take groups"}};
+
+    template <class... All>
+    static constexpr std::string_view refuses() {
+        if (((SweepPolicy<All> && !ColumnSweep<All>) || ...))
+            return "columns hands over boxes in whole vectors, bucket by bucket; it goes with simd only";
+        return {};
+    }
+
+    columns_partition() = default;
+    explicit columns_partition(const config& c) : config_(c) {}
+
+    /// For these boxes, of which only what lies within the bounds counts.
+    [[nodiscard]] column_plan plan(std::span<const box> boxes, const box& within) const {
+        if (boxes.empty()) return {};
+        const sample seen = sample_of(boxes, within);
+        column_plan best;
+        double least = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            column_plan one;
+            one.axis = axis;
+            const int u = one.axis_across(0);
+            const int v = one.axis_across(1);
+            if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
+            for (const std::uint32_t nu : numbers) {
+                if (nu > most(seen, u, config_.axes > 0)) break;
+                for (const std::uint32_t nv : numbers) {
+                    if (nv > most(seen, v, config_.axes > 1) || nu * nv > most_columns) break;
+                    if (nu * nv > 1 && std::size_t{nu} * nv * simd::width > boxes.size()) break;
+                    one.across = {nu, nv};
+                    const double cost = cost_of(seen, one, boxes.size());
+                    if (cost >= least) continue;
+                    least = cost;
+                    best = one;
+                }
+            }
+        }
+        best.fit(seen.bounds);
+        return best;
+    }
+
+    /// How many of so many boxes are cut into columns together, about.
+    [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
+        return std::min(boxes, std::size_t{config_.group.value_or(boxes <= 40'000 ? 40'000 : 12'000)});
+    }
+    [[nodiscard]] unsigned threads() const noexcept { return config_.threads; }
+
+private:
+    static constexpr std::size_t samples = 256;
+    static constexpr std::uint32_t most_columns = 16'384;
+    static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
+                                                           20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
+
+    /// Some boxes, and the means of their extents, of products of two, and of all three.
+    struct sample {
+        box bounds = empty_box();
+        vec3d extent{};
+        vec3d product{};  ///< of the other two
+        double volume = 0;
+
+        [[nodiscard]] double width(int k) const { return double{bounds.max[k]} - double{bounds.min[k]}; }
+        [[nodiscard]] bool varies(int k) const {
+            return width(k) > 1e-6 * std::max(std::abs(double{bounds.min[k]}), std::abs(double{bounds.max[k]}));
+        }
+    };
+
+    /// Every so many-th box, each time another one, so that no order of the boxes is met.
+    [[nodiscard]] static sample sample_of(std::span<const box> boxes, const box& within) {
+        sample seen;
+        const std::size_t step = std::max<std::size_t>(1, boxes.size() / samples);
+        std::size_t count = 0;
+        std::uint64_t random = 1;
+        for (std::size_t begin = 0; begin < boxes.size(); begin += step) {
+            random = random * 6364136223846793005U + 1442695040888963407U;
+            const std::size_t i = begin + (random >> 33U) % step;
+            if (i >= boxes.size()) break;
+            const box b = common(boxes[i], within);
+            seen.bounds = merged(seen.bounds, b);
+            vec3d e{};
+            for (int k = 0; k < 3; ++k) e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
+            for (int k = 0; k < 3; ++k) {
+                seen.extent[k] += e[k];
+                seen.product[k] += e[(k + 1) % 3] * e[(k + 2) % 3];
+            }
+            seen.volume += e[0] * e[1] * e[2];
+            ++count;
+        }
+        for (int k = 0; k < 3; ++k) {
+            seen.extent[k] /= static_cast<double>(count);
+            seen.product[k] /= static_cast<double>(count);
+        }
+        seen.volume /= static_cast<double>(count);
+        return seen;
+    }
+
+    [[nodiscard]] static box common(const box& b, const box& within) {
+        box c = b;
+        for (int k = 0; k < 3; ++k) {
+            c.min[k] = std::clamp(b.min[k], within.min[k], within.max[k]);
+            c.max[k] = std::clamp(b.max[k], within.min[k], within.max[k]);
+        }
+        return c;
+    }
+
+    /// Columns narrower than a quarter of a box gain nothing.
+    [[nodiscard]] static double most(const sample& seen, int k, bool cut) {
+        if (!cut || !seen.varies(k)) return 1;
+        return seen.extent[k] > 0 ? std::max(1.0, 4 * seen.width(k) / seen.extent[k]) : numbers.back();
+    }
+
+    /// For a box, in tests of a vector: to bring its entries to their places, and to test each against those that it
+    /// meets along the column.
+    [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
+        constexpr double entry_cost = 3;
+        constexpr double copy_cost = 3;
+        constexpr double column_cost = 16;
+        const int u = p.axis_across(0);
+        const int v = p.axis_across(1);
+        const auto per = [&](int k, std::uint32_t n) { return n > 1 ? n / seen.width(k) : 0.0; };
+        const double iu = per(u, p.across[0]);
+        const double iv = per(v, p.across[1]);
+        const double entries = 1 + seen.extent[u] * iu + seen.extent[v] * iv + seen.product[p.axis] * iu * iv;
+        const double reach = seen.extent[p.axis] + seen.product[v] * iu + seen.product[u] * iv + seen.volume * iu * iv;
+        const auto columns = static_cast<double>(p.columns());
+        const auto n = static_cast<double>(boxes);
+        const double length = seen.width(p.axis);
+        const double met = length > 0 ? n * reach / (columns * length) : n * entries / columns;
+        return entries * (1 + entry_cost + met / simd::width) + (entries - 1) * copy_cost + columns * column_cost / n;
+    }
+
+    config config_;
+};
+
+static_assert(ColumnPartition<columns_partition>);
+
+}  // namespace aabb

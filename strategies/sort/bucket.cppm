@@ -1,0 +1,75 @@
+module;
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+export module aabb.sort.bucket;
+
+import aabb.base;
+import aabb.counters;
+import aabb.global_search;
+import aabb.sort.inserting;
+
+export namespace aabb {
+
+/// Bucket sort: entries go to as many buckets of equal length as there are entries, then insertion sort mends what is
+/// out of order within them. When to use: wherever objects move; linear where they are spread evenly. Columns take
+/// their boxes bucket by bucket as they are cut, and are not sorted again.
+class bucket_sort {
+public:
+    static constexpr std::string_view name = "bucket";
+    static constexpr std::string_view summary =
+        "buckets of equal length, as many as entries; linear where spread evenly";
+    static constexpr bool is_done_by_columns = true;
+
+    template <CounterPolicy Counters>
+    void sort(std::span<projection> list, Counters& counters) {
+        if (list.size() < 2) return;
+        const auto [least, greatest] = std::ranges::minmax(list, {}, &projection::key);
+        if (!(least.key < greatest.key)) return;
+        const std::size_t buckets = std::bit_ceil(list.size());
+        const double scale = static_cast<double>(buckets - 1) / (double{greatest.key} - double{least.key});
+        const auto bucket_of = [&](const projection& p) {
+            return static_cast<std::size_t>((double{p.key} - double{least.key}) * scale);
+        };
+        starts_.assign(buckets + 1, 0);
+        for (const projection& p : list) ++starts_[bucket_of(p) + 1];
+        for (std::size_t b = 0; b < buckets; ++b) starts_[b + 1] += starts_[b];
+        from_.assign(list.begin(), list.end());
+        for (const projection& p : from_) list[starts_[bucket_of(p)]++] = p;
+        counters.add(work::moves, list.size());
+        mend(list, counters);
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_) + bytes_of(from_); }
+
+private:
+    /// A bucket that took very many is sorted for itself: insertion sort would be quadratic there.
+    template <CounterPolicy Counters>
+    void mend(std::span<projection> list, Counters& counters) const {
+        constexpr std::size_t most = 64;
+        std::size_t begin = 0;
+        for (const std::uint32_t end : std::span(starts_).first(starts_.size() - 1)) {
+            const std::span bucket = list.subspan(begin, end - begin);
+            begin = end;
+            if (bucket.size() > most)
+                std::ranges::sort(bucket, [&](const projection& p, const projection& q) {
+                    counters.add(work::comparisons);
+                    return precedes(p, q);
+                });
+            else
+                insert_each(bucket, counters);
+        }
+    }
+
+    std::vector<std::uint32_t> starts_;
+    std::vector<projection> from_;
+};
+
+static_assert(SortPolicy<bucket_sort> && BucketSort<bucket_sort>);
+
+}  // namespace aabb

@@ -1,0 +1,38 @@
+module;
+#include <cstddef>
+#include <span>
+
+export module aabb.sort.inserting;
+
+import aabb.counters;
+import aabb.global_search;
+
+export namespace aabb {
+
+struct ignore_swaps {
+    template <class Entry>
+    constexpr void operator()(const Entry&, const Entry&) const noexcept {}
+};
+
+/// Moves each entry of a list before all that are greater: n + d comparisons for d inversions.
+/// @param on_swap gets the entry that is passed and the one that moves before it
+template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
+constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
+    for (std::size_t i = 1; i < list.size(); ++i) {
+        const Entry inserted = list[i];
+        std::size_t hole = i;
+        while (hole > 0) {
+            counters.add(work::comparisons);
+            if (!precedes(inserted, list[hole - 1])) break;
+            on_swap(list[hole - 1], inserted);
+            list[hole] = list[hole - 1];
+            counters.add(work::moves);
+            --hole;
+        }
+        if (hole == i) continue;
+        list[hole] = inserted;
+        counters.add(work::moves);
+    }
+}
+
+}  // namespace aabb

@@ -1,0 +1,78 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+export module aabb.sort.radix;
+
+import aabb.base;
+import aabb.counters;
+import aabb.global_search;
+import aabb.sort.inserting;
+
+export namespace aabb {
+
+/// Radix sort of the keys' bits, eleven at a time from the lowest. When to use: long lists that are not almost sorted;
+/// it compares nothing, and takes as long whatever the order. A list that is in order is left as it is, and digits that
+/// all keys share are passed over. Short lists are sorted by insertion.
+class radix_sort {
+public:
+    static constexpr std::string_view name = "radix";
+    static constexpr std::string_view summary = "radix sort of the keys' bits: linear whatever the order";
+
+    template <CounterPolicy Counters>
+    void sort(std::span<projection> list, Counters& counters) {
+        counters.add(work::comparisons, list.empty() ? 0 : list.size() - 1);
+        if (std::ranges::is_sorted(list, {}, &projection::key)) return;
+        if (list.size() <= shortest) return insert_each(list, counters);
+        other_.resize(list.size());
+        std::array<std::array<std::uint32_t, digits>, passes> counts{};
+        for (const projection& p : list)
+            for (std::size_t pass = 0; pass < passes; ++pass) ++counts[pass][digit(p, pass)];
+        std::span<projection> from = list;
+        std::span<projection> to = other_;
+        for (std::size_t pass = 0; pass < passes; ++pass) {
+            std::array<std::uint32_t, digits>& next = counts[pass];
+            if (next[digit(from[0], pass)] == list.size()) continue;
+            std::uint32_t before = 0;
+            for (std::uint32_t& n : next) {
+                const std::uint32_t here = n;
+                n = before;
+                before += here;
+            }
+            for (const projection& p : from) to[next[digit(p, pass)]++] = p;
+            counters.add(work::moves, list.size());
+            std::swap(from, to);
+        }
+        if (from.data() == list.data()) return;
+        std::ranges::copy(from, list.begin());
+        counters.add(work::moves, list.size());
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(other_); }
+
+private:
+    static constexpr std::size_t shortest = 64;
+    static constexpr std::size_t bits = 11;
+    static constexpr std::size_t passes = 3;
+    static constexpr std::size_t digits = std::size_t{1} << bits;
+
+    /// Of the key as a number whose order as a whole number is that of the floats; -0 and 0, which are equal keys, are
+    /// neighbours.
+    [[nodiscard]] static constexpr std::size_t digit(const projection& p, std::size_t pass) noexcept {
+        const auto pattern = std::bit_cast<std::uint32_t>(p.key);
+        const std::uint32_t ordered = pattern ^ (pattern >> 31 ? ~std::uint32_t{0} : std::uint32_t{1} << 31);
+        return ordered >> (bits * pass) & (digits - 1);
+    }
+
+    std::vector<projection> other_;
+};
+
+static_assert(SortPolicy<radix_sort>);
+
+}  // namespace aabb

@@ -1,0 +1,224 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+export module aabb.sweep.simd;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.policy;
+import aabb.simd;
+
+export namespace aabb {
+
+/// One sorted list, many boxes at a time: a vector of boxes is tested against each box that began before them and has
+/// not ended. When to use: on a processor with wide vectors, always.
+///
+/// The two axes across the list are tested in whole numbers of 16 bits, both in one word, so that a vector of 512 bits
+/// tests 16 boxes in five instructions. They only reject; what is left, little more than the pairs themselves, is
+/// tested again as it is.
+class simd_sweep {
+public:
+    static constexpr std::string_view name = "simd";
+    static constexpr std::string_view summary = "sorts along one axis and tests a vector of boxes at a time";
+
+    /// @throws input_error where there are more objects than an entry can tell apart.
+    axis_set axes(std::span<const box> boxes, const membership& objects) {
+        if (boxes.size() > column_entry::index_bits)
+            throw input_error("simd takes at most " + std::to_string(column_entry::index_bits) + " objects");
+        return axis_set{1} << longest_.choose(boxes, objects);
+    }
+
+    /// Of a sorted list.
+    template <class Subset, CounterPolicy Counters>
+    void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
+        const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
+        if (list.size() < 2) return;
+        to_entries(subset, list);
+        sweep(column_block{subset.boxes, {}, entries_, list_ends_, longest_.axis()}, pairs, counters);
+    }
+
+    /// Of columns.
+    template <CounterPolicy Counters>
+    std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, Counters& counters) {
+        const std::size_t n = block.entries.size();
+        active_.resize(n + width);
+        active_ends_.resize(n + width);
+        std::uint64_t tests = 0;
+        std::size_t active = 0;
+        found_ = 0;
+        std::size_t window = 0;  // from which vectors are numbered
+        for (std::size_t first = 0; first < n; first += width) {
+            if (found_ > enough || first - window >= most_vectors * width) {
+                report(block, window, pairs);
+                window = first;
+            }
+            // Room for all that this vector may add.
+            candidates_.resize(std::max(candidates_.size(), found_ + active + 2 * width));
+            const vector_of_entries vector(&block.entries[first], block.ends);
+            const auto number = static_cast<std::uint32_t>((first - window) / width);
+            tests += active + width - 1;
+            active = sweep_active(block, vector, number, first, active);
+            sweep_within(block, vector, number, first);
+        }
+        report(block, window, pairs);
+        counters.add(work::box_tests, width * tests);
+        return tests;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return bytes_of(entries_) + bytes_of(list_ends_) + bytes_of(active_) + bytes_of(active_ends_) +
+               bytes_of(candidates_);
+    }
+
+private:
+    static constexpr std::size_t width = simd::width;
+    static constexpr std::size_t enough = 2048;
+    static constexpr std::size_t most_vectors = std::size_t{1} << (32 - width);
+
+    /// Entries side by side.
+    struct vector_of_entries {
+        simd::words lower;
+        simd::words upper;
+        simd::words ends;
+        simd::words later_on;
+
+        vector_of_entries(const column_entry* from, std::span<const std::uint32_t> bucket_ends) noexcept {
+            simd::words fields[4];
+            simd::load_rows_of_four(&from->lower, fields);
+            lower = fields[0];
+            upper = fields[1];
+            ends = simd::gather(bucket_ends.data(), fields[2]);
+            later_on = fields[3] & ~column_entry::index_bits;
+        }
+
+        /// Bit l is set where entry l may overlap this one across the columns, and this column has the pair.
+        [[nodiscard]] inline std::uint32_t met_by(const column_entry& e) const noexcept {
+            return simd::bits(((later_on & e.index) | simd::excess(lower, simd::all(e.upper)) |
+                               simd::excess(simd::all(e.lower), upper)) == 0U);
+        }
+    };
+
+    /// An entry and those of a vector that it may overlap: which vector of the window, and a bit for each lane.
+    struct candidate {
+        std::uint32_t entry;
+        std::uint32_t met;
+    };
+
+    /// No branch: whether there are any cannot be foreseen.
+    inline void keep(std::size_t entry, std::uint32_t vector, std::uint32_t lanes) noexcept {
+        candidates_[found_] = {static_cast<std::uint32_t>(entry), vector << width | lanes};
+        found_ += lanes != 0;
+    }
+
+    /// Those that began before the vector, against it.
+    /// @returns how many of those, and of the vector, reach beyond it
+    [[nodiscard]] std::size_t sweep_active(const column_block& block, const vector_of_entries& vector,
+                                           std::uint32_t number, std::size_t first, std::size_t active) noexcept {
+        const auto next = static_cast<std::uint32_t>(first + width);
+        std::size_t stay = 0;
+        const auto take = [&](simd::words entries, simd::words ends, std::uint32_t present) {
+            const std::uint32_t beyond = simd::bits(ends > next) & present;
+            simd::store_where(&active_ends_[stay], ends, beyond);
+            stay += simd::store_where(&active_[stay], entries, beyond);
+        };
+        std::uint32_t lanes[width];
+        for (std::size_t q = 0; q < active; q += width) {
+            const simd::words entries = simd::load(&active_[q]);
+            const simd::words ends = simd::load(&active_ends_[q]);
+            simd::store(lanes, simd::lanes_below(ends - static_cast<std::uint32_t>(first)));
+            const std::size_t here = std::min(width, active - q);
+            for (std::size_t l = 0; l < here; ++l) {
+                const std::size_t i = active_[q + l];
+                keep(i, number, vector.met_by(block.entries[i]) & lanes[l]);
+            }
+            take(entries, ends, simd::lanes_below(here));
+        }
+        take(simd::places() + static_cast<std::uint32_t>(first), vector.ends, simd::every_lane);
+        return stay;
+    }
+
+    /// Those of the vector, against the ones after them.
+    void sweep_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
+                      std::size_t first) noexcept {
+        std::uint32_t lanes[width];
+        const simd::words after = simd::all(~std::uint32_t{1}) << simd::places();
+        simd::store(lanes, simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & after);
+#pragma clang loop unroll(full)
+        for (std::size_t l = 0; l + 1 < width; ++l)
+            keep(first + l, number, vector.met_by(block.entries[first + l]) & lanes[l]);
+    }
+
+    /// Appends what really overlaps.
+    void report(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
+        std::size_t next = pairs.size();
+        std::size_t most = next;
+        for (std::size_t c = 0; c < found_; ++c)
+            most += static_cast<std::size_t>(std::popcount(candidates_[c].met & simd::every_lane));
+        if (most > pairs.capacity()) pairs.reserve(std::max(most, 2 * pairs.capacity()));
+        pairs.resize(most);
+        for (std::size_t c = 0; c < found_; ++c) {
+            const candidate found = candidates_[c];
+            const std::uint32_t i = block.entries[found.entry].index & column_entry::index_bits;
+            const box a = block.boxes[i];
+            const std::uint32_t id = block.id_of(i);
+            const column_entry* const vector = &block.entries[window + (found.met >> width) * width];
+            for (std::uint32_t lanes = found.met & simd::every_lane; lanes != 0; lanes &= lanes - 1) {
+                const std::uint32_t j = vector[std::countr_zero(lanes)].index & column_entry::index_bits;
+                pairs[next] = ordered_pair(id, block.id_of(j));
+                next += overlaps(a, block.boxes[j]);
+            }
+        }
+        pairs.resize(next);
+        found_ = 0;
+    }
+
+    /// Entries of a list, with whole numbers over the extent of its boxes.
+    template <class Subset, class List>
+    void to_entries(const Subset& subset, const List& list) {
+        column_plan plan;
+        plan.axis = longest_.axis();
+        box all = empty_box();
+        for (const auto& e : list) all = merged(all, subset.boxes[e.id]);
+        plan.fit(all);
+        const std::size_t n = (list.size() + width - 1) / width * width;
+        entries_.assign(n, {~std::uint32_t{0}, 0, static_cast<std::uint32_t>(list.size()), 0});
+        list_ends_.assign(list.size() + 1, 0);
+        const int u = plan.axis_across(0);
+        const int v = plan.axis_across(1);
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const box& b = subset.boxes[list[i].id];
+            const axis_set later_on = every_axis & ~Subset::owned(list[i]);
+            entries_[i] = {plan.whole(b.min[u], u) | plan.whole(b.min[v], v) << 16,
+                           plan.whole(b.max[u], u) | plan.whole(b.max[v], v) << 16, static_cast<std::uint32_t>(i),
+                           list[i].id | later_on << 29};
+            const auto begins_within = [&](const auto& e) {
+                return subset.boxes[e.id].min[plan.axis] <= b.max[plan.axis];
+            };
+            list_ends_[i] = static_cast<std::uint32_t>(
+                std::partition_point(list.begin() + static_cast<std::ptrdiff_t>(i), list.end(), begins_within) -
+                list.begin());
+        }
+    }
+
+    chosen_axis longest_;
+    std::vector<column_entry> entries_;     // of a list
+    std::vector<std::uint32_t> list_ends_;  // the same
+    std::vector<std::uint32_t> active_;     // entries that reach into the vector at hand
+    std::vector<std::uint32_t> active_ends_;
+    std::vector<candidate> candidates_;
+    std::size_t found_ = 0;
+};
+
+static_assert(ListSweep<simd_sweep> && ColumnSweep<simd_sweep>);
+
+}  // namespace aabb
