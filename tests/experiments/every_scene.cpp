@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,13 +23,20 @@ TEST_CASE("every composition is exact on every scene of boxes") {
     REQUIRE(contenders.size() > 500);
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
         if (info.has_meshes || info.plays_file) continue;
-        const aabblab::scene_validation all =
-            aabblab::validate_scene({info.name, {{"objects", "100"}, {"frames", "4"}}, {}, 3}, contenders);
-        REQUIRE(all.contenders.size() == contenders.size());
-        for (const aabblab::contender_validation& v : all.contenders) {
-            INFO(info.name << ": " << v.failure);
-            REQUIRE(v.failure.empty());
-            REQUIRE(v.digest == all.digest);
+        aabblab::scene_choice scene{info.name, {{"objects", "100"}, {"frames", "4"}}, {}, 3};
+        // Grown by a margin, long ones reach into millions of the cells of a fine grid.
+        if (info.name == "needles") scene.settings.push_back({"length", "4"});
+        // All at once would take more memory than some machines have.
+        for (std::size_t begin = 0; begin < contenders.size(); begin += 250) {
+            const auto some =
+                std::span(contenders).subspan(begin, std::min<std::size_t>(250, contenders.size() - begin));
+            const aabblab::scene_validation all = aabblab::validate_scene(scene, some);
+            REQUIRE(all.contenders.size() == some.size());
+            for (const aabblab::contender_validation& v : all.contenders) {
+                INFO(info.name << ": " << v.failure);
+                REQUIRE(v.failure.empty());
+                REQUIRE(v.digest == all.digest);
+            }
         }
     }
 }
