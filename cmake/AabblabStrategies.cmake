@@ -1,8 +1,9 @@
-# aabblab_kind(KIND STAGE DEFAULT [APART]): declares a kind of strategy of a stage (global_search or local_detection), and
-# the strategy that a composition has where it names none. The kinds of a stage are compiled together, every combination
-# of them; one that stands APART is compiled alone and handed to the stage when that is made.
+# aabblab_kind(KIND STAGE DEFAULT [BESIDE NAME] [APART]): declares a kind of strategy of a stage (global_search or
+# local_detection), and the strategy that a composition has where it names none; BESIDE says which where it names a strategy
+# of another kind that is compiled with this one. The kinds of a stage are compiled together, every combination of them; one
+# that stands APART is compiled alone and handed to the stage when that is made.
 function(aabblab_kind kind stage default)
-    cmake_parse_arguments(PARSE_ARGV 3 of APART "" "")
+    cmake_parse_arguments(PARSE_ARGV 3 of "APART" "BESIDE" "")
     set_property(GLOBAL APPEND PROPERTY aabblab_kinds ${kind})
     if(of_APART)
         set(apart true)
@@ -10,7 +11,11 @@ function(aabblab_kind kind stage default)
         set(apart false)
         set_property(GLOBAL APPEND PROPERTY aabblab_${stage}_kinds ${kind})
     endif()
-    set_property(GLOBAL APPEND PROPERTY aabblab_kind_infos "{\"${kind}\", stage::${stage}, \"${default}\", ${apart}}")
+    if(NOT of_BESIDE)
+        set(of_BESIDE ${default})
+    endif()
+    set_property(GLOBAL APPEND PROPERTY aabblab_kind_infos
+                 "{\"${kind}\", stage::${stage}, \"${default}\", \"${of_BESIDE}\", ${apart}}")
 endfunction()
 
 # aabblab_strategy(KIND NAME): declares a strategy.

@@ -82,11 +82,11 @@ inline std::vector<aabb::composition> all_local_compositions() {
     return all_compositions(aabb::stage::local_detection);
 }
 
-/// The default composition with other strategies, as the command line takes them: `composed({{kind::sort, "shell"}})`.
+/// These strategies, as the command line takes them, and what goes with them: `composed({{kind::sort, "shell"}})`.
 inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy_kind, const char*>> choices) {
-    aabb::composition c;
-    for (const auto& [kind, text] : choices) c[kind] = aabb::parse_strategy(text);
-    return c;
+    aabb::named_strategies named;
+    for (const auto& [kind, text] : choices) named[kind] = aabb::parse_strategy(text);
+    return aabb::composition(named);
 }
 
 inline std::string text_of_global(const aabb::composition& c) {

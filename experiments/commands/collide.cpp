@@ -75,8 +75,9 @@ detection_method method_of(const collide_request& request) {
             throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it alone");
         return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_mesh_engine(*request.engine), {}};
     }
-    aabb::composition composition;
-    request.local.set(composition);
+    aabb::named_strategies named;
+    request.local.add_to(named);
+    const aabb::composition composition(named);
     detection_method method{aabb::to_text(composition, aabb::stage::local_detection),
                             aabb::is_exact(composition, aabb::stage::local_detection),
                             aabb::compose_local_detection(composition, aabb::instrumentation::none),

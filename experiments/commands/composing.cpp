@@ -30,6 +30,19 @@ std::string joined(const std::vector<std::string>& names) {
     return text;
 }
 
+/// "bucket, or std with another partition or sweep"
+std::string usual_of(aabb::strategy_kind kind) {
+    const aabb::strategy_kind_info& info = info_of(kind);
+    std::string text(info.fallback);
+    if (info.beside == info.fallback) return text;
+    text += ", or " + std::string(info.beside) + " with another ";
+    std::string others;
+    for (const aabb::strategy_kind_info& other : aabb::strategy_kind_infos)
+        if (other.stage == info.stage && !other.apart && other.name != info.name)
+            others += (others.empty() ? "" : " or ") + std::string(other.name);
+    return text + others;
+}
+
 }  // namespace
 
 void stage_options::add_to(CLI::App& command) {
@@ -37,8 +50,8 @@ void stage_options::add_to(CLI::App& command) {
         const std::string name(name_of(kind));
         command
             .add_option("--" + name, given_[kind],
-                        "One of " + joined(aabb::strategy_names(kind)) + " (default " +
-                            std::string(info_of(kind).fallback) + "), as in NAME:parameter=value")
+                        "One of " + joined(aabb::strategy_names(kind)) + " (default " + usual_of(kind) +
+                            "), as in NAME:parameter=value")
             ->type_name("S");
     }
 }
@@ -55,9 +68,9 @@ std::string stage_options::names() const {
     return text;
 }
 
-void stage_options::set(aabb::composition& c) const {
+void stage_options::add_to(aabb::named_strategies& named) const {
     for (const aabb::strategy_kind kind : kinds())
-        if (given_[kind]) c[kind] = aabb::parse_strategy(*given_[kind]);
+        if (given_[kind]) named[kind] = aabb::parse_strategy(*given_[kind]);
 }
 
 std::vector<aabb::strategy_kind> stage_options::kinds() const {

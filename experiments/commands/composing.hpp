@@ -22,9 +22,8 @@ public:
     [[nodiscard]] bool any() const;
     /// "--sort, --partition and --sweep".
     [[nodiscard]] std::string names() const;
-    /// Takes over what was given.
     /// @throws aabb::input_error on what is not a strategy with its parameters.
-    void set(aabb::composition& c) const;
+    void add_to(aabb::named_strategies& named) const;
 
 private:
     [[nodiscard]] std::vector<aabb::strategy_kind> kinds() const;

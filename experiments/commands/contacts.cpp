@@ -63,9 +63,10 @@ struct contacts_result {
 };
 
 both_stages stages_of(const contacts_request& request) {
-    aabb::composition c;
-    request.global.set(c);
-    request.local.set(c);
+    aabb::named_strategies named;
+    request.global.add_to(named);
+    request.local.add_to(named);
+    const aabb::composition c(named);
     const std::string global = to_text(c, aabb::stage::global_search);
     const bool exact = is_exact(c, aabb::stage::global_search);
     if (request.engine) {

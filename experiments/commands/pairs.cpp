@@ -57,8 +57,9 @@ search_method method_of(const pairs_request& request) {
             throw aabb::input_error("--engine stands in for " + request.global.names() + ", so give it alone");
         return {*request.engine, aabb::is_exact_engine(*request.engine), aabb::make_box_engine(*request.engine)};
     }
-    aabb::composition composition;
-    request.global.set(composition);
+    aabb::named_strategies named;
+    request.global.add_to(named);
+    const aabb::composition composition(named);
     return {aabb::to_text(composition, aabb::stage::global_search),
             aabb::is_exact(composition, aabb::stage::global_search),
             aabb::compose_global_search(composition, aabb::instrumentation::none)};

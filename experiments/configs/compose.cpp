@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -18,10 +19,14 @@ namespace aabblab {
 
 namespace {
 
-std::vector<aabb::strategy_choice> strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
-    if (!value) return {aabb::composition()[kind]};
-    return choices_of(doc, *value, aabb::strategies(kind)[0].name,
-                      [kind](const aabb::strategy_choice& choice) { aabb::require_known(kind, choice); });
+/// One that is not there where the config says nothing.
+std::vector<std::optional<aabb::strategy_choice>> strategies_of(const document& doc, aabb::strategy_kind kind,
+                                                                const node* value) {
+    if (!value) return {std::nullopt};
+    const std::vector<aabb::strategy_choice> choices =
+        choices_of(doc, *value, aabb::strategies(kind)[0].name,
+                   [kind](const aabb::strategy_choice& choice) { aabb::require_known(kind, choice); });
+    return {choices.begin(), choices.end()};
 }
 
 /// A key that nobody knows; the name of a strategy says of which kind it is.
@@ -58,7 +63,7 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
 
 /// @param compose whose keys are kinds; its lists multiply
 void add_compositions(const document& doc, const node& compose, each_once<aabb::composition>& list) {
-    aabb::by_kind<std::vector<aabb::strategy_choice>> choices;
+    aabb::by_kind<std::vector<std::optional<aabb::strategy_choice>>> choices;
     std::vector<std::size_t> factors;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         choices[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
@@ -66,14 +71,15 @@ void add_compositions(const document& doc, const node& compose, each_once<aabb::
     }
     doc.require_few(compose.line, "compositions", factors, list.all().size());
     // The last kind varies fastest.
-    std::vector<aabb::composition> products(1);
+    std::vector<aabb::named_strategies> products(1);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        std::vector<aabb::composition> longer;
-        for (const aabb::composition& product : products)
-            for (const aabb::strategy_choice& choice : choices[kind]) longer.emplace_back(product)[kind] = choice;
+        std::vector<aabb::named_strategies> longer;
+        for (const aabb::named_strategies& product : products)
+            for (const auto& choice : choices[kind]) longer.emplace_back(product)[kind] = choice;
         products = std::move(longer);
     }
-    for (const aabb::composition& c : products) add_composition(doc, compose.line, c, list);
+    for (const aabb::named_strategies& named : products)
+        add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
 /// One [compose], or several [[compose]], whose lists multiply each for itself.

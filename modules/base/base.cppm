@@ -6,6 +6,7 @@ export import :append_whole;
 export import :error;
 export import :floating_point;
 export import :frame_state;
+export import :large_pages;
 export import :memory;
 export import :parallel;
 export import :shortest;

@@ -16,8 +16,8 @@ template <class Part>
 }
 
 /// Heap bytes behind a vector.
-template <class T>
-[[nodiscard]] constexpr std::size_t bytes_of(const std::vector<T>& v) {
+template <class T, class Allocator>
+[[nodiscard]] constexpr std::size_t bytes_of(const std::vector<T, Allocator>& v) {
     return v.capacity() * sizeof(T);
 }
 

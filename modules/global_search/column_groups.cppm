@@ -185,11 +185,11 @@ private:
     }
 
     column_plan plan_;
-    std::vector<std::uint16_t> keys_;  // by box: its first group
-    std::vector<std::uint32_t> wide_;  // boxes that reach into further ones
+    large_vector<std::uint16_t> keys_;  // by box: its first group
+    large_vector<std::uint32_t> wide_;  // boxes that reach into further ones
     std::vector<part> parts_;
-    std::vector<box> boxes_;  // group after group
-    std::vector<std::uint32_t> ids_;
+    large_vector<box> boxes_;  // group after group
+    large_vector<std::uint32_t> ids_;
     std::vector<std::size_t> starts_{0};
 };
 

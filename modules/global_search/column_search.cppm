@@ -15,6 +15,7 @@ import aabb.geometry;
 import :column_groups;
 import :column_lists;
 import :column_plan;
+import :frame_at_rest;
 import :membership;
 import :partition_policy;
 import :sort_policy;
@@ -23,8 +24,8 @@ import :sweep_policy;
 export namespace aabb {
 
 /// Global search that cuts first: boxes go to columns as they are, group by group where there are many, and what a
-/// group needs is made while it is swept, so that it is still in a cache. Nothing is kept from frame to frame but the
-/// plan.
+/// group needs is made while it is swept, so that it is still in a cache. Kept from frame to frame are the plan, and
+/// the pairs for as long as nothing moves.
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
@@ -35,6 +36,9 @@ public:
 
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
+        boxes_ = boxes;
+        rests_ = at_rest_.lasts(boxes, objects);
+        if (rests_) return;
         select(boxes, objects);
         const std::size_t n = present_.boxes.size();
         if (n > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
@@ -49,6 +53,11 @@ public:
     }
 
     void search(std::vector<index_pair>& pairs, Counters& counters) {
+        if (rests_) {
+            pairs.insert(pairs.end(), at_rest_.pairs().begin(), at_rest_.pairs().end());
+            return;
+        }
+        const std::size_t before = pairs.size();
         std::uint64_t tests = 0;
         if (groups_.size() == 0)
             tests = sweep(workers_.front(), pairs);
@@ -57,6 +66,7 @@ public:
         add_up(counters);
         if (age_ == 0) planned_tests_ = tests;
         is_slow_ = tests > 2 * planned_tests_ + planned_;
+        at_rest_.keep(boxes_, std::span(pairs).subspan(before));
     }
 
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
@@ -64,7 +74,8 @@ public:
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
         return bytes_of(partition_) + bytes_of(groups_) + bytes_of(group_plans_) + bytes_of(present_boxes_) +
-               bytes_of(present_ids_) + sum_of([](const worker& w) { return bytes_of(w.columns); });
+               bytes_of(present_ids_) + bytes_of(at_rest_) +
+               sum_of([](const worker& w) { return bytes_of(w.columns); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {
         return bytes_of(found_) + sum_of([](const worker& w) { return bytes_of(w.sweep) + bytes_of(w.pairs); });
@@ -206,6 +217,9 @@ private:
 
     [[no_unique_address]] Partition partition_;
     std::vector<worker> workers_;
+    frame_at_rest at_rest_;
+    bool rests_ = false;
+    std::span<const box> boxes_;  // of the frame
     column_group present_{};
     std::vector<box> present_boxes_;  // where some objects are absent
     std::vector<std::uint32_t> present_ids_;

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -146,8 +147,21 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     entry_of(kind, choice).check(choice);
 }
 
-composition::composition() {
-    for (const strategy_kind kind : strategy_kinds) choices_[kind].name = info_of(kind).fallback;
+composition::composition(const named_strategies& named) {
+    const auto complete = [&](stage of, std::string_view strategy_kind_info::* usual) {
+        for (const strategy_kind kind : strategy_kinds)
+            if (info_of(kind).stage == of)
+                choices_[kind] = named[kind].value_or(strategy_choice{std::string(info_of(kind).*usual), {}});
+    };
+    for (const stage of : {stage::global_search, stage::local_detection}) {
+        complete(of, &strategy_kind_info::beside);
+        const bool any =
+            std::ranges::any_of(kinds_of(of, false), [&](strategy_kind kind) { return named[kind].has_value(); });
+        if (any && refusal_of(*this, of).empty()) continue;
+        const composition plain = *this;
+        complete(of, &strategy_kind_info::fallback);
+        if (any && !refusal_of(*this, of).empty()) *this = plain;
+    }
 }
 
 std::string text_in_line(strategy_kind kind, const std::string& choice) {

@@ -1,5 +1,6 @@
 module;
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,11 +39,18 @@ struct strategy_info {
 /// @throws input_error with the nearest valid name.
 void require_known(strategy_kind kind, const strategy_choice& choice);
 
+/// What is said of each kind, if anything.
+using named_strategies = by_kind<std::optional<strategy_choice>>;
+
 /// A strategy of each kind: what both stages are made of.
 class composition {
 public:
-    /// What a kind has where nothing is said.
-    composition();
+    /// What every kind has where nothing is said.
+    composition() : composition(named_strategies()) {}
+    /// What is named. Of a stage of which nothing is, the other kinds have what serves best together; else what goes
+    /// with most, unless that is refused and the best is not.
+    /// @throws input_error on an unknown name or parameter in such a stage.
+    explicit composition(const named_strategies& named);
 
     [[nodiscard]] strategy_choice& operator[](strategy_kind kind) { return choices_[kind]; }
     [[nodiscard]] const strategy_choice& operator[](strategy_kind kind) const { return choices_[kind]; }

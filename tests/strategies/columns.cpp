@@ -37,7 +37,7 @@ std::vector<box> random_boxes(std::size_t n, double world, double size, unsigned
 
 /// From one sorted list, in order.
 std::vector<index_pair> true_pairs(const std::vector<box>& boxes) {
-    const auto search = global_of({});
+    const auto search = global_of(composed({{strategy_kind::sort, "std"}}));
     for (std::uint32_t id = 0; id < boxes.size(); ++id) search->insert(id);
     std::vector<index_pair> pairs;
     search->update(boxes);
@@ -47,11 +47,7 @@ std::vector<index_pair> true_pairs(const std::vector<box>& boxes) {
 }
 
 composition columns_with(const std::string& settings) {
-    composition c;
-    c[strategy_kind::sort] = parse_strategy("bucket");
-    c[strategy_kind::partition] = parse_strategy("columns" + settings);
-    c[strategy_kind::sweep] = parse_strategy("simd");
-    return c;
+    return composed({{strategy_kind::partition, ("columns" + settings).c_str()}});
 }
 
 using search_by_columns = global_search<bucket_sort, columns_partition, simd_sweep, work_counters>;
@@ -61,6 +57,7 @@ using search_by_columns = global_search<bucket_sort, columns_partition, simd_swe
 TEST_CASE("groups of any size find the same pairs, in an order that no number of threads changes") {
     const std::vector<box> boxes = random_boxes(20'000, 27, 0.7, 1);
     const std::vector<index_pair> expected = true_pairs(boxes);
+    const std::vector<box> elsewhere = random_boxes(20'000, 27, 0.7, 2);
     REQUIRE(expected.size() > 20'000);
     for (const std::string group : {"auto", "1", "17", "400", "3000"}) {
         std::vector<index_pair> first;
@@ -69,9 +66,9 @@ TEST_CASE("groups of any size find the same pairs, in an order that no number of
             const auto search = global_of(columns_with(":group=" + group + ",threads=" + threads));
             for (std::uint32_t id = 0; id < boxes.size(); ++id) search->insert(id);
             std::vector<index_pair> pairs;
-            for (int frame = 0; frame < 3; ++frame) {
+            for (const std::vector<box>& frame : {boxes, elsewhere, boxes}) {
                 pairs.clear();
-                search->update(boxes);
+                search->update(frame);
                 search->search(pairs);
             }
             if (first.empty()) first = pairs;
@@ -117,6 +114,47 @@ TEST_CASE("a plan is made anew when a scene changes its nature, so that work doe
     CHECK(2 * settled < surprised);
     std::ranges::sort(pairs);
     CHECK(pairs == true_pairs(packed));
+}
+
+TEST_CASE("nothing is tested while nothing moves, and everything again once something does") {
+    std::vector<box> boxes = random_boxes(3000, 12, 0.7, 4);
+    for (const std::uint32_t group : {100'000U, 200U}) {
+        search_by_columns search({}, columns_partition({.group = group}), {});
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) search.insert(id);
+        std::vector<index_pair> expected;
+        const auto is_tested = [&] {
+            const std::uint64_t before = search.counters()[work::box_tests];
+            std::vector<index_pair> pairs;
+            search.update(boxes);
+            search.search(pairs);
+            std::ranges::sort(pairs);
+            CHECK(pairs == expected);
+            return search.counters()[work::box_tests] > before;
+        };
+        expected = true_pairs(boxes);
+        CHECK(is_tested());
+        // Once to notice that nothing moves.
+        CHECK(is_tested());
+        for (int frame = 0; frame < 20; ++frame) CHECK_FALSE(is_tested());
+        // One that is not looked at first, and a little.
+        boxes[1234].max[1] = std::nextafter(boxes[1234].max[1], 100.0F);
+        expected = true_pairs(boxes);
+        CHECK(is_tested());
+        CHECK_FALSE(is_tested());
+        search.remove(77);
+        std::erase_if(expected, [](index_pair p) { return p.a == 77 || p.b == 77; });
+        CHECK(is_tested());
+        CHECK(is_tested());
+        CHECK_FALSE(is_tested());
+        search.insert(77);
+        expected = true_pairs(boxes);
+        CHECK(is_tested());
+        boxes.push_back(boxes[5]);
+        search.insert(3000);
+        expected = true_pairs(boxes);
+        CHECK(is_tested());
+        boxes.pop_back();
+    }
 }
 
 TEST_CASE("whole numbers rise with what they stand for, and are the same one by one and in vectors") {

@@ -45,6 +45,24 @@ TEST_CASE("a parameter that is a kind of its own is refused with the new spellin
                                  "or --build sah"));
 }
 
+TEST_CASE("what is not named is the best where nothing is, and goes with what is") {
+    const auto completed = [](strategy_kind kind, const char* name) {
+        return text_of_global(composed({{kind, name}}));
+    };
+    CHECK(completed(strategy_kind::tree, "leafless") == "bucket + columns + simd");
+    CHECK(completed(strategy_kind::sort, "shell") == "shell + none + one_axis");
+    CHECK(completed(strategy_kind::sweep, "all_axes") == "std + none + all_axes");
+    CHECK(completed(strategy_kind::partition, "axial_cut") == "std + axial_cut + one_axis");
+    // one_axis is refused by columns, so the others are what serves best.
+    CHECK(completed(strategy_kind::partition, "columns:axes=1") == "bucket + columns:axes=1 + simd");
+    // Refused whatever goes with it: the sentence names what most have.
+    CHECK(completed(strategy_kind::sweep, "incremental") == "std + none + incremental");
+    for (const strategy_info& info : strategies(strategy_kind::sort))
+        CHECK(refusal_of(composed({{strategy_kind::sort, info.name.c_str()}}), stage::global_search).empty());
+    CHECK_THROWS_MATCHES(composed({{strategy_kind::sort, "shall"}}), input_error,
+                         Message("unknown sort 'shall'; did you mean 'shell'?"));
+}
+
 TEST_CASE("every kind has a stage, and a usual strategy that exists and makes sense") {
     for (const strategy_kind kind : strategy_kinds)
         CHECK_NOTHROW(require_known(kind, {std::string(info_of(kind).fallback), {}}));
@@ -52,9 +70,9 @@ TEST_CASE("every kind has a stage, and a usual strategy that exists and makes se
         CHECK(refusal_of(composition{}, of).empty());
         // What stands apart is told where it is not the usual one.
         CHECK(to_text(composed({{strategy_kind::prepare, "split_large"}, {strategy_kind::build, "sah"}}), of) ==
-              (of == stage::global_search ? "split_large + std + none + one_axis" : "sah + canonical + exact"));
+              (of == stage::global_search ? "split_large + bucket + columns + simd" : "sah + canonical + exact"));
         CHECK(to_text(composition{}, of) ==
-              (of == stage::global_search ? "std + none + one_axis" : "canonical + exact"));
+              (of == stage::global_search ? "bucket + columns + simd" : "canonical + exact"));
         for (const composition& c : every_composition(of)) CHECK(refusal_of(c, of).empty());
     }
     CHECK(every_composition(stage::local_detection).size() ==

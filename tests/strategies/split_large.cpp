@@ -75,6 +75,8 @@ TEST_CASE("pieces keep their places in sorted lists when other objects come and 
     aabb::composition c;
     c[strategy_kind::prepare] = {"split_large", {{"size", "0.9"}}};
     c[strategy_kind::sort] = {"insertion", {}};
+    c[strategy_kind::partition] = {"none", {}};
+    c[strategy_kind::sweep] = {"one_axis", {}};
     auto stage = compose_global_search(c, instrumentation::counters);
     std::vector<box> boxes;
     for (std::uint32_t id = 0; id < 400; ++id) {

@@ -1,0 +1,46 @@
+module;
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+export module aabb.base:large_pages;
+
+namespace aabb::detail {
+
+[[nodiscard]] void* take_large_pages(std::size_t bytes);
+void give_large_pages(void* memory, std::size_t bytes) noexcept;
+
+}  // namespace aabb::detail
+
+export namespace aabb {
+
+/// Memory in pages of 2 MiB where the system gives them to those who ask, as Linux does: what is written here and there
+/// over many megabytes misses the processor's table of pages less often. Smaller arrays get ordinary memory.
+template <class T>
+struct large_pages {
+    using value_type = T;
+
+    constexpr large_pages() noexcept = default;
+    template <class U>
+    constexpr large_pages(const large_pages<U>&) noexcept {}
+
+    [[nodiscard]] static constexpr T* allocate(std::size_t n) {
+        if (is_large(n)) return static_cast<T*>(detail::take_large_pages(n * sizeof(T)));
+        return std::allocator<T>().allocate(n);
+    }
+    static constexpr void deallocate(T* memory, std::size_t n) noexcept {
+        if (is_large(n)) return detail::give_large_pages(memory, n * sizeof(T));
+        std::allocator<T>().deallocate(memory, n);
+    }
+
+    friend constexpr bool operator==(const large_pages&, const large_pages&) noexcept { return true; }
+
+private:
+    /// A vector never asks for more than its `max_size`, so the product holds.
+    static constexpr bool is_large(std::size_t n) noexcept { return n >= (std::size_t{4} << 20) / sizeof(T); }
+};
+
+template <class T>
+using large_vector = std::vector<T, large_pages<T>>;
+
+}  // namespace aabb
