@@ -45,7 +45,7 @@ struct column_plan {
         const float at = (x - origin[k]) * scale[k];
         return static_cast<std::uint32_t>(at > 0 ? std::min(at, 65'535.0F) : 0.0F);
     }
-    [[nodiscard]] inline simd::words whole(simd::floats x, int k) const noexcept {
+    [[nodiscard, gnu::always_inline]] inline simd::words whole(simd::floats x, int k) const noexcept {
         const simd::floats most = simd::all(65'535.0F);
         simd::floats at = (x - origin[k]) * scale[k];
         at = at > 0.0F ? at : simd::floats{};
@@ -113,7 +113,7 @@ inline void for_each_vector(std::span<const box> boxes, Visit visit) {
 }
 
 /// Where `is_valid` does not hold; nowhere else.
-[[nodiscard]] inline simd::flags are_invalid(const simd::floats (&coordinates)[6]) noexcept {
+[[nodiscard, gnu::always_inline]] inline simd::flags are_invalid(const simd::floats (&coordinates)[6]) noexcept {
     constexpr float most = std::numeric_limits<float>::max();
     simd::flags valid = coordinates[0] >= -most;
     for (int k = 0; k < 3; ++k)

@@ -10,19 +10,13 @@ module;
 #include <immintrin.h>
 #endif
 
-/// As many numbers at a time as a register of this processor takes: 16, 8 or 4. Everything is said in vectors of the
-/// compiler; intrinsics stand only where it has no word for what the processor can do.
+/// As many numbers at a time as a register of the processor takes for which this was configured: 16, 8 or 4. Everything
+/// is said in vectors of the compiler; intrinsics stand only where it has no word for what the processor can do.
 export module aabb.simd:lanes;
 
-export namespace aabb::simd {
+import :width;
 
-#if defined(__AVX512F__)
-inline constexpr std::size_t width = 16;
-#elif defined(__AVX2__)
-inline constexpr std::size_t width = 8;
-#else
-inline constexpr std::size_t width = 4;
-#endif
+export namespace aabb::simd {
 
 using floats = float __attribute__((vector_size(4 * width)));
 using words = std::uint32_t __attribute__((vector_size(4 * width)));
@@ -31,45 +25,45 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
 
 inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1);
 
-[[nodiscard]] inline floats all(float x) noexcept {
+[[nodiscard, gnu::always_inline]] inline floats all(float x) noexcept {
     return floats{} + x;
 }
-[[nodiscard]] inline words all(std::uint32_t x) noexcept {
+[[nodiscard, gnu::always_inline]] inline words all(std::uint32_t x) noexcept {
     return words{} + x;
 }
 
 /// 0, 1, 2, …
-[[nodiscard]] inline words places() noexcept {
+[[nodiscard, gnu::always_inline]] inline words places() noexcept {
     words v{};
     for (std::size_t i = 0; i < width; ++i) v[i] = static_cast<std::uint32_t>(i);
     return v;
 }
 
-[[nodiscard]] inline words load(const std::uint32_t* from) noexcept {
+[[nodiscard, gnu::always_inline]] inline words load(const std::uint32_t* from) noexcept {
     words v;
     std::memcpy(&v, from, sizeof v);
     return v;
 }
-inline void store(std::uint32_t* to, words v) noexcept {
+[[gnu::always_inline]] inline void store(std::uint32_t* to, words v) noexcept {
     std::memcpy(to, &v, sizeof v);
 }
 
 /// The lower half of each number.
-inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
+[[gnu::always_inline]] inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
     using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
     const auto lower = __builtin_convertvector(v, narrow);
     std::memcpy(to, &lower, sizeof lower);
 }
 
 /// Bit i is set where the comparison holds in lane i.
-[[nodiscard]] inline std::uint32_t bits(flags held) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint32_t bits(flags held) noexcept {
     using bools = bool __attribute__((ext_vector_type(width)));
     using pattern = std::conditional_t<width == 16, std::uint16_t, std::uint8_t>;
     return __builtin_bit_cast(pattern, __builtin_convertvector(held, bools)) & every_lane;
 }
 
 /// Bit l of word i is set where l is below number i of `ends`, which may be negative.
-[[nodiscard]] inline words lanes_below(words ends) noexcept {
+[[nodiscard, gnu::always_inline]] inline words lanes_below(words ends) noexcept {
     const auto signed_ends = reinterpret_cast<flags>(ends);
     const flags some = signed_ends > 0 ? signed_ends : flags{};
     const flags most = some < static_cast<int>(width) ? some : flags{} + static_cast<int>(width);
@@ -77,12 +71,12 @@ inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
 }
 
 /// Those below `end`.
-[[nodiscard]] inline std::uint32_t lanes_below(std::size_t end) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint32_t lanes_below(std::size_t end) noexcept {
     return end >= width ? every_lane : (std::uint32_t{1} << end) - 1;
 }
 
 /// Of two numbers of 16 bits each, the upper half of the product.
-[[nodiscard]] inline words upper_products(words a, words b) noexcept {
+[[nodiscard, gnu::always_inline]] inline words upper_products(words a, words b) noexcept {
     using wide = std::uint32_t __attribute__((vector_size(8 * width)));
     const auto x = __builtin_convertvector(reinterpret_cast<halves>(a), wide);
     const auto y = __builtin_convertvector(reinterpret_cast<halves>(b), wide);
@@ -90,27 +84,30 @@ inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
 }
 
 /// Of two numbers of 16 bits each: the difference, or 0 where it is negative.
-[[nodiscard]] inline words excess(words a, words b) noexcept {
+[[nodiscard, gnu::always_inline]] inline words excess(words a, words b) noexcept {
     return reinterpret_cast<words>(
         __builtin_elementwise_sub_sat(reinterpret_cast<halves>(a), reinterpret_cast<halves>(b)));
 }
 
 /// What stands at these places.
-[[nodiscard]] inline words gather(const std::uint32_t* from, words places) noexcept {
+template <class Words>
+[[nodiscard, gnu::always_inline]] inline Words gather(const std::uint32_t* from, Words places) noexcept {
 #if defined(__AVX512F__)
-    return std::bit_cast<words>(_mm512_i32gather_epi32(std::bit_cast<__m512i>(places), from, 4));
-#elif defined(__AVX2__)
-    return std::bit_cast<words>(
-        _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), std::bit_cast<__m256i>(places), 4));
-#else
-    words v;
+    if constexpr (width == 16)
+        return std::bit_cast<Words>(_mm512_i32gather_epi32(std::bit_cast<__m512i>(places), from, 4));
+#endif
+#if defined(__AVX2__)
+    if constexpr (width == 8)
+        return std::bit_cast<Words>(
+            _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), std::bit_cast<__m256i>(places), 4));
+#endif
+    Words v;
     for (std::size_t i = 0; i < width; ++i) v[i] = from[places[i]];
     return v;
-#endif
 }
 
 /// Of each lane, the sum of those up to it.
-[[nodiscard]] inline words running_sum(words v) noexcept {
+[[nodiscard, gnu::always_inline]] inline words running_sum(words v) noexcept {
     const words none{};
     const auto shifted = [&]<std::size_t by, std::size_t... i>(std::integral_constant<std::size_t, by>,
                                                                std::index_sequence<i...>) {
@@ -126,7 +123,7 @@ inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
     return v;
 }
 
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX2__)
 /// For each set of lanes, eight places of 8 bits: where those lanes stand, one after the other.
 inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
     std::array<std::uint64_t, 256> all{};
@@ -141,20 +138,29 @@ inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
 
 /// Stores the lanes whose bit is set, one after the other; whatever stands behind them, up to a whole vector, is lost.
 /// @returns how many
-inline std::size_t store_where(std::uint32_t* to, words v, std::uint32_t set) noexcept {
+template <class Words>
+[[gnu::always_inline]] inline std::size_t store_where(std::uint32_t* to, Words v, std::uint32_t set) noexcept {
+    const auto stored = static_cast<std::size_t>(std::popcount(set));
 #if defined(__AVX512F__)
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), std::bit_cast<__m512i>(v)));
-#elif defined(__AVX2__)
-    const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(packed_places[set])));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(std::bit_cast<__m256i>(v), places));
-#else
+    if constexpr (width == 16) {
+        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), std::bit_cast<__m512i>(v)));
+        return stored;
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (width == 8) {
+        const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(packed_places[set])));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                            _mm256_permutevar8x32_epi32(std::bit_cast<__m256i>(v), places));
+        return stored;
+    }
+#endif
     std::size_t n = 0;
     for (std::size_t i = 0; i < width; ++i) {
         to[n] = v[i];
         n += set >> i & 1U;
     }
-#endif
-    return static_cast<std::size_t>(std::popcount(set));
+    return stored;
 }
 
 }  // namespace aabb::simd

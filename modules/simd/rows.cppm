@@ -8,6 +8,7 @@ module;
 export module aabb.simd:rows;
 
 import :lanes;
+import :width;
 
 namespace aabb::simd::detail {
 
@@ -15,13 +16,13 @@ using pairs = double __attribute__((vector_size(4 * width)));  // of two numbers
 
 /// Lane i takes lane `place(i)` of the two vectors, one behind the other.
 template <class Result, auto place, class Vector, std::size_t... i>
-[[nodiscard]] inline Result shuffled(Vector a, Vector b, std::index_sequence<i...>) noexcept {
+[[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<i...>) noexcept {
     return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(place(i))...));
 }
 
 /// Pair `k` of each of half as many rows of three pairs as a vector has numbers.
 template <std::size_t k>
-[[nodiscard]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
+[[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
     constexpr auto of_first_two = [](std::size_t i) { return 3 * i + k < width ? 3 * i + k : 0; };
     constexpr auto of_all = [](std::size_t i) { return 3 * i + k < width ? i : half + (3 * i + k - width); };
@@ -30,7 +31,7 @@ template <std::size_t k>
 }
 
 template <std::size_t k>
-inline void take_pair(const pairs (&rows)[6], floats* columns) noexcept {
+[[gnu::always_inline]] inline void take_pair(const pairs (&rows)[6], floats* columns) noexcept {
     const auto low = __builtin_bit_cast(floats, every_third<k>(rows[0], rows[1], rows[2]));
     const auto high = __builtin_bit_cast(floats, every_third<k>(rows[3], rows[4], rows[5]));
     constexpr auto even = [](std::size_t i) { return 2 * i; };
@@ -44,7 +45,7 @@ inline void take_pair(const pairs (&rows)[6], floats* columns) noexcept {
 export namespace aabb::simd {
 
 /// Of `width` rows of six numbers: their columns.
-inline void load_rows_of_six(const float* from, floats (&columns)[6]) noexcept {
+[[gnu::always_inline]] inline void load_rows_of_six(const float* from, floats (&columns)[6]) noexcept {
     detail::pairs rows[6];
     std::memcpy(rows, from, sizeof rows);
     detail::take_pair<0>(rows, columns);
@@ -53,7 +54,7 @@ inline void load_rows_of_six(const float* from, floats (&columns)[6]) noexcept {
 }
 
 /// Of `width` rows of four numbers: their columns.
-inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
+[[gnu::always_inline]] inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
     words rows[4];
     std::memcpy(rows, from, sizeof rows);
     const auto column = [&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
@@ -71,7 +72,7 @@ inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) no
 }
 
 /// The other way round.
-inline void store_rows_of_four(std::uint32_t* to, const words (&&columns)[4]) noexcept {
+[[gnu::always_inline]] inline void store_rows_of_four(std::uint32_t* to, const words (&&columns)[4]) noexcept {
     const auto rows = [&]<std::size_t r>(std::integral_constant<std::size_t, r>) {
         // Number j of these rows is of row j / 4 and column j % 4: two columns at a time, then both.
         constexpr auto of_two = [](std::size_t i) { return r * width / 4 + i / 4 + (i % 2) * width; };

@@ -3,3 +3,4 @@ export module aabb.simd;
 
 export import :lanes;
 export import :rows;
+export import :width;
