@@ -1,6 +1,9 @@
 module;
 #include <cstddef>
 #include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 export module aabb.base:large_pages;
@@ -31,6 +34,17 @@ struct large_pages {
     static constexpr void deallocate(T* memory, std::size_t n) noexcept {
         if (is_large(n)) return detail::give_large_pages(memory, n * sizeof(T));
         std::allocator<T>().deallocate(memory, n);
+    }
+
+    /// Where nothing is said, nothing is written: what follows a `resize` fills it anyway.
+    template <class U>
+    static constexpr void construct(U* at) noexcept {
+        static_assert(std::is_trivially_default_constructible_v<U>);
+        ::new (static_cast<void*>(at)) U;
+    }
+    template <class U, class... From>
+    static constexpr void construct(U* at, From&&... from) {
+        std::construct_at(at, std::forward<From>(from)...);
     }
 
     friend constexpr bool operator==(const large_pages&, const large_pages&) noexcept { return true; }

@@ -22,9 +22,9 @@ template <class T, class Allocator>
 }
 
 /// Empties a vector and gives its memory back.
-template <class T>
-constexpr void release(std::vector<T>& v) {
-    std::vector<T>().swap(v);
+template <class T, class Allocator>
+constexpr void release(std::vector<T, Allocator>& v) {
+    std::vector<T, Allocator>().swap(v);
 }
 
 }  // namespace aabb

@@ -13,8 +13,8 @@ void share_out(std::size_t count, unsigned threads, void (*call)(void* work, std
 
 export namespace aabb {
 
-/// Calls `work(i, worker)` for each i below `count`, in no particular order on more than one thread; no two calls with one
-/// number of a worker, which is below `threads`, at a time. An exception ends it, and leaves it.
+/// Calls `work(i, worker)` for each i below `count`, in no particular order on more than one thread; no two calls with
+/// one number of a worker, which is below `threads`, at a time. An exception ends it, and leaves it.
 template <class Work>
 void for_each_index(std::size_t count, unsigned threads, Work work) {
     const auto call = [](void* made, std::size_t i, std::size_t worker) { (*static_cast<Work*>(made))(i, worker); };

@@ -50,6 +50,8 @@ public:
         constexpr std::size_t least = 4096;
         parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, std::size_t{threads}));
         wide_.resize(boxes.size() + simd::width * parts_.size());
+        wide_first_.resize(wide_.size());
+        wide_last_.resize(wide_.size());
         for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { classify(boxes, p); });
         if (!std::ranges::all_of(parts_, &part::valid)) return false;
         make_room(boxes.size());
@@ -79,7 +81,8 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(keys_) + bytes_of(wide_) + bytes_of(boxes_) + bytes_of(ids_) + bytes_of(starts_);
+        std::size_t all = bytes_of(keys_) + bytes_of(wide_) + bytes_of(wide_first_) + bytes_of(wide_last_) +
+                          bytes_of(boxes_) + bytes_of(ids_) + bytes_of(starts_);
         for (const part& p : parts_) all += bytes_of(p.next) + bytes_of(p.next_copy);
         return all;
     }
@@ -96,11 +99,6 @@ private:
         std::size_t copies;
         bool valid;
     };
-
-    [[nodiscard]] inline std::uint32_t column(const vec3f& p, std::size_t i) const noexcept {
-        const int k = plan_.axis_across(i);
-        return plan_.whole(p[k], k) * plan_.across[i] >> 16;
-    }
 
     void classify(std::span<const box> boxes, std::size_t number) {
         part& p = parts_[number];
@@ -122,15 +120,18 @@ private:
             const simd::words last =
                 simd::upper_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
             simd::store_lower_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
+            const std::uint32_t wide = simd::bits(first != last) & present;
+            simd::store_where(&wide_first_[p.wide_end], first, wide);
+            simd::store_where(&wide_last_[p.wide_end], last, wide);
             p.wide_end +=
-                simd::store_where(&wide_[p.wide_end], simd::places() + static_cast<std::uint32_t>(p.begin + i),
-                                  simd::bits(first != last) & present);
+                simd::store_where(&wide_[p.wide_end], simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
         });
         p.valid = simd::bits(invalid) == 0;
         if (!p.valid) return;
-        for (std::size_t i = p.begin; i < p.end; ++i) ++p.next[keys_[i]];
-        for (std::size_t i = p.wide_begin; i < p.wide_end; ++i) {
-            for_each_further(boxes[wide_[i]], [&](std::uint32_t group, std::uint32_t) {
+        std::size_t* const begin_there = p.next.data();
+        for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++begin_there[key];
+        for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
+            for_each_further(w, [&](std::uint32_t group, std::uint32_t) {
                 ++p.next_copy[group];
                 ++p.copies;
             });
@@ -155,28 +156,44 @@ private:
         }
         starts_[groups] = all;
         if (all > boxes + most_copies(boxes)) refuse_copies(boxes);
+        if (all > boxes_.capacity()) {
+            // Not twice as many as before: few boxes come to reach into further groups.
+            release(boxes_);
+            release(ids_);
+            boxes_.reserve(all + all / 16);
+            ids_.reserve(all + all / 16);
+        }
         boxes_.resize(all);
         ids_.resize(all);
     }
 
+    /// Each box is read once, and put into all its groups.
     void put(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
+        std::size_t* const next = p.next.data();
+        std::size_t* const next_copy = p.next_copy.data();
+        const std::uint16_t* const keys = keys_.data();
+        box* const to = boxes_.data();
+        std::uint32_t* const to_ids = ids_.data();
         const auto write = [&](std::size_t place, std::size_t i, std::uint32_t later_on) {
-            boxes_[place] = boxes[i];
-            ids_[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | later_on;
+            to[place] = boxes[i];
+            to_ids[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | later_on;
         };
-        for (std::size_t i = p.begin; i < p.end; ++i) write(p.next[keys_[i]]++, i, 0);
-        for (std::size_t i = p.wide_begin; i < p.wide_end; ++i)
-            for_each_further(boxes[wide_[i]], [&](std::uint32_t group, std::uint32_t later_on) {
-                write(p.next_copy[group]++, wide_[i], later_on);
-            });
+        std::size_t i = p.begin;
+        for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
+            for (; i <= wide_[w]; ++i) write(next[keys[i]]++, i, 0);
+            for_each_further(
+                w, [&](std::uint32_t group, std::uint32_t later_on) { write(next_copy[group]++, i - 1, later_on); });
+        }
+        for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
     }
 
+    /// Of a wide box, the groups but the first.
     template <class Visit>
-    void for_each_further(const box& b, Visit visit) const {
-        const std::uint32_t u0 = column(b.min, 0);
-        const std::uint32_t v0 = column(b.min, 1);
-        const std::uint32_t u1 = column(b.max, 0);
-        const std::uint32_t v1 = column(b.max, 1);
+    void for_each_further(std::size_t wide, Visit visit) const {
+        const std::uint32_t u0 = wide_first_[wide] & 0xffffU;
+        const std::uint32_t v0 = wide_first_[wide] >> 16;
+        const std::uint32_t u1 = wide_last_[wide] & 0xffffU;
+        const std::uint32_t v1 = wide_last_[wide] >> 16;
         for (std::uint32_t v = v0; v <= v1; ++v)
             for (std::uint32_t u = u0; u <= u1; ++u)
                 if (u != u0 || v != v0)
@@ -185,8 +202,10 @@ private:
     }
 
     column_plan plan_;
-    large_vector<std::uint16_t> keys_;  // by box: its first group
-    large_vector<std::uint32_t> wide_;  // boxes that reach into further ones
+    large_vector<std::uint16_t> keys_;        // by box: its first group
+    large_vector<std::uint32_t> wide_;        // boxes that reach into further ones, in order
+    large_vector<std::uint32_t> wide_first_;  // column on the first axis across, and 2^16 times that on the second one
+    large_vector<std::uint32_t> wide_last_;
     std::vector<part> parts_;
     large_vector<box> boxes_;  // group after group
     large_vector<std::uint32_t> ids_;

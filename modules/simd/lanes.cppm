@@ -16,6 +16,44 @@ export module aabb.simd:lanes;
 
 import :width;
 
+// Intrinsics of either width, whichever is used: vectors are handed over in memory, which leaves no trace when
+// optimised.
+namespace aabb::simd::detail {
+
+#if defined(__AVX512F__)
+[[gnu::always_inline]] inline void gather_sixteen(const std::uint32_t* from, const void* places, void* to) noexcept {
+    _mm512_storeu_si512(to, _mm512_i32gather_epi32(_mm512_loadu_si512(places), from, 4));
+}
+[[gnu::always_inline]] inline void store_of_sixteen(void* to, const void* from, std::uint32_t set) noexcept {
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), _mm512_loadu_si512(from)));
+}
+#endif
+
+#if defined(__AVX2__)
+/// For each set of lanes, eight places of 8 bits: where those lanes stand, one after the other.
+inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
+    std::array<std::uint64_t, 256> all{};
+    for (std::uint64_t set = 0; set < 256; ++set) {
+        unsigned n = 0;
+        for (std::uint64_t lane = 0; lane < 8; ++lane)
+            if (set >> lane & 1U) all[set] |= lane << 8 * n++;
+    }
+    return all;
+}();
+
+[[gnu::always_inline]] inline void gather_eight(const std::uint32_t* from, const void* places, void* to) noexcept {
+    const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
+    _mm256_storeu_si256(static_cast<__m256i*>(to), _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), at, 4));
+}
+[[gnu::always_inline]] inline void store_of_eight(void* to, const void* from, std::uint32_t set) noexcept {
+    const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(packed_places[set])));
+    _mm256_storeu_si256(static_cast<__m256i*>(to),
+                        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(static_cast<const __m256i*>(from)), places));
+}
+#endif
+
+}  // namespace aabb::simd::detail
+
 export namespace aabb::simd {
 
 using floats = float __attribute__((vector_size(4 * width)));
@@ -90,18 +128,14 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
 }
 
 /// What stands at these places.
-template <class Words>
-[[nodiscard, gnu::always_inline]] inline Words gather(const std::uint32_t* from, Words places) noexcept {
+[[nodiscard, gnu::always_inline]] inline words gather(const std::uint32_t* from, words places) noexcept {
+    words v;
 #if defined(__AVX512F__)
-    if constexpr (width == 16)
-        return std::bit_cast<Words>(_mm512_i32gather_epi32(std::bit_cast<__m512i>(places), from, 4));
+    if constexpr (width == 16) return detail::gather_sixteen(from, &places, &v), v;
 #endif
 #if defined(__AVX2__)
-    if constexpr (width == 8)
-        return std::bit_cast<Words>(
-            _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), std::bit_cast<__m256i>(places), 4));
+    if constexpr (width == 8) return detail::gather_eight(from, &places, &v), v;
 #endif
-    Words v;
     for (std::size_t i = 0; i < width; ++i) v[i] = from[places[i]];
     return v;
 }
@@ -123,37 +157,15 @@ template <class Words>
     return v;
 }
 
-#if defined(__AVX2__)
-/// For each set of lanes, eight places of 8 bits: where those lanes stand, one after the other.
-inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
-    std::array<std::uint64_t, 256> all{};
-    for (std::uint64_t set = 0; set < 256; ++set) {
-        unsigned n = 0;
-        for (std::uint64_t lane = 0; lane < 8; ++lane)
-            if (set >> lane & 1U) all[set] |= lane << 8 * n++;
-    }
-    return all;
-}();
-#endif
-
 /// Stores the lanes whose bit is set, one after the other; whatever stands behind them, up to a whole vector, is lost.
 /// @returns how many
-template <class Words>
-[[gnu::always_inline]] inline std::size_t store_where(std::uint32_t* to, Words v, std::uint32_t set) noexcept {
+[[gnu::always_inline]] inline std::size_t store_where(std::uint32_t* to, words v, std::uint32_t set) noexcept {
     const auto stored = static_cast<std::size_t>(std::popcount(set));
 #if defined(__AVX512F__)
-    if constexpr (width == 16) {
-        _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), std::bit_cast<__m512i>(v)));
-        return stored;
-    }
+    if constexpr (width == 16) return detail::store_of_sixteen(to, &v, set), stored;
 #endif
 #if defined(__AVX2__)
-    if constexpr (width == 8) {
-        const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(packed_places[set])));
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
-                            _mm256_permutevar8x32_epi32(std::bit_cast<__m256i>(v), places));
-        return stored;
-    }
+    if constexpr (width == 8) return detail::store_of_eight(to, &v, set), stored;
 #endif
     std::size_t n = 0;
     for (std::size_t i = 0; i < width; ++i) {
