@@ -19,6 +19,7 @@
 #include "experiments.hpp"
 
 import aabb.policy;
+import aabb.registry;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.files;
@@ -111,10 +112,20 @@ void print_overall(std::span<const scene_summary> scenes) {
                               some.size(), text_of(base), to_text(overall, output_width())));
 }
 
+/// What takes several must not have them all on one processor.
+bool takes_several_threads(const experiment& e) {
+    return std::ranges::any_of(e.compositions, [](const aabb::composition& c) {
+        return std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
+            return std::ranges::any_of(c[kind].settings,
+                                       [](const aabb::setting& s) { return s.name == "threads" && s.value != "1"; });
+        });
+    });
+}
+
 /// Shows a scene as soon as its last seed is played.
 std::vector<std::string> play_here(const experiment& e, results_folder& results, printed shown) {
     std::optional<idlest_processor> pinned;
-    if (e.records(metric_group::time)) pinned.emplace();
+    if (e.records(metric_group::time) && !takes_several_threads(e)) pinned.emplace();
     std::vector<std::string> failures;
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
@@ -180,7 +191,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
 
 bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     std::optional<idlest_processor> pinned;
-    if (e.records(metric_group::time)) pinned.emplace();
+    if (e.records(metric_group::time) && !takes_several_threads(e)) pinned.emplace();
     results_folder results(folder, record_of(e), existing_results::resume);
     bool right = true;
     for (const scene_choice& scene : e.scenes)

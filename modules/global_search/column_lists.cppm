@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -36,9 +37,7 @@ public:
         block_ = {boxes, ids, {}, {}, plan.axis};
         plan_ = plan;
         bucket_bits_ = BucketSort<Sort> ? bits_for(boxes.size(), plan.columns()) : 0;
-        if (!classify()) return false;
-        count();
-        add_copies();
+        if (!take()) return false;
         const std::uint32_t all = make_room();
         distribute();
         counters.add(work::moves, copies());
@@ -53,12 +52,13 @@ public:
     [[nodiscard]] const column_block& block() const noexcept { return block_; }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(places_) + bytes_of(wide_) + bytes_of(copies_) + bytes_of(entries_) + bytes_of(ends_) +
-               bytes_of(list_) + bytes_of(moved_) + bytes_of(column_ends_);
+        return bytes_of(places_) + bytes_of(copies_) + bytes_of(entries_) + bytes_of(ends_) + bytes_of(list_) +
+               bytes_of(moved_) + bytes_of(column_ends_);
     }
 
 private:
     static constexpr std::uint32_t width = simd::width;
+    static constexpr std::size_t at_a_time = 1024;
 
     /// A box in whole numbers.
     struct place {
@@ -79,19 +79,27 @@ private:
         return std::min(16U, static_cast<std::uint32_t>(std::bit_width(each - 1)));
     }
 
+    /// A few boxes at a time, so that what is known of them is still in the nearest cache when they are counted.
     /// @returns whether all boxes are valid
-    [[nodiscard]] bool classify() {
+    [[nodiscard]] bool take() {
         places_.resize(block_.boxes.size() + width);
-        wide_.resize(block_.boxes.size() + width);
-        switch (plan_.axis) {
-            case 0: return classify<0>();
-            case 1: return classify<1>();
-            default: return classify<2>();
+        copies_.clear();
+        ends_.clear();
+        ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
+        bool valid = true;
+        for (std::size_t begin = 0; begin < block_.boxes.size() && valid; begin += at_a_time) {
+            const auto some = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
+            valid = plan_.axis == 0   ? classify<0>(some, begin)
+                    : plan_.axis == 1 ? classify<1>(some, begin)
+                                      : classify<2>(some, begin);
+            for (const place& p : std::span(places_).subspan(begin, some.size())) ++ends_[p.bucket];
+            add_copies();
         }
+        return valid;
     }
 
     template <int axis>
-    [[nodiscard]] bool classify() {
+    [[nodiscard]] bool classify(std::span<const box> boxes, std::size_t begin) {
         constexpr int u = (axis + 1) % 3;
         constexpr int v = (axis + 2) % 3;
         const column_plan plan = plan_;
@@ -99,32 +107,25 @@ private:
         const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
         simd::flags invalid{};
         std::size_t wide = 0;
-        for_each_vector(block_.boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t present) {
+        for_each_vector(boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t present) {
             invalid |= are_invalid(c);
             const simd::words lower = plan.whole(c[u], u) | plan.whole(c[v], v) << 16;
             const simd::words upper = plan.whole(c[3 + u], u) | plan.whole(c[3 + v], v) << 16;
             const simd::words first = simd::upper_products(lower, across);
             const simd::words last = simd::upper_products(upper, across);
             const simd::words bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
-            simd::store_rows_of_four(&places_[i].lower,
+            simd::store_rows_of_four(&places_[begin + i].lower,
                                      {lower, upper, bucket + (plan.whole(c[3 + axis], axis) >> (16 - bits)),
                                       bucket + (plan.whole(c[axis], axis) >> (16 - bits))});
-            wide += simd::store_where(&wide_[wide], simd::places() + static_cast<std::uint32_t>(i),
+            wide += simd::store_where(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
                                       simd::bits(first != last) & present);
         });
         wide_boxes_ = wide;
         return simd::bits(invalid) == 0;
     }
 
-    void count() {
-        ends_.clear();
-        ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
-        for (std::size_t i = 0; i < block_.boxes.size(); ++i) ++ends_[places_[i].bucket];
-    }
-
     /// Of boxes that reach into more than one column, an entry for each further one.
     void add_copies() {
-        copies_.clear();
         const std::uint32_t later_on[2] = {column_entry::later_on(plan_.axis_across(0)),
                                            column_entry::later_on(plan_.axis_across(1))};
         const std::uint32_t row = plan_.across[0] << bucket_bits_;
@@ -149,7 +150,13 @@ private:
     /// @returns entries with those
     std::uint32_t make_room() {
         const std::uint32_t columns = plan_.columns();
-        entries_.resize(block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1));
+        const std::size_t most = block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1);
+        // Not twice as many as before: frames differ by few.
+        if (most > entries_.capacity()) {
+            release(entries_);
+            entries_.reserve(most + most / 16);
+        }
+        entries_.resize(most);
         const std::uint32_t buckets = std::uint32_t{1} << bucket_bits_;
         const column_entry none{~std::uint32_t{0}, 0, columns << bucket_bits_, 0};
         std::uint32_t next = 0;
@@ -227,10 +234,10 @@ private:
     column_block block_{};
     column_plan plan_;
     std::uint32_t bucket_bits_ = 0;
-    std::vector<place> places_;        // by box
-    std::vector<std::uint32_t> wide_;  // boxes that reach into further columns
-    std::size_t wide_boxes_ = 0;       // how many those are
-    std::vector<copy> copies_;         // for each of those
+    std::vector<place> places_;                          // by box
+    std::array<std::uint32_t, at_a_time + width> wide_;  // of those at hand, boxes that reach into further columns
+    std::size_t wide_boxes_ = 0;                         // how many those are
+    std::vector<copy> copies_;                           // for each of those
     std::vector<column_entry> entries_;
     std::vector<std::uint32_t> ends_;  // by bucket, and one more
     std::vector<projection> list_;     // of a column, where it is sorted
