@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-import aabb;
-import aabb.registry;
+#include "../compositions.hpp"
 
 using aabb::input_error;
 
@@ -69,12 +68,11 @@ struct entry {
 TEST_CASE("every query refuses arithmetic in which answers cannot be exact") {
     const aabb::mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
     const std::vector<aabb::box> boxes{{{0, 0, 0}, {1, 1, 1}}};
-    const auto listed = aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
-    aabb::composition coherent;
-    coherent[aabb::strategy_kind::sort] = {"insertion", {}};
-    coherent[aabb::strategy_kind::sweep] = {"incremental", {}};
-    const auto kept = aabb::compose_global_search(coherent, aabb::instrumentation::none);
-    for (const auto& search : {listed.get(), kept.get()}) {
+    using enum aabb::strategy_kind;
+    const auto listed = global_of(composed({{sort, "std"}}));
+    const auto kept = global_of(composed({{sort, "insertion"}, {sweep, "incremental"}}));
+    const auto in_columns = global_of(composed({{partition, "columns"}}));
+    for (const auto& search : {listed.get(), kept.get(), in_columns.get()}) {
         search->insert(0);
         search->update(boxes);
     }
@@ -92,6 +90,8 @@ TEST_CASE("every query refuses arithmetic in which answers cannot be exact") {
         {"search", [&] { listed->search(pairs); }},
         {"update of a coherent sweep", [&] { kept->update(boxes); }},
         {"search of a coherent sweep", [&] { kept->search(pairs); }},
+        {"update of columns", [&] { in_columns->update(boxes); }},
+        {"search of columns", [&] { in_columns->search(pairs); }},
         {"add_model", [&] { local->add_model(mesh); }},
         {"refit", [&] { local->refit(0); }},
         {"all_pairs", [&] { local->all_pairs(0, {}, 0, {}, pairs); }},

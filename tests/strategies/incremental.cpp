@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-import aabb;
-import aabb.registry;
+#include "../compositions.hpp"
 
 using namespace aabb;
 
@@ -94,10 +93,7 @@ TEST_CASE("what stands still is never sorted again") {
     for (const char* sort : {"insertion", "shell", "std"}) {
         CAPTURE(sort);
         std::vector<box> boxes = scattered(1000);
-        composition all_axes;
-        all_axes[strategy_kind::sort].name = sort;
-        all_axes[strategy_kind::sweep].name = "all_axes";
-        counted_search search(all_axes, 1000);
+        counted_search search(composed({{strategy_kind::sort, sort}, {strategy_kind::sweep, "all_axes"}}), 1000);
         search.play(boxes);
         CHECK(search.play(boxes).comparisons == 0);
         boxes[17].min[0] += 1;
