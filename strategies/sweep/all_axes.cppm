@@ -4,7 +4,6 @@ module;
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-
 #include <span>
 #include <string_view>
 #include <vector>
@@ -23,8 +22,8 @@ export namespace aabb {
 /// overlaps on any one axis.
 ///
 /// What is known of a pair between two lists is one bit. The bits of all pairs would take n²/8 bytes, so the lists are
-/// walked once for each block of rows that fits in 16 MiB: memory is at most 16 MiB (or one row, n/8 bytes, if that is
-/// more) + 8 bytes an object.
+/// walked once for each block of rows that fits in 16 MiB, each time for the pairs of that block only: memory is at
+/// most 16 MiB (or one row, n/8 bytes, if that is more) + 32 bytes an object.
 class all_axes_sweep {
 public:
     static constexpr std::string_view name = "all_axes";
@@ -84,10 +83,19 @@ public:
         }
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(marks_) + bytes_of(rank_) + bytes_of(end_); }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return bytes_of(marks_) + bytes_of(rank_) + bytes_of(end_) + bytes_of(swept_) + bytes_of(within_);
+    }
 
 private:
     static constexpr std::size_t most_words = (std::size_t{16} << 20) / sizeof(std::uint64_t);
+
+    /// A box on an axis.
+    struct interval {
+        float lower;
+        float upper;
+        std::uint32_t rank;
+    };
 
     /// Numbers the objects by their place in the first list, and finds where each one's overlaps end there.
     template <class Entry>
@@ -103,18 +111,32 @@ private:
         }
     }
 
-    /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last.
+    /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last. Of two above the block
+    /// neither is held against the other, so that all blocks together visit no pair twice.
     template <class Entry, CounterPolicy Counters, class Visit>
     void walk(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first, std::size_t last,
-              Counters& counters, Visit visit) const {
-        for (std::size_t p = 0; p < list.size(); ++p) {
-            const float upper = boxes[list[p].id].max[axis];
-            const std::size_t rank_p = rank_[list[p].id];
-            for (std::size_t q = p + 1; q < list.size() && boxes[list[q].id].min[axis] <= upper; ++q) {
-                const std::size_t rank_q = rank_[list[q].id];
-                const std::size_t i = std::min(rank_p, rank_q);
+              Counters& counters, Visit visit) {
+        swept_.clear();
+        within_.clear();
+        swept_.reserve(list.size());
+        within_.reserve(last - first);
+        for (const Entry& e : list) {
+            const box& b = boxes[e.id];
+            const interval i{b.min[axis], b.max[axis], rank_[e.id]};
+            if (i.rank >= first) swept_.push_back(i);
+            if (i.rank >= first && i.rank < last) within_.push_back(i);
+        }
+        std::size_t within_met = 0;
+        for (std::size_t p = 0; p < swept_.size(); ++p) {
+            const interval a = swept_[p];
+            const bool is_within = a.rank < last;
+            within_met += is_within;
+            const std::span<const interval> after =
+                is_within ? std::span(swept_).subspan(p + 1) : std::span(within_).subspan(within_met);
+            for (const interval& b : after) {
+                if (b.lower > a.upper) break;
                 counters.add(work::box_tests);
-                if (i >= first && i < last) visit(i, std::max(rank_p, rank_q));
+                visit(std::min(a.rank, b.rank), std::max(a.rank, b.rank));
             }
         }
     }
@@ -122,6 +144,8 @@ private:
     std::vector<std::uint64_t> marks_;  // bit (i, j): the pair overlaps on the first two lists
     std::vector<std::uint32_t> rank_;   // by id
     std::vector<std::uint32_t> end_;    // by rank
+    std::vector<interval> swept_;       // of an axis, in order: of the block's ranks and those above
+    std::vector<interval> within_;      // of the block's alone
 };
 
 static_assert(ListSweep<all_axes_sweep>);
