@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
@@ -9,6 +10,7 @@ module;
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 module aabblab.results;
@@ -138,11 +140,16 @@ std::string expected_of(const T&) {
 constexpr auto columns_of_row = [](auto& r, auto field) { for_each_column(r, field); };
 constexpr auto columns_of_difference = [](auto& d, auto field) { for_each_column_of_difference(d, field); };
 
+/// Columns that results of earlier versions do not have.
+constexpr std::array<std::string_view, 1> later_columns{"restarts"};
+
 template <class Row, class Columns>
-std::string header_of(Columns columns) {
+std::string header_of(Columns columns, const std::vector<std::string>& without = {}) {
     std::vector<std::string> names;
     Row any;
-    columns(any, [&](const std::string& name, const auto&) { names.push_back(name); });
+    columns(any, [&](const std::string& name, const auto&) {
+        if (std::ranges::find(without, name) == without.end()) names.push_back(name);
+    });
     return csv_line(names);
 }
 
@@ -160,7 +167,11 @@ std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, 
     const std::vector<csv_record> records = read_csv(text, file.string()).records;
     std::vector<Row> rows;
     if (records.empty()) return rows;
-    const std::string header = header_of<Row>(columns);
+    std::vector<std::string> absent(later_columns.begin(), later_columns.end());
+    std::erase_if(absent, [&](const std::string& name) {
+        return std::ranges::find(records[0].fields, name) != records[0].fields.end();
+    });
+    const std::string header = header_of<Row>(columns, absent);
     if (csv_line(records[0].fields) != header)
         throw aabb::input_error(file.string() + ":1: these are not the columns of this version; expected " +
                                 header.substr(0, header.size() - 1));
@@ -168,6 +179,7 @@ std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, 
         const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         std::size_t at = 0;
         columns(rows.emplace_back(), [&](const std::string& name, auto&& value) {
+            if (std::ranges::find(absent, name) != absent.end()) return;
             if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
             if (!taken(value, fields[at]))
                 throw aabb::input_error(place + name + " must be " + expected_of(value) + ", not '" + fields[at] + "'");

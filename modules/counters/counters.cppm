@@ -14,6 +14,7 @@ enum class work : std::uint8_t {
     comparisons,         ///< key comparisons of the sort, and of bringing what it sorted back into the list
     moves,               ///< entries of lists moved by the same
     inversions,          ///< pairs in the wrong order in the lists handed to the sort
+    restarts,            ///< times that a sweep gave up following swaps and started anew
     box_tests,           ///< overlap tests of two boxes, full or on the axes left
     subsets,             ///< subsets that the partition made, empty ones too
     subset_copies,       ///< entries of boxes in subsets of the partition
@@ -25,9 +26,10 @@ enum class work : std::uint8_t {
     triangle_tests,      ///< tests of two triangles
 };
 
-inline constexpr std::array<std::string_view, 12> work_names = {
-    "comparisons",  "moves",  "inversions",  "box_tests",          "subsets",       "subset_copies", "segments_wanted",
-    "segments_got", "pieces", "node_visits", "triangle_box_tests", "triangle_tests"};
+inline constexpr std::array<std::string_view, 13> work_names = {
+    "comparisons",   "moves",           "inversions",   "restarts", "box_tests",   "subsets",
+    "subset_copies", "segments_wanted", "segments_got", "pieces",   "node_visits", "triangle_box_tests",
+    "triangle_tests"};
 
 /// Counts nothing and costs nothing: what timing runs are made with.
 struct no_counters {

@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstddef>
@@ -42,6 +43,12 @@ public:
         pairs_[place] = pairs_.back();
         pairs_.pop_back();
         close_gap(slot);
+    }
+
+    /// Keeps the memory.
+    void clear() noexcept {
+        pairs_.clear();
+        std::ranges::fill(table_, none);
     }
 
     template <class Predicate>

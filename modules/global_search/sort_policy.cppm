@@ -32,11 +32,12 @@ struct other_entry {
 }  // namespace detail
 
 /// A sort that exchanges neighbours only and tells of it: `on_swap(passed, moved)` is called once for each two entries
-/// whose order changes. It sorts entries of any type, as `precedes` orders them.
+/// whose order changes, until it returns false: the list is left as it is then. It sorts entries of any type, as
+/// `precedes` orders them.
 template <class S>
 concept SwapReportingSort =
     SortPolicy<S> && requires(S policy, std::span<detail::other_entry> list, no_counters none,
-                              void (*on_swap)(const detail::other_entry& passed, const detail::other_entry& moved)) {
+                              bool (*on_swap)(const detail::other_entry& passed, const detail::other_entry& moved)) {
         policy.sort(list, none, on_swap);
     };
 

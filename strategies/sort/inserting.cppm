@@ -11,20 +11,23 @@ export namespace aabb {
 
 struct ignore_swaps {
     template <class Entry>
-    constexpr void operator()(const Entry&, const Entry&) const noexcept {}
+    constexpr bool operator()(const Entry&, const Entry&) const noexcept {
+        return true;
+    }
 };
 
 /// Moves each entry of a list before all that are greater: n + d comparisons for d inversions.
-/// @param on_swap gets the entry that is passed and the one that moves before it
+/// @param on_swap gets the entry that is passed and the one that moves before it; false ends the sort with that swap
 template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
 constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
     for (std::size_t i = 1; i < list.size(); ++i) {
         const Entry inserted = list[i];
         std::size_t hole = i;
-        while (hole > 0) {
+        bool goes_on = true;
+        while (goes_on && hole > 0) {
             counters.add(work::comparisons);
             if (!precedes(inserted, list[hole - 1])) break;
-            on_swap(list[hole - 1], inserted);
+            goes_on = on_swap(list[hole - 1], inserted);
             list[hole] = list[hole - 1];
             counters.add(work::moves);
             --hole;
@@ -32,6 +35,7 @@ constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_
         if (hole == i) continue;
         list[hole] = inserted;
         counters.add(work::moves);
+        if (!goes_on) return;
     }
 }
 

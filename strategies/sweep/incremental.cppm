@@ -25,10 +25,14 @@ export namespace aabb {
 /// are kept from frame to frame. When to use: little motion. A frame in which nothing moved tests no pair; one in which
 /// much did costs a test for each two ends of different kinds that pass each other.
 ///
+/// A frame in which as many swaps were followed as starting anew would take steps is started anew: the lists are sorted
+/// by std::sort, and one of them is swept for all pairs. So no frame costs more than about twice the less of the two.
+///
 /// A lower end comes before an upper end of the same value, so touching is overlapping. A pair is put in when it begins
-/// to overlap on an axis and its boxes overlap on all: the order in which axes are sorted does not matter then. Memory
-/// is 16 bytes an object and axis, 24 an object for the boxes of the frame before, up to 36 while arrivals are brought
-/// in, and 16 to 32 bytes a pair.
+/// to overlap on an axis and its boxes overlap on all: the order in which axes are sorted does not matter then, and
+/// there is never a pair that overlaps neither now nor did in the frame before. Memory is 16 bytes an object and axis,
+/// 24 an object for the boxes of the frame before, up to 36 while arrivals are brought in or all is started anew, and
+/// 16 to 32 bytes a pair, of as many as there were at most.
 class incremental_sweep {
 public:
     static constexpr std::string_view name = "incremental";
@@ -52,6 +56,7 @@ public:
             throw input_error("incremental takes at most 2^31 objects, not " + std::to_string(boxes.size()));
         if (objects.any_departures()) forget_departures(objects);
         const axis_set before = axes_;
+        swaps_left_ = steps_anew();
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(before, k)) sort_known(boxes, k, sort, counters);
         const vec3d separation = separation_of(boxes, objects);
@@ -61,14 +66,14 @@ public:
             if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
             if (!has_axis(axes_, k)) release(ends_[k]);
         }
-        if (axes_ & ~before) {
-            // All overlapped on a new axis until now, so no other pair can have changed on it.
-            pairs_.erase_if([&](index_pair p) {
-                counters.add(work::box_tests);
-                return !overlaps(boxes[p.a], boxes[p.b]);
-            });
+        if (swaps_left_ == 0) {
+            counters.add(work::restarts);
+            pairs_.clear();
+            tests_anew_ = 0;
+            find_pairs(boxes, longest_axis(separation), counters, [](std::uint32_t) { return true; });
+        } else {
+            bring_up_to(axes_ & ~before, boxes, objects, separation, counters);
         }
-        if (!objects.arrivals().empty()) find_pairs_of_arrivals(boxes, objects, longest_axis(separation), counters);
         before_.assign(boxes.begin(), boxes.end());
         assert(are_of_one_length());
     }
@@ -120,9 +125,16 @@ private:
             e.key = key;
         }
         if (!moved) return;
+        if (swaps_left_ > 0) follow_swaps(boxes, axis, sort, counters);
+        if (swaps_left_ == 0) sort_anew(ends_[axis]);
+    }
+
+    template <class Sort, CounterPolicy Counters>
+    void follow_swaps(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         sort.sort(std::span(ends_[axis]), counters, [&](const interval_end& passed, const interval_end& mover) {
             counters.add(work::inversions);
-            if (passed.is_upper == mover.is_upper) return;
+            if (--swaps_left_ == 0) return false;
+            if (passed.is_upper == mover.is_upper) return true;
             const index_pair pair = ordered_pair(passed.id, mover.id);
             counters.add(work::box_tests);
             // Few of the pairs whose overlap ends on this axis overlapped on the others: a test spares the look-up.
@@ -131,7 +143,19 @@ private:
             } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
                 pairs_.insert(pair);
             }
+            return true;
         });
+    }
+
+    static void sort_anew(std::vector<interval_end>& list) {
+        std::ranges::sort(list, [](const auto& e, const auto& f) { return precedes(e, f); });
+    }
+
+    /// What sorting all lists and sweeping one takes; never 0.
+    [[nodiscard]] std::uint64_t steps_anew() const noexcept {
+        std::uint64_t steps = tests_anew_ + 1;
+        for (const auto& list : ends_) steps += list.size() * std::bit_width(list.size());
+        return steps;
     }
 
     /// The lists of the axes that have one, and the others are empty.
@@ -152,7 +176,7 @@ private:
             list.push_back(lower_end(boxes, id, axis));
             list.push_back(upper_end(boxes, id, axis));
         }
-        std::ranges::sort(list, [](const auto& e, const auto& f) { return precedes(e, f); });
+        sort_anew(list);
     }
 
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
@@ -161,7 +185,7 @@ private:
             arriving_.push_back(lower_end(boxes, id, axis));
             arriving_.push_back(upper_end(boxes, id, axis));
         }
-        std::ranges::sort(arriving_, [](const auto& e, const auto& f) { return precedes(e, f); });
+        sort_anew(arriving_);
         std::vector<interval_end>& list = ends_[axis];
         std::size_t known = list.size();
         list.resize(known + arriving_.size());
@@ -179,39 +203,59 @@ private:
         return longest;
     }
 
-    /// Sweeps one list, and tests what arrived against what is active and what begins against active arrivals.
+    /// Takes over what the swaps did not tell.
+    /// @param begun axes with a list from now on
     template <CounterPolicy Counters>
-    void find_pairs_of_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis,
-                                Counters& counters) {
+    void bring_up_to(axis_set begun, std::span<const box> boxes, const membership& objects, const vec3d& separation,
+                     Counters& counters) {
+        if (begun) {
+            // All overlapped on a new axis until now, so no other pair can have changed on it.
+            pairs_.erase_if([&](index_pair p) {
+                counters.add(work::box_tests);
+                return !overlaps(boxes[p.a], boxes[p.b]);
+            });
+        }
+        if (!objects.arrivals().empty())
+            find_pairs(boxes, longest_axis(separation), counters,
+                       [&](std::uint32_t id) { return objects.is_arrival(id); });
+    }
+
+    /// Sweeps one list, and tests what is new against what is active and what begins against what is active and new.
+    template <CounterPolicy Counters>
+    void find_pairs(std::span<const box> boxes, std::size_t axis, Counters& counters, auto is_new) {
+        std::uint64_t tests = 0;
         place_.resize(boxes.size());
         for (const interval_end& e : ends_[axis]) {
-            const bool is_arrival = objects.is_arrival(e.id);
-            std::vector<std::uint32_t>& own = active_[is_arrival];
+            std::vector<std::uint32_t>& own = active_[is_new(e.id)];
             if (e.is_upper) {
                 place_[own.back()] = place_[e.id];
                 own[place_[e.id]] = own.back();
                 own.pop_back();
                 continue;
             }
-            for (std::size_t of_arrivals = is_arrival ? 0 : 1; of_arrivals < 2; ++of_arrivals)
-                for (const std::uint32_t other : active_[of_arrivals]) {
-                    counters.add(work::box_tests);
+            for (std::size_t of_new = is_new(e.id) ? 0 : 1; of_new < 2; ++of_new) {
+                tests += active_[of_new].size();
+                for (const std::uint32_t other : active_[of_new])
                     if (overlaps(boxes[e.id], boxes[other])) pairs_.insert(ordered_pair(e.id, other));
-                }
+            }
             place_[e.id] = static_cast<std::uint32_t>(own.size());
             own.push_back(e.id);
         }
         // Every interval that begins ends.
         assert(active_[0].empty() && active_[1].empty());
+        counters.add(work::box_tests, tests);
+        tests_anew_ = std::max(tests_anew_, tests);
     }
 
     axis_set axes_ = 0;                              // with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
     std::vector<box> before_;                        // by id, of the frame before
     pair_set pairs_;
-    // While arrivals are brought in:
+    std::uint64_t swaps_left_ = 0;  // of this frame; 0 where it is started anew
+    std::uint64_t tests_anew_ = 0;  // that a sweep of a list took, at most, since all was started anew
+    // While arrivals are brought in, or all is started anew:
     std::vector<interval_end> arriving_;
-    std::array<std::vector<std::uint32_t>, 2> active_;  // those met and not yet left, known ones and arrivals
+    std::array<std::vector<std::uint32_t>, 2> active_;  // those met and not yet left, known ones and new ones
     std::vector<std::uint32_t> place_;                  // of an active object in its vector
 };
 

@@ -51,8 +51,9 @@ struct fake_swapping_sort {
         for (std::size_t end = list.size(); end > 1; --end)
             for (std::size_t i = 1; i < end; ++i)
                 if (precedes(list[i], list[i - 1])) {
-                    (on_swap(list[i - 1], list[i]), ...);
+                    const bool goes_on = (on_swap(list[i - 1], list[i]) && ...);
                     std::swap(list[i], list[i - 1]);
+                    if (!goes_on) return;
                 }
     }
 };

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,7 @@ import aabb;
 import aabblab.results;
 import aabblab.scenes;
 
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 
@@ -73,6 +77,36 @@ TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines
         CHECK(is_one_sentence(refused.err));
         CHECK(refused.err.find(said) != std::string::npos);
     }
+}
+
+TEST_CASE("Results of before a count was there are read without it, others are refused") {
+    const temporary_folder folder;
+    const std::string out = (folder / "out").string();
+    const std::string config =
+        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n").string();
+    REQUIRE(run_program({"run", config, "--out", out}).status == 0);
+    const std::string text = bytes_of_file(folder / "out/results.csv");
+    // Fields are counted from the end of each line, since behind the counts none has commas of its own.
+    const std::string header = text.substr(0, text.find('\n'));
+    const auto behind = std::ranges::count(header.substr(header.find(",restarts,") + 10), ',') + 1;
+    std::string earlier;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        std::size_t end = line.size();
+        for (auto n = behind; n > 0; --n) end = line.rfind(',', end - 1);
+        earlier += line.erase(line.rfind(',', end - 1), end - line.rfind(',', end - 1)) + "\n";
+    }
+    const auto restarts = static_cast<std::size_t>(aabb::work::restarts);
+    const std::vector<aabblab::row> now = aabblab::read_rows(folder / "out/results.csv");
+    const std::vector<aabblab::row> then = aabblab::read_rows(folder.write("earlier.csv", earlier));
+    REQUIRE(then.size() == now.size());
+    CHECK(now[0].counts[restarts] == 0);
+    CHECK(!then[0].counts[restarts]);
+    CHECK(then[0].counts[restarts + 1] == now[0].counts[restarts + 1]);
+    CHECK(then[0].status == "exact");
+    earlier.replace(earlier.find("box_tests"), 9, "box_texts");
+    CHECK_THROWS_WITH(aabblab::read_rows(folder.write("others.csv", earlier)),
+                      ContainsSubstring("others.csv:1: these are not the columns of this version"));
 }
 
 TEST_CASE("A mesh may have any name: its results are read back, resumed after any cut, and compared") {

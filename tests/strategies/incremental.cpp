@@ -1,7 +1,10 @@
+#include <algorithm>
+#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -12,7 +15,7 @@ using namespace aabb;
 namespace {
 
 struct work_of_frame {
-    std::uint64_t comparisons, moves, box_tests, pairs;
+    std::uint64_t comparisons, moves, swaps, restarts, box_tests, pairs;
 };
 
 /// A counted search that says what a frame took.
@@ -30,7 +33,14 @@ public:
         stage_->search(pairs_);
         const work_counters after = stage_->counters();
         const auto spent = [&](work what) { return after[what] - before[what]; };
-        return {spent(work::comparisons), spent(work::moves), spent(work::box_tests), pairs_.size()};
+        return {spent(work::comparisons), spent(work::moves),     spent(work::inversions),
+                spent(work::restarts),    spent(work::box_tests), pairs_.size()};
+    }
+
+    [[nodiscard]] std::vector<index_pair> pairs() const {
+        std::vector<index_pair> sorted = pairs_;
+        std::ranges::sort(sorted);
+        return sorted;
     }
 
     [[nodiscard]] global_stage& stage() { return *stage_; }
@@ -86,7 +96,73 @@ TEST_CASE("a move that passes no end costs incremental no test of a pair") {
     const work_of_frame together = search.play(boxes);
     CHECK(together.box_tests == 0);
     CHECK(together.comparisons > 0);
+    CHECK(together.restarts == 0);
     CHECK(together.pairs == before.pairs);
+}
+
+TEST_CASE("incremental follows no more swaps in a frame than starting anew takes steps") {
+    constexpr std::uint32_t n = 2000;
+    counted_search search(incremental, n);
+    std::mt19937 random(1);
+    const auto play = [&](auto far) {
+        std::vector<box> boxes(n);
+        for (box& b : boxes)
+            for (int k = 0; k < 3; ++k) {
+                b.min[k] = far();
+                b.max[k] = b.min[k] + 1;
+            }
+        return search.play(boxes);
+    };
+    const auto anywhere = [&] { return static_cast<float>(random() % 100'000) / 1000; };
+    const work_of_frame first = play(anywhere);
+    CHECK(first.restarts == 0);
+    for (int frame = 0; frame < 3; ++frame) {
+        const work_of_frame teleported = play(anywhere);
+        CHECK(teleported.restarts == 1);
+        CHECK(teleported.swaps < 2 * (first.box_tests + 3 * 2 * n * 12));
+        // Followed to the end there would be four million swaps an axis.
+        CHECK(teleported.box_tests < 4 * first.box_tests);
+    }
+    // After a frame in which all overlap, as many steps are not allowed for ever.
+    CHECK(play([] { return 0.0F; }).pairs == n * (n - 1) / 2);
+    play(anywhere);
+    play(anywhere);
+    CHECK(play(anywhere).swaps < 4 * (first.box_tests + 3 * 2 * n * 12));
+}
+
+TEST_CASE("incremental started anew finds the pairs, whoever comes, goes or begins an axis in that frame") {
+    std::mt19937 random(1);
+    const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
+    std::uint64_t restarts = 0;
+    for (int scene = 0; scene < 40; ++scene) {
+        constexpr std::uint32_t n = 100;
+        counted_search search(incremental, n);
+        std::vector<bool> present(n, true);
+        std::vector<box> boxes(n);
+        for (int frame = 0; frame < 12; ++frame) {
+            const std::uint32_t moving = std::array{0U, 10U, n}[below(3)];
+            const bool flat = below(3) == 0;
+            for (std::uint32_t id = 0; id < n; ++id) {
+                if (frame == 0 || below(n) < moving)
+                    for (int k = 0; k < 3; ++k) {
+                        boxes[id].min[k] = static_cast<float>(below(40));
+                        boxes[id].max[k] = boxes[id].min[k] + static_cast<float>(below(12));
+                    }
+                if (flat) boxes[id].min[1] = 0, boxes[id].max[1] = 60;
+                if (frame > 0 && below(10) == 0) {
+                    present[id] ? search.stage().remove(id) : search.stage().insert(id);
+                    present[id] = !present[id];
+                }
+            }
+            restarts += search.play(boxes).restarts;
+            std::vector<index_pair> expected;
+            for (std::uint32_t a = 0; a < n; ++a)
+                for (std::uint32_t b = a + 1; b < n; ++b)
+                    if (present[a] && present[b] && overlaps(boxes[a], boxes[b])) expected.push_back({a, b});
+            REQUIRE(search.pairs() == expected);
+        }
+    }
+    CHECK(restarts > 40);
 }
 
 TEST_CASE("what stands still is never sorted again") {

@@ -130,11 +130,24 @@ TEST_CASE("insertion sort tells of each inversion once") {
         no_counters none;
         insertion_sort::sort(std::span(list), none, [&](const projection& passed, const projection& moved) {
             told.emplace_back(passed.id, moved.id);
+            return true;
         });
         std::ranges::sort(expected);
         std::ranges::sort(told);
         RC_ASSERT(told == expected);
     }));
+}
+
+TEST_CASE("insertion sort ends with the swap after which it is told to") {
+    auto list = list_of({5, 4, 3, 2, 1});
+    work_counters counted;
+    int swaps = 0;
+    insertion_sort::sort(std::span(list), counted, [&](const projection&, const projection&) { return ++swaps < 5; });
+    CHECK(swaps == 5);
+    CHECK(counted[work::comparisons] == 5);
+    std::vector<float> keys;
+    for (const projection& p : list) keys.push_back(p.key);
+    CHECK(keys == std::vector<float>{3, 2, 4, 5, 1});
 }
 
 TEST_CASE("the gap sequences are the published ones: comparisons on a sorted list") {
