@@ -12,8 +12,8 @@
 import aabb;
 import aabb.registry;
 
-/// The values that tests give a parameter: every name of several, every one of a few whole numbers, of more than three
-/// the ends and the default; else the default and 3.
+/// The values that tests give a parameter: every name of several, every one of a few whole numbers, and auto where it
+/// may be; of more than three the ends and the default; else the default and 3.
 inline std::vector<std::string> values_of(const aabb::parameter_info& parameter) {
     std::vector<std::string> values;
     if (parameter.expected.starts_with("one of ")) {
@@ -26,12 +26,13 @@ inline std::vector<std::string> values_of(const aabb::parameter_info& parameter)
         values = {"1.5"};
     } else if (int least = 0, most = 0;
                std::sscanf(parameter.expected.c_str(), "a whole number from %d to %d", &least, &most) == 2 &&
-               !parameter.expected.ends_with("or auto")) {
+               (most - least < 3 || !parameter.expected.ends_with("or auto"))) {
         if (most - least < 3)
             for (int value = least; value <= most; ++value) values.push_back(std::to_string(value));
         else
             values = {std::to_string(least), parameter.fallback, std::to_string(most)};
         values.erase(std::ranges::unique(values).begin(), values.end());
+        if (most - least < 3 && parameter.expected.ends_with("or auto")) values.emplace_back("auto");
     } else {
         values = {parameter.fallback, "3"};
     }

@@ -83,7 +83,7 @@ TEST_CASE("pairs refuses what it cannot do and leaves no file behind") {
         {{"--prepare", "split_mesh"}, "split_mesh divides meshes, and there are only boxes here"},
         {{"--sort", "std", "--sweep", "incremental"}, "goes with insertion only"},
         {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "it goes with none only"},
-        {{"--partition", "axial_cut:axes=4"}, "axial_cut: axes must be a whole number from 1 to 3, not '4'"},
+        {{"--partition", "axial_cut:axes=4"}, "axial_cut: axes must be a whole number from 1 to 3 or auto, not '4'"},
         {{"--partition", "axial_cut:segments=0"}, "axial_cut: segments must be a whole number from 1 to 65535 or auto"},
     }));
     std::vector<std::string> arguments = {"pairs", scene, "--out", folder / "pairs.csv"};

@@ -1,6 +1,7 @@
 #include <rapidcheck.h>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <cstddef>
@@ -154,6 +155,47 @@ TEST_CASE("auto cuts a large scene finer than a small one, and says how much it 
     };
     CHECK(segments(60).got > segments(12).got);
     CHECK(segments(60).wanted >= segments(60).got);
+}
+
+TEST_CASE(
+    "auto cuts as many axes as pay: none of a small scene, more of a large one, all where all are sorted anyway") {
+    const auto cut_of = [](std::uint32_t n, std::vector<setting> settings, axis_set swept) {
+        std::vector<box> boxes;
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const vec3f at{static_cast<float>(i * 37 % 101), static_cast<float>(i * 53 % 97),
+                           static_cast<float>(i * 29 % 89)};
+            boxes.push_back({at, at + vec3f{2, 2, 2}});
+        }
+        settings.push_back({"axes", "auto"});
+        return std::popcount(fitted(boxes, settings, swept).cut);
+    };
+    CHECK(cut_of(100, {}, 0b001) == 0);
+    CHECK(cut_of(3000, {}, 0b001) == 1);
+    CHECK(cut_of(20'000, {}, 0b001) == 2);
+    CHECK(cut_of(3000, {}, 0b111) > 1);
+    // Whoever says how fine wants a cut.
+    CHECK(cut_of(100, {{"segments", "4"}}, 0b001) > 0);
+}
+
+TEST_CASE("auto keeps to the axes that it cuts until others cost a tenth less") {
+    std::vector<box> boxes;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+        const vec3f at{static_cast<float>(i * 37 % 101), static_cast<float>(i * 53 % 97),
+                       static_cast<float>(i * 29 % 89)};
+        boxes.push_back({at, at + vec3f{2, 2, 2}});
+    }
+    membership objects;
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) objects.insert(id);
+    const auto numbers_of_axes = [&](const std::vector<float>& extents) {
+        axial_cut_partition partition(configured<axial_cut_partition>(std::vector<setting>{{"axes", "auto"}}));
+        std::vector<int> found;
+        for (const float extent : extents) {
+            for (box& b : boxes) b.max = b.min + vec3f{extent, extent, extent};
+            found.push_back(std::popcount(partition.axes(boxes, objects, axis_set{0b001})));
+        }
+        return found;
+    };
+    CHECK(numbers_of_axes({1, 2.5F, 8, 2.5F}) == std::vector{1, 1, 2, 2});
 }
 
 TEST_CASE("the more segments are wanted, the more there are, up to the limit") {
