@@ -17,7 +17,7 @@ namespace aabblab {
 namespace {
 
 selection limited(const std::string& limit, const std::string& segments) {
-    return {{kind::partition, "axial_cut:limit=" + limit + ",segments=" + segments}};
+    return {{kind::partition, "axial_cut:axes=2,limit=" + limit + ",segments=" + segments}};
 }
 
 /// Where no box would be cut twice, the limit changes nothing.

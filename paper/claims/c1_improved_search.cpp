@@ -28,7 +28,7 @@ const std::vector<method>& methods() {
     static const std::vector<method> all{
         {"insertion sort (traditional)", traditional},
         {"insertion sort, axial cut",
-         {{kind::sort, "insertion"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}}},
+         {{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}}},
         {"Shell sort", {{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}}},
         {"Shell sort, axial cut (improved)", improved},
         {"insertion sort, incremental", incremental}};

@@ -27,7 +27,7 @@ namespace aabblab {
 
 namespace {
 
-const selection cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}};
+const selection cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 
 selection grid(const std::string& cell) {
     return {{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=" + cell}, {kind::sweep, "one_axis"}};

@@ -224,7 +224,8 @@ private:
 [[nodiscard]] bool is_primary_of_c11(const condition& c);
 
 inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
-inline const selection improved{{kind::sort, "shell"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}};
+inline const selection improved{
+    {kind::sort, "shell"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 
 [[nodiscard]] draft improved_search(const measurements& m);
 [[nodiscard]] draft linear_sort(const measurements& m);

@@ -25,7 +25,8 @@ struct twins {
 const std::vector<twins>& compositions() {
     static const std::vector<twins> all{
         {traditional, {{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis:axis=auto"}}},
-        {improved, {{kind::sort, "shell:gaps=ciura"}, {kind::partition, "axial_cut"}, {kind::sweep, "one_axis"}}}};
+        {improved,
+         {{kind::sort, "shell:gaps=ciura"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}}}};
     return all;
 }
 

@@ -185,17 +185,18 @@ std::vector<open_choice> open_choices(const measurements& m) {
         return selection{{kind::tree, "canonical"}, {kind::build, build}};
     };
     return {
-        choice(
-            "Which axes are sorted and swept?", "one_axis: the axis on which centres vary most, the other two tested",
-            "three sorted lists (all_axes) report a pair that overlaps on each; one list does the same with less "
-            "memory, and both arms have it alike",
-            "C1",
-            of_search(
-                m,
-                {{"best axis", {shell_cut, plain}},
-                 {"x",
-                  {search("shell", "axial_cut", "one_axis:axis=x"), search("insertion", "none", "one_axis:axis=x")}},
-                 {"all axes", {search("shell", "axial_cut", "all_axes"), search("insertion", "none", "all_axes")}}})),
+        choice("Which axes are sorted and swept?",
+               "one_axis: the axis on which centres vary most, the other two tested",
+               "three sorted lists (all_axes) report a pair that overlaps on each; one list does the same with less "
+               "memory, and both arms have it alike",
+               "C1",
+               of_search(
+                   m, {{"best axis", {shell_cut, plain}},
+                       {"x",
+                        {search("shell", "axial_cut:axes=2", "one_axis:axis=x"),
+                         search("insertion", "none", "one_axis:axis=x")}},
+                       {"all axes",
+                        {search("shell", "axial_cut:axes=2", "all_axes"), search("insertion", "none", "all_axes")}}})),
         choice("How many axes are cut?", "two: those on which centres vary most, the swept one last",
                "\"each axis is cut\" allows three; the swept axis needs no cut", "C1",
                of_search(m, {{"2", {shell_cut, plain}},
@@ -204,7 +205,7 @@ std::vector<open_choice> open_choices(const measurements& m) {
         choice("How many segments?", "auto: what a model of evenly spread boxes finds cheapest",
                "the paper names a limit and no number; claim C4 has the whole curve", "C1",
                of_search(m, {{"auto", {shell_cut, plain}},
-                             {"8", {search("shell:gaps=ciura", "axial_cut:segments=8"), plain}}})),
+                             {"8", {search("shell:gaps=ciura", "axial_cut:axes=2,segments=8"), plain}}})),
         choice("How are Shell sort's gaps chosen?", "Ciura's sequence",
                "the best known by experiment; the paper names none", "C1",
                of_search(m, {{"Ciura", {shell_cut, plain}},

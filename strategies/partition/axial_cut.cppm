@@ -46,7 +46,7 @@ public:
     struct config {
         /// How many axes are cut: those on which the centres vary most, the axis that a sweep sorts along last. auto:
         /// as many as a model of uniformly spread boxes finds cheapest, none where the cut does not pay.
-        std::optional<std::uint32_t> axes = 2;
+        std::optional<std::uint32_t> axes;
         /// Segments wanted on each of these axes. auto: what the same model finds cheapest.
         std::optional<std::uint32_t> segments;
         /// off: a box may be cut any number of times; a frame with more than 2^24 + 64 n copies of n objects is

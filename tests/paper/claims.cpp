@@ -328,10 +328,12 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick)) {
         if (e.name != "c4" && e.name != "c5") continue;
         for (const aabblab::contender& who : aabblab::contenders_for(e, e.scenes.front())) {
-            const std::string number = who.name[aabb::strategy_kind::partition].substr(
-                who.name[aabb::strategy_kind::partition].rfind('=') + 1);
-            if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-            CAPTURE(who.name[aabb::strategy_kind::partition]);
+            const std::string& partition = who.name[aabb::strategy_kind::partition];
+            const std::string parameter = e.name == "c4" ? "segments=" : "cell_size=";
+            const std::size_t at = partition.find(parameter);
+            if (at == std::string::npos || partition.ends_with("auto")) continue;
+            const std::string number = partition.substr(at + parameter.size());
+            CAPTURE(partition);
             const claim_result& claim = all.claims[e.name == "c4" ? 3 : 4];
             const aabblab::figure& f = claim.figures.front();
             const aabblab::series& line = f.panels.empty() ? f.lines.front() : f.panels.front().lines.front();

@@ -207,6 +207,13 @@ def choices_of(text):
     return found
 
 
+def named_now(choice):
+    """Results of before axial_cut chose the number of axes itself name none where two were cut."""
+    if not choice.startswith("axial_cut") or "axes=" in choice:
+        return choice
+    return "axial_cut:axes=2" + choice.removeprefix("axial_cut").replace(":", ",", 1)
+
+
 class Rows:
     """The rows of one condition."""
 
@@ -219,7 +226,7 @@ class Rows:
         return [
             r
             for r in self.rows
-            if not r["engine"] and r["status"] == "exact" and all(r[k] == v for k, v in who.items())
+            if not r["engine"] and r["status"] == "exact" and all(v in (r[k], named_now(r[k])) for k, v in who.items())
         ]
 
     def place(self, row):
@@ -310,7 +317,7 @@ def growth_of_work(results, sort, where):
     return bootstrap(rows.size(cells), growth)
 
 
-CUT = {"sort": "insertion", "partition": "axial_cut", "sweep": "one_axis"}
+CUT = {"sort": "insertion", "partition": "axial_cut:axes=2", "sweep": "one_axis"}
 CELL_SIZES = ["4", "8", "16", "32", "64"]
 
 

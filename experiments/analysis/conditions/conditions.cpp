@@ -65,9 +65,17 @@ selection selection::with(aabb::strategy_kind kind, std::string choice) const {
     return changed;
 }
 
+// Results of before axial_cut chose the number of axes itself, as the archived run, name none where two were cut.
+static std::string as_named_now(const std::string& choice) {
+    constexpr std::string_view cut = "axial_cut";
+    if (!choice.starts_with(cut) || choice.find("axes=") != std::string::npos) return choice;
+    const std::string others = choice.size() > cut.size() ? "," + choice.substr(cut.size() + 1) : "";
+    return std::string(cut) + ":axes=2" + others;
+}
+
 bool selection::matches(const contender_name& name) const {
     return name.engine.empty() && std::ranges::all_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
-               return wanted_[kind].empty() || wanted_[kind] == name[kind];
+               return wanted_[kind].empty() || wanted_[kind] == name[kind] || wanted_[kind] == as_named_now(name[kind]);
            });
 }
 
