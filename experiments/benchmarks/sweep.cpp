@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -66,15 +67,17 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     aabb::column_lists columns;
     aabb::bucket_sort sort;
     aabb::no_counters none;
-    if (!columns.fill(frame.boxes(), {}, aabb::columns_partition().plan(frame.boxes(), aabb::everywhere), sort, none))
+    constexpr auto any_number = std::numeric_limits<std::uint64_t>::max();
+    const aabb::column_plan plan = aabb::columns_partition().plan(frame.boxes(), aabb::everywhere);
+    if (columns.fill(frame.boxes(), {}, plan, false, any_number, sort, none) != aabb::fill_result::whole)
         throw std::logic_error("the scene has a box that is not valid");
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
-    sweep.sweep(columns.block(), pairs, counted);
+    sweep.sweep(columns.block(), pairs, any_number, counted);
     report(state, counted, pairs.size(), objects);
     for (auto _ : state) {
         pairs.clear();
-        benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, none));
+        benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, any_number, none));
         benchmark::ClobberMemory();
     }
 }

@@ -24,8 +24,9 @@ struct column_group {
 };
 
 /// Puts the boxes of a large scene into groups of neighbours that fit a cache together; each is cut into columns for
-/// itself. Groups are columns too, only wider: a box is in each into which it reaches, and what it begins before is
-/// marked. A group's boxes stand in the order of their places, first those that begin there, whatever the threads.
+/// itself. Groups are columns too, only wider: a box is in each into which it reaches, and its copy in a later group
+/// than the first is marked. A group's boxes stand in the order of their places, first those that begin there, whatever
+/// the threads.
 class column_groups {
 public:
     /// So many groups, in the proportion of the columns; no more than those.
@@ -39,10 +40,10 @@ public:
     void clear() noexcept { starts_.resize(1); }
 
     /// @param ids of the boxes; empty where the place is the id
-    /// @returns whether all boxes are valid; if not, there are no groups.
-    /// @throws input_error when boxes reach into so many groups that there are more than 2^24 + 64 n copies of n boxes
-    [[nodiscard]] bool distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
-                                  const column_plan& plan, unsigned threads) {
+    /// @param most_in_group with a group of more boxes, copies included, there are no groups: crowded. Nor are there
+    /// with a box that is invalid.
+    [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
+                                         const column_plan& plan, std::size_t most_in_group, unsigned threads) {
         clear();
         plan_ = plan;
         keys_.resize(boxes.size() + simd::width);
@@ -53,10 +54,11 @@ public:
         wide_first_.resize(wide_.size());
         wide_last_.resize(wide_.size());
         for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { classify(boxes, p); });
-        if (!std::ranges::all_of(parts_, &part::valid)) return false;
-        make_room(boxes.size());
+        for (const part& p : parts_)
+            if (p.result != fill_result::whole) return p.result;
+        if (!make_room(most_in_group)) return fill_result::crowded;
         for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
-        return true;
+        return fill_result::whole;
     }
 
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
@@ -65,6 +67,11 @@ public:
         const std::size_t n = starts_[g + 1] - begin;
         return {std::span(boxes_).subspan(begin, n), std::span(ids_).subspan(begin, n)};
     }
+
+    /// Boxes in groups, each as often as it is in one.
+    [[nodiscard]] std::size_t copies() const noexcept { return starts_.back(); }
+    /// Boxes in the group that has most.
+    [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
 
     /// The region of a group; what begins or ends beyond it, does so elsewhere.
     [[nodiscard]] box region(std::uint32_t g) const noexcept {
@@ -97,8 +104,11 @@ private:
         std::vector<std::size_t> next;       // by group: how many begin there, then the place of the next one
         std::vector<std::size_t> next_copy;  // the same of those that reach there
         std::size_t copies;
-        bool valid;
+        fill_result result;
     };
+
+    /// More are not worth the groups.
+    [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
     void classify(std::span<const box> boxes, std::size_t number) {
         part& p = parts_[number];
@@ -126,8 +136,8 @@ private:
             p.wide_end +=
                 simd::store_where(&wide_[p.wide_end], simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
         });
-        p.valid = simd::bits(invalid) == 0;
-        if (!p.valid) return;
+        p.result = simd::bits(invalid) == 0 ? fill_result::whole : fill_result::invalid;
+        if (p.result == fill_result::invalid) return;
         std::size_t* const begin_there = p.next.data();
         for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++begin_there[key];
         for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
@@ -135,14 +145,19 @@ private:
                 ++p.next_copy[group];
                 ++p.copies;
             });
-            if (p.copies > most_copies(boxes.size())) refuse_copies(boxes.size());
+            if (p.copies > most_copies(p.end - p.begin)) {
+                p.result = fill_result::crowded;
+                return;
+            }
         }
     }
 
     /// Counts become places.
-    void make_room(std::size_t boxes) {
+    /// @returns whether no group has more than so many boxes
+    [[nodiscard]] bool make_room(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
         starts_.resize(groups + 1);
+        fullest_ = 0;
         std::size_t all = 0;
         const auto place = [&](std::size_t& count) {
             const std::size_t here = count;
@@ -153,9 +168,13 @@ private:
             starts_[g] = all;
             for (part& p : parts_) place(p.next[g]);
             for (part& p : parts_) place(p.next_copy[g]);
+            fullest_ = std::max(fullest_, all - starts_[g]);
         }
         starts_[groups] = all;
-        if (all > boxes + most_copies(boxes)) refuse_copies(boxes);
+        if (fullest_ > most_in_group) {
+            clear();
+            return false;
+        }
         if (all > boxes_.capacity()) {
             // Not twice as many as before: few boxes come to reach into further groups.
             release(boxes_);
@@ -165,6 +184,7 @@ private:
         }
         boxes_.resize(all);
         ids_.resize(all);
+        return true;
     }
 
     /// Each box is read once, and put into all its groups.
@@ -210,6 +230,7 @@ private:
     large_vector<box> boxes_;  // group after group
     large_vector<std::uint32_t> ids_;
     std::vector<std::size_t> starts_{0};
+    std::size_t fullest_ = 0;
 };
 
 }  // namespace aabb

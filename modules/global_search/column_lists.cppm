@@ -28,23 +28,25 @@ export namespace aabb {
 class column_lists {
 public:
     /// @param ids by place in `boxes`; empty where the place is the id
-    /// @returns whether all boxes are valid; if not, there is nothing to sweep.
-    /// @throws input_error when boxes reach into so many columns that there are more than 2^24 + 64 n entries of n
-    /// boxes
+    /// @param by_keys sorted by the sort policy, entry by entry, even where that leaves it to buckets
+    /// @param most_copies with more of them there is nothing to sweep: crowded. Nor is there with a box that is
+    /// invalid.
     template <class Sort, CounterPolicy Counters>
-    [[nodiscard]] bool fill(std::span<const box> boxes, std::span<const std::uint32_t> ids, const column_plan& plan,
-                            Sort& sort, Counters& counters) {
+    [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
+                                   const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
+                                   Counters& counters) {
         block_ = {boxes, ids, {}, {}, plan.axis};
         plan_ = plan;
-        bucket_bits_ = BucketSort<Sort> ? bits_for(boxes.size(), plan.columns()) : 0;
-        if (!take()) return false;
+        const bool in_buckets = BucketSort<Sort> && !by_keys;
+        bucket_bits_ = in_buckets ? bits_for(boxes.size(), plan.columns()) : 0;
+        if (const fill_result taken = take(most_copies); taken != fill_result::whole) return taken;
         const std::uint32_t all = make_room();
         distribute();
         counters.add(work::moves, copies());
-        if constexpr (!BucketSort<Sort>) sort_columns(sort, counters);
+        if (!in_buckets) sort_columns(sort, counters);
         block_.entries = std::span(entries_).first(all);
         block_.ends = ends_;
-        return true;
+        return fill_result::whole;
     }
 
     /// Boxes in columns, each as often as it is in one.
@@ -80,22 +82,21 @@ private:
     }
 
     /// A few boxes at a time, so that what is known of them is still in the nearest cache when they are counted.
-    /// @returns whether all boxes are valid
-    [[nodiscard]] bool take() {
+    [[nodiscard]] fill_result take(std::size_t most_copies) {
         places_.resize(block_.boxes.size() + width);
         copies_.clear();
         ends_.clear();
         ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
-        bool valid = true;
-        for (std::size_t begin = 0; begin < block_.boxes.size() && valid; begin += at_a_time) {
+        for (std::size_t begin = 0; begin < block_.boxes.size(); begin += at_a_time) {
             const auto some = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
-            valid = plan_.axis == 0   ? classify<0>(some, begin)
-                    : plan_.axis == 1 ? classify<1>(some, begin)
-                                      : classify<2>(some, begin);
+            const bool valid = plan_.axis == 0   ? classify<0>(some, begin)
+                               : plan_.axis == 1 ? classify<1>(some, begin)
+                                                 : classify<2>(some, begin);
+            if (!valid) return fill_result::invalid;
             for (const place& p : std::span(places_).subspan(begin, some.size())) ++ends_[p.bucket];
-            add_copies();
+            if (!add_copies(most_copies)) return fill_result::crowded;
         }
-        return valid;
+        return fill_result::whole;
     }
 
     template <int axis>
@@ -125,7 +126,8 @@ private:
     }
 
     /// Of boxes that reach into more than one column, an entry for each further one.
-    void add_copies() {
+    /// @returns whether there are no more than so many
+    [[nodiscard]] bool add_copies(std::size_t most_copies) {
         const std::uint32_t later_on[2] = {column_entry::later_on(plan_.axis_across(0)),
                                            column_entry::later_on(plan_.axis_across(1))};
         const std::uint32_t row = plan_.across[0] << bucket_bits_;
@@ -142,8 +144,9 @@ private:
                     copies_.push_back({i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets});
                     ++ends_[p.bucket + buckets];
                 }
-            if (copies_.size() > most_copies(block_.boxes.size())) refuse_copies(block_.boxes.size());
+            if (copies_.size() > most_copies) return false;
         }
+        return true;
     }
 
     /// Counts become places; what fills a column up to a whole vector is written.

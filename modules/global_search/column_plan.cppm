@@ -5,11 +5,9 @@ module;
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 
 export module aabb.global_search:column_plan;
 
-import aabb.base;
 import aabb.geometry;
 import aabb.simd;
 
@@ -58,7 +56,7 @@ struct column_plan {
 struct column_entry {
     std::uint32_t lower;
     std::uint32_t upper;
-    std::uint32_t reach;  ///< the bucket along the column in which the box ends
+    std::uint32_t reach;  ///< which of `column_block::ends` says where the box ends along the column
     std::uint32_t index;  ///< of the box among those of the block; the three highest bits: see `later_on`
 
     static constexpr std::uint32_t index_bits = (std::uint32_t{1} << 29) - 1;
@@ -81,18 +79,13 @@ struct column_block {
     }
 };
 
+/// What came of bringing boxes to their places: with an invalid one, or with more copies or boxes at one place than are
+/// allowed, nothing.
+enum class fill_result : std::uint8_t { whole, invalid, crowded };
+
 inline constexpr box everywhere{
     {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest()},
     {std::numeric_limits<float>::max(), std::numeric_limits<float>::max(), std::numeric_limits<float>::max()}};
-
-/// Copies of so many boxes that are allowed beside them.
-[[nodiscard]] constexpr std::size_t most_copies(std::size_t boxes) noexcept {
-    return (std::size_t{1} << 24) + 64 * boxes;
-}
-[[noreturn]] inline void refuse_copies(std::size_t boxes) {
-    throw input_error("columns make more than " + std::to_string(most_copies(boxes)) + " copies of " +
-                      std::to_string(boxes) + " objects (2^24 + 64 an object); fewer columns make fewer");
-}
 
 /// Calls `visit(place, coordinates, present)` for each vector of boxes: lower ends on three axes, then upper ones. What
 /// the last one holds too many are copies of the last box, and have no bit in `present`.

@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -14,24 +15,32 @@ import :membership;
 export namespace aabb {
 
 /// A frame whose pairs are kept for as long as nothing moves. Boxes are kept only when some of them stood still since
-/// the frame before: a scene in motion pays for a look at those.
+/// the frame before: a scene in motion pays for a look at those. Where those stand still and others do not, frames are
+/// kept ever more rarely, down to one of 64.
 class frame_at_rest {
 public:
     /// @returns whether all boxes are where they were in the frame that is kept, so that `pairs` has theirs
     [[nodiscard]] bool lasts(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals().empty() && !objects.any_departures() && boxes.size() == size_;
-        if (same_objects && !boxes_.empty() && are_same(boxes, boxes_)) return true;
-        release(boxes_);
-        release(pairs_);
+        if (!boxes_.empty()) {
+            if (same_objects && are_same(boxes, boxes_)) {
+                pause_ = 0;
+                return true;
+            }
+            boxes_.clear();
+            pairs_.clear();
+            pause_ = std::min(2 * pause_ + 1, 63U);
+            waited_ = 0;
+        }
         size_ = boxes.size();
         const auto some = some_of(boxes);
-        is_likely_ = same_objects && are_same(some, some_);
+        is_to_be_kept_ = same_objects && are_same(some, some_) && ++waited_ > pause_;
         some_ = some;
         return false;
     }
 
     void keep(std::span<const box> boxes, std::span<const index_pair> pairs) {
-        if (!is_likely_) return;
+        if (!is_to_be_kept_) return;
         pairs_.assign(pairs.begin(), pairs.end());
         boxes_.assign(boxes.begin(), boxes.end());
     }
@@ -54,7 +63,9 @@ private:
 
     std::size_t size_ = 0;
     std::array<box, looked_at> some_{};
-    bool is_likely_ = false;
+    bool is_to_be_kept_ = false;
+    unsigned pause_ = 0;  // frames that are not kept, though some boxes stand still
+    unsigned waited_ = 0;
     std::vector<box> boxes_;  // of all objects, absent ones too; empty where no frame is kept
     std::vector<index_pair> pairs_;
 };

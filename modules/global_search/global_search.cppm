@@ -15,6 +15,7 @@ export import :column_groups;
 export import :column_lists;
 export import :column_plan;
 export import :column_search;
+export import :column_worker;
 export import :frame_at_rest;
 export import :inversions;
 export import :membership;

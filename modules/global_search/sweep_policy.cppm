@@ -54,12 +54,13 @@ concept CoherentSweep =
 template <class S>
 concept SweepPolicy = ListSweep<S> || CoherentSweep<S>;
 
-/// A sweep of columns, too. It returns how many tests of a vector it made.
+/// A sweep of columns, too. It returns how many tests of a vector it made; once these are more than `most`, it stops,
+/// and the pairs are not all.
 template <class S>
 concept ColumnSweep = SweepPolicy<S> && requires(S policy, const column_block& block, std::vector<index_pair>& pairs,
-                                                 no_counters none, work_counters some) {
-    { policy.sweep(block, pairs, none) } -> std::same_as<std::uint64_t>;
-    { policy.sweep(block, pairs, some) } -> std::same_as<std::uint64_t>;
+                                                 std::uint64_t most, no_counters none, work_counters some) {
+    { policy.sweep(block, pairs, most, none) } -> std::same_as<std::uint64_t>;
+    { policy.sweep(block, pairs, most, some) } -> std::same_as<std::uint64_t>;
 };
 
 }  // namespace aabb

@@ -47,9 +47,9 @@ class composition {
 public:
     /// What every kind has where nothing is said.
     composition() : composition(named_strategies()) {}
-    /// What is named. Of a stage of which nothing is, the other kinds have what serves best together; else what goes
-    /// with most, unless that is refused and the best is not.
-    /// @throws input_error on an unknown name or parameter in such a stage.
+    /// What is named. The other kinds of a stage have their `fallback` where no kind is named that is compiled with
+    /// them; else their `beside`, or their `fallback` if only with that the stage makes sense.
+    /// @throws input_error on an unknown name or parameter in a stage of which something is named.
     explicit composition(const named_strategies& named);
 
     [[nodiscard]] strategy_choice& operator[](strategy_kind kind) { return choices_[kind]; }

@@ -17,8 +17,8 @@ import aabb.sort.inserting;
 export namespace aabb {
 
 /// Bucket sort: entries go to as many buckets of equal length as there are entries, then insertion sort mends what is
-/// out of order within them. When to use: wherever objects move; linear where they are spread evenly. Columns take
-/// their boxes bucket by bucket as they are cut, and are not sorted again.
+/// out of order within them. When to use: wherever objects move; linear where they are spread evenly. Columns are
+/// filled bucket by bucket as they are cut, and sorted only where that leaves very many boxes in one.
 class bucket_sort {
 public:
     static constexpr std::string_view name = "bucket";

@@ -18,7 +18,7 @@ import aabb.sort.inserting;
 export namespace aabb {
 
 /// Radix sort of the keys' bits, eleven at a time from the lowest. When to use: long lists that are not almost sorted;
-/// it compares nothing, and takes as long whatever the order. A list that is in order is left as it is, and digits that
+/// it takes as long whatever the order. A list that is in order is left as it is, and digits that
 /// all keys share are passed over. Short lists are sorted by insertion.
 class radix_sort {
 public:
@@ -27,8 +27,11 @@ public:
 
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
-        counters.add(work::comparisons, list.empty() ? 0 : list.size() - 1);
-        if (std::ranges::is_sorted(list, {}, &projection::key)) return;
+        if (list.size() < 2) return;
+        const auto ordered = std::ranges::is_sorted_until(list, {}, &projection::key);
+        const bool is_ordered = ordered == list.end();
+        counters.add(work::comparisons, static_cast<std::size_t>(ordered - list.begin()) - is_ordered);
+        if (is_ordered) return;
         if (list.size() <= shortest) return insert_each(list, counters);
         other_.resize(list.size());
         std::array<std::array<std::uint32_t, digits>, passes> counts{};

@@ -4,6 +4,7 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,12 +45,14 @@ public:
         const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
         if (list.size() < 2) return;
         to_entries(subset, list);
-        sweep(column_block{subset.boxes, {}, entries_, list_ends_, longest_.axis()}, pairs, counters);
+        sweep(column_block{subset.boxes, {}, entries_, list_ends_, longest_.axis()}, pairs,
+              std::numeric_limits<std::uint64_t>::max(), counters);
     }
 
     /// Of columns.
     template <CounterPolicy Counters>
-    std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, Counters& counters) {
+    std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, std::uint64_t most,
+                        Counters& counters) {
         const std::size_t n = block.entries.size();
         active_.resize(n + width);
         active_ends_.resize(n + width);
@@ -57,7 +60,7 @@ public:
         std::size_t active = 0;
         found_ = 0;
         std::size_t window = 0;  // from which vectors are numbered
-        for (std::size_t first = 0; first < n; first += width) {
+        for (std::size_t first = 0; first < n && tests <= most; first += width) {
             if (found_ > enough || first - window >= most_vectors * width) {
                 report(block, window, pairs);
                 window = first;
