@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-import aabb;
-import aabb.registry;
+#include "../compositions.hpp"
+
 import aabb.validation;
 import aabblab.configs;
 import aabblab.play;
@@ -89,10 +89,8 @@ private:
 
 std::vector<contender> exact_contenders(bool meshes) {
     std::vector<contender> all;
-    aabb::composition coherent;
-    coherent[aabb::strategy_kind::sort].name = "insertion";
-    coherent[aabb::strategy_kind::sweep].name = "incremental";
-    coherent[aabb::strategy_kind::tree].name = "compressed";
+    using enum aabb::strategy_kind;
+    const aabb::composition coherent = composed({{sort, "insertion"}, {sweep, "incremental"}, {tree, "compressed"}});
     all.push_back(aabblab::contender_of(aabb::composition(), meshes));
     all.push_back(aabblab::contender_of(coherent, meshes));
     for (const aabb::engine_info& engine : aabb::engines())
