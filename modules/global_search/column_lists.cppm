@@ -99,10 +99,10 @@ private:
         return fill_result::whole;
     }
 
-    template <int axis>
+    template <int Axis>
     [[nodiscard]] bool classify(std::span<const box> boxes, std::size_t begin) {
-        constexpr int u = (axis + 1) % 3;
-        constexpr int v = (axis + 2) % 3;
+        constexpr int u = (Axis + 1) % 3;
+        constexpr int v = (Axis + 2) % 3;
         const column_plan plan = plan_;
         const std::uint32_t bits = bucket_bits_;
         const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
@@ -116,8 +116,8 @@ private:
             const simd::words last = simd::upper_products(upper, across);
             const simd::words bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
             simd::store_rows_of_four(&places_[begin + i].lower,
-                                     {lower, upper, bucket + (plan.whole(c[3 + axis], axis) >> (16 - bits)),
-                                      bucket + (plan.whole(c[axis], axis) >> (16 - bits))});
+                                     {lower, upper, bucket + (plan.whole(c[3 + Axis], Axis) >> (16 - bits)),
+                                      bucket + (plan.whole(c[Axis], Axis) >> (16 - bits))});
             wide += simd::store_where(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
                                       simd::bits(first != last) & present);
         });

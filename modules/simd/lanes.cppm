@@ -143,12 +143,12 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
 /// Of each lane, the sum of those up to it.
 [[nodiscard, gnu::always_inline]] inline words running_sum(words v) noexcept {
     const words none{};
-    const auto shifted = [&]<std::size_t by, std::size_t... i>(std::integral_constant<std::size_t, by>,
-                                                               std::index_sequence<i...>) {
-        return __builtin_shufflevector(v, none, (i < by ? static_cast<int>(width + i) : static_cast<int>(i - by))...);
+    const auto shifted = [&]<std::size_t By, std::size_t... I>(std::integral_constant<std::size_t, By>,
+                                                               std::index_sequence<I...>) {
+        return __builtin_shufflevector(v, none, (I < By ? static_cast<int>(width + I) : static_cast<int>(I - By))...);
     };
-    const auto add = [&]<std::size_t by>(std::integral_constant<std::size_t, by> distance) {
-        if constexpr (by < width) v += shifted(distance, std::make_index_sequence<width>{});
+    const auto add = [&]<std::size_t By>(std::integral_constant<std::size_t, By> distance) {
+        if constexpr (By < width) v += shifted(distance, std::make_index_sequence<width>{});
     };
     add(std::integral_constant<std::size_t, 1>{});
     add(std::integral_constant<std::size_t, 2>{});

@@ -14,30 +14,30 @@ namespace aabb::simd::detail {
 
 using pairs = double __attribute__((vector_size(4 * width)));  // of two numbers
 
-/// Lane i takes lane `place(i)` of the two vectors, one behind the other.
-template <class Result, auto place, class Vector, std::size_t... i>
-[[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<i...>) noexcept {
-    return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(place(i))...));
+/// Lane i takes lane `Place(i)` of the two vectors, one behind the other.
+template <class Result, auto Place, class Vector, std::size_t... I>
+[[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<I...>) noexcept {
+    return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(Place(I))...));
 }
 
-/// Pair `k` of each of half as many rows of three pairs as a vector has numbers.
-template <std::size_t k>
+/// Pair `K` of each of half as many rows of three pairs as a vector has numbers.
+template <std::size_t K>
 [[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
-    constexpr auto of_first_two = [](std::size_t i) { return 3 * i + k < width ? 3 * i + k : 0; };
-    constexpr auto of_all = [](std::size_t i) { return 3 * i + k < width ? i : half + (3 * i + k - width); };
+    constexpr auto of_first_two = [](std::size_t i) { return 3 * i + K < width ? 3 * i + K : 0; };
+    constexpr auto of_all = [](std::size_t i) { return 3 * i + K < width ? i : half + (3 * i + K - width); };
     const pairs found = shuffled<pairs, of_first_two>(a, b, std::make_index_sequence<half>{});
     return shuffled<pairs, of_all>(found, c, std::make_index_sequence<half>{});
 }
 
-template <std::size_t k>
+template <std::size_t K>
 [[gnu::always_inline]] inline void take_pair(const pairs (&rows)[6], floats* columns) noexcept {
-    const auto low = __builtin_bit_cast(floats, every_third<k>(rows[0], rows[1], rows[2]));
-    const auto high = __builtin_bit_cast(floats, every_third<k>(rows[3], rows[4], rows[5]));
+    const auto low = __builtin_bit_cast(floats, every_third<K>(rows[0], rows[1], rows[2]));
+    const auto high = __builtin_bit_cast(floats, every_third<K>(rows[3], rows[4], rows[5]));
     constexpr auto even = [](std::size_t i) { return 2 * i; };
     constexpr auto odd = [](std::size_t i) { return 2 * i + 1; };
-    columns[2 * k] = shuffled<floats, even>(low, high, std::make_index_sequence<width>{});
-    columns[2 * k + 1] = shuffled<floats, odd>(low, high, std::make_index_sequence<width>{});
+    columns[2 * K] = shuffled<floats, even>(low, high, std::make_index_sequence<width>{});
+    columns[2 * K + 1] = shuffled<floats, odd>(low, high, std::make_index_sequence<width>{});
 }
 
 }  // namespace aabb::simd::detail
@@ -57,13 +57,13 @@ export namespace aabb::simd {
 [[gnu::always_inline]] inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
     words rows[4];
     std::memcpy(rows, from, sizeof rows);
-    const auto column = [&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
-        constexpr auto of_two = [](std::size_t i) { return 4 * (i % (width / 2)) + k; };
+    const auto column = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+        constexpr auto of_two = [](std::size_t i) { return 4 * (i % (width / 2)) + K; };
         constexpr auto joined = [](std::size_t i) { return i < width / 2 ? i : width + i - width / 2; };
         const auto all = std::make_index_sequence<width>{};
         const words low = detail::shuffled<words, of_two>(rows[0], rows[1], all);
         const words high = detail::shuffled<words, of_two>(rows[2], rows[3], all);
-        columns[k] = detail::shuffled<words, joined>(low, high, all);
+        columns[K] = detail::shuffled<words, joined>(low, high, all);
     };
     column(std::integral_constant<std::size_t, 0>{});
     column(std::integral_constant<std::size_t, 1>{});
@@ -73,14 +73,14 @@ export namespace aabb::simd {
 
 /// The other way round.
 [[gnu::always_inline]] inline void store_rows_of_four(std::uint32_t* to, const words (&&columns)[4]) noexcept {
-    const auto rows = [&]<std::size_t r>(std::integral_constant<std::size_t, r>) {
+    const auto rows = [&]<std::size_t R>(std::integral_constant<std::size_t, R>) {
         // Number j of these rows is of row j / 4 and column j % 4: two columns at a time, then both.
-        constexpr auto of_two = [](std::size_t i) { return r * width / 4 + i / 4 + (i % 2) * width; };
+        constexpr auto of_two = [](std::size_t i) { return R * width / 4 + i / 4 + (i % 2) * width; };
         constexpr auto joined = [](std::size_t i) { return i % 4 < 2 ? i : width + i; };
         const auto all = std::make_index_sequence<width>{};
         const words low = detail::shuffled<words, of_two>(columns[0], columns[1], all);
         const words high = detail::shuffled<words, of_two>(columns[2], columns[3], all);
-        store(to + r * width, detail::shuffled<words, joined>(low, high, all));
+        store(to + R * width, detail::shuffled<words, joined>(low, high, all));
     };
     rows(std::integral_constant<std::size_t, 0>{});
     rows(std::integral_constant<std::size_t, 1>{});
