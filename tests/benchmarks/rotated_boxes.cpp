@@ -3,6 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "../random_poses.hpp"
 
@@ -64,9 +65,8 @@ TEST_CASE("boxes that hold a vertex and its image are parted by no axis, even wh
     }));
 }
 
-TEST_CASE("boxes with a gap along an axis are parted by it, some by the edges only") {
-    std::size_t by_edges_only = 0;
-    REQUIRE(rc::check([&] {
+TEST_CASE("boxes with a gap along an axis are parted by it") {
+    REQUIRE(rc::check([] {
         const pose pose_a = any_pose();
         pose pose_b = any_pose();
         const auto axis = *rc::gen::inRange<std::size_t>(0, 15);
@@ -91,7 +91,18 @@ TEST_CASE("boxes with a gap along an axis are parted by it, some by the edges on
         for (int k = 0; k < 3; ++k) pose_b.translation[k] = pose_a.translation[k] + along[k] * reach;
         const answer both = tested(pose_a, a, pose_b, b);
         RC_ASSERT(!(axis < 6 ? both.faces : both.edges));
-        by_edges_only += both.faces ? 1 : 0;
     }));
-    CHECK(by_edges_only > 0);
+}
+
+TEST_CASE("cubes that face each other with crossing edges are parted by the edges only") {
+    // Half a side is 1, so each edge lies √2 from its cube's centre.
+    const box cube{{-1, -1, -1}, {1, 1, 1}};
+    const pose edge_along_z = turned_by({std::cos(std::numbers::pi / 8), 0, 0, std::sin(std::numbers::pi / 8)}, {});
+    for (const double gap : {-0.01, 0.01}) {
+        const pose edge_along_y = turned_by({std::cos(std::numbers::pi / 8), 0, std::sin(std::numbers::pi / 8), 0},
+                                            {2 * std::sqrt(2) + gap, 0, 0});
+        const answer both = tested(edge_along_z, cube, edge_along_y, cube);
+        CHECK(both.faces);
+        CHECK(both.edges == (gap < 0));
+    }
 }
