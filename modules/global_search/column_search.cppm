@@ -85,7 +85,7 @@ public:
 
 private:
     /// Plans serve at most this many frames.
-    static constexpr unsigned frames_a_plan = 16;
+    static constexpr unsigned frames_a_plan = 32;
 
     using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 

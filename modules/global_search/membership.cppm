@@ -18,8 +18,11 @@ class membership {
 public:
     /// @throws input_error when the object is present already.
     void insert(std::uint32_t id) {
-        if (id >= state_.size()) state_.resize(std::size_t{id} + 1, state::absent);
-        if (contains(id)) throw input_error("object " + std::to_string(id) + " is inserted twice");
+        if (id == state_.size())
+            state_.push_back(state::absent);
+        else if (id > state_.size())
+            state_.resize(std::size_t{id} + 1, state::absent);
+        if (contains(id)) refuse(id, " is inserted twice");
         // An object that leaves and comes back before the next frame never left.
         const bool comes = state_[id] == state::absent;
         if (comes) arrivals_.push_back(id);
@@ -29,7 +32,7 @@ public:
 
     /// @throws input_error when the object is not present.
     void remove(std::uint32_t id) {
-        if (!contains(id)) throw input_error("object " + std::to_string(id) + " is removed but was never inserted");
+        if (!contains(id)) refuse(id, " is removed but was never inserted");
         --size_;
         if (state_[id] == state::coming) {
             std::erase(arrivals_, id);
@@ -78,6 +81,11 @@ public:
 
 private:
     enum class state : std::uint8_t { absent, coming, known, leaving };
+
+    // Apart, so that what is called for every object is short.
+    [[noreturn]] static void refuse(std::uint32_t id, const char* why) {
+        throw input_error("object " + std::to_string(id) + why);
+    }
 
     std::vector<state> state_;  // by id
     std::vector<std::uint32_t> arrivals_;

@@ -70,10 +70,12 @@ public:
             const int u = one.axis_across(0);
             const int v = one.axis_across(1);
             if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
+            const double most_u = most(seen, u, config_.axes > 0);
+            const double most_v = most(seen, v, config_.axes > 1);
             for (const std::uint32_t nu : numbers) {
-                if (nu > most(seen, u, config_.axes > 0)) break;
+                if (nu > most_u) break;
                 for (const std::uint32_t nv : numbers) {
-                    if (nv > most(seen, v, config_.axes > 1) || nu * nv > most_columns) break;
+                    if (nv > most_v || nu * nv > most_columns) break;
                     if (nu * nv > 1 && std::size_t{nu} * nv * simd::width > boxes.size()) break;
                     one.across = {nu, nv};
                     const double cost = cost_of(seen, one, boxes.size());
@@ -95,6 +97,8 @@ public:
 
 private:
     static constexpr std::size_t samples = 256;
+    /// One of so many is left out on either side; none of 0.
+    static constexpr std::array<std::size_t, 3> shares{0, 64, 8};
     static constexpr std::uint32_t most_columns = 16'384;
     static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
                                                            20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
@@ -105,6 +109,7 @@ private:
         vec3d extent{};
         vec3d product{};  ///< of the other two
         double volume = 0;
+        vec3d per_width{};  ///< 1 / `width`; 0 without one
 
         [[nodiscard]] double width(int k) const { return double{bounds.max[k]} - double{bounds.min[k]}; }
         [[nodiscard]] bool varies(int k) const {
@@ -142,6 +147,7 @@ private:
             seen.product[k] /= static_cast<double>(count);
             bound(seen.bounds, k, std::span(ends[static_cast<std::size_t>(k)]).first(count),
                   std::span(ends[static_cast<std::size_t>(3 + k)]).first(count));
+            seen.per_width[k] = seen.width(k) > 0 ? 1 / seen.width(k) : 0;
         }
         seen.volume /= static_cast<double>(count);
         return seen;
@@ -151,22 +157,36 @@ private:
     /// in the columns at the border. Of 64 the outermost on either side are left out, or of 8, where that makes the
     /// rest four times as short.
     static void bound(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
-        std::ranges::sort(lower);
-        std::ranges::sort(upper);
-        const std::size_t last = lower.size() - 1;
-        const auto length = [&](std::size_t out) { return double{upper[last - out]} - double{lower[out]}; };
-        std::size_t out = 0;
-        for (const std::size_t share : {64U, 8U})
-            if (const std::size_t more = lower.size() / share; 4 * length(more) < length(out)) out = more;
-        bounds.min[k] = lower[out];
-        bounds.max[k] = std::max(lower[out], upper[last - out]);
+        const std::array<float, shares.size()> first = outermost(lower, std::ranges::less());
+        const std::array<float, shares.size()> last = outermost(upper, std::ranges::greater());
+        const auto length = [&](std::size_t i) { return double{last[i]} - double{first[i]}; };
+        std::size_t chosen = 0;
+        for (std::size_t i = 1; i < shares.size(); ++i)
+            if (4 * length(i) < length(chosen)) chosen = i;
+        bounds.min[k] = first[chosen];
+        bounds.max[k] = std::max(first[chosen], last[chosen]);
     }
 
+    /// What is outermost without each of the shares.
+    template <class Before>
+    [[nodiscard]] static std::array<float, shares.size()> outermost(std::span<float> values, Before before) {
+        std::array<float, shares.size()> found{};
+        for (std::size_t i = shares.size(); i-- > 0;) {
+            const std::size_t out = shares[i] == 0 ? 0 : values.size() / shares[i];
+            const auto place = values.begin() + static_cast<std::ptrdiff_t>(out);
+            std::ranges::nth_element(values, place, before);
+            found[i] = *place;
+            values = values.first(out + 1);
+        }
+        return found;
+    }
+
+    /// Without NaN, which selects wrongly: that boxes are invalid is seen once they are put into columns.
     [[nodiscard]] static box common(const box& b, const box& within) {
         box c = b;
         for (int k = 0; k < 3; ++k) {
-            c.min[k] = std::clamp(b.min[k], within.min[k], within.max[k]);
-            c.max[k] = std::clamp(b.max[k], within.min[k], within.max[k]);
+            c.min[k] = std::min(std::max(within.min[k], b.min[k]), within.max[k]);
+            c.max[k] = std::min(std::max(within.min[k], b.max[k]), within.max[k]);
         }
         return c;
     }
@@ -185,15 +205,15 @@ private:
         constexpr double column_cost = 16;
         const int u = p.axis_across(0);
         const int v = p.axis_across(1);
-        const auto per = [&](int k, std::uint32_t n) { return n > 1 ? n / seen.width(k) : 0.0; };
+        const auto per = [&](int k, std::uint32_t n) { return n > 1 ? n * seen.per_width[k] : 0.0; };
         const double iu = per(u, p.across[0]);
         const double iv = per(v, p.across[1]);
         const double entries = 1 + seen.extent[u] * iu + seen.extent[v] * iv + seen.product[p.axis] * iu * iv;
         const double reach = seen.extent[p.axis] + seen.product[v] * iu + seen.product[u] * iv + seen.volume * iu * iv;
         const auto columns = static_cast<double>(p.columns());
         const auto n = static_cast<double>(boxes);
-        const double length = seen.width(p.axis);
-        const double met = length > 0 ? n * reach / (columns * length) : n * entries / columns;
+        const double per_length = seen.per_width[p.axis];
+        const double met = n * (per_length > 0 ? reach * per_length : entries) / columns;
         return entries * (1 + entry_cost + met / simd::width) + (entries - 1) * copy_cost + columns * column_cost / n;
     }
 
