@@ -130,23 +130,42 @@ private:
     [[nodiscard]] bool add_copies(std::size_t most_copies) {
         const std::uint32_t later_on[2] = {column_entry::later_on(plan_.axis_across(0)),
                                            column_entry::later_on(plan_.axis_across(1))};
+        const std::uint32_t column = std::uint32_t{1} << bucket_bits_;
         const std::uint32_t row = plan_.across[0] << bucket_bits_;
+        const auto reached = [&](const place& p, int shift, std::size_t k) {
+            return ((p.upper >> shift & 0xffffU) * plan_.across[k] >> 16) -
+                   ((p.lower >> shift & 0xffffU) * plan_.across[k] >> 16);
+        };
+        std::array<copy, 64> some;
+        std::size_t n = 0;
+        const auto flush = [&] { copies_.insert(copies_.end(), some.begin(), some.begin() + std::exchange(n, 0)); };
         for (const std::uint32_t i : std::span(wide_).first(wide_boxes_)) {
             const place p = places_[i];
-            const auto column = [&](std::uint32_t at, std::size_t k) {
-                return (k == 0 ? at & 0xffffU : at >> 16) * plan_.across[k] >> 16;
+            const std::uint32_t nu = reached(p, 0, 0);
+            const std::uint32_t nv = reached(p, 16, 1);
+            const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
+                const std::uint32_t buckets = u * column + v * row;
+                some[n] = {i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets};
+                n += times;
+                ends_[p.bucket + buckets * times] += times;
             };
-            const std::uint32_t nu = column(p.upper, 0) - column(p.lower, 0);
-            const std::uint32_t nv = column(p.upper, 1) - column(p.lower, 1);
+            if (nu <= 1 && nv <= 1) {
+                // Which of three it is cannot be foreseen.
+                add(1, 0, nu);
+                add(0, 1, nv);
+                add(1, 1, nu & nv);
+                if (n + 3 > some.size()) flush();
+                continue;
+            }
             for (std::uint32_t v = 0; v <= nv; ++v)
                 for (std::uint32_t u = v == 0; u <= nu; ++u) {
-                    const std::uint32_t buckets = (u << bucket_bits_) + v * row;
-                    copies_.push_back({i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets});
-                    ++ends_[p.bucket + buckets];
+                    add(u, v, 1);
+                    if (n + 3 > some.size()) flush();
                 }
             if (copies_.size() > most_copies) return false;
         }
-        return true;
+        flush();
+        return copies_.size() <= most_copies;
     }
 
     /// Counts become places; what fills a column up to a whole vector is written.

@@ -66,7 +66,7 @@ public:
                 window = first;
             }
             // Room for all that this vector may add.
-            candidates_.resize(std::max(candidates_.size(), found_ + active + 2 * width));
+            make_room(found_ + active + 3 * width);
             const vector_of_entries vector(&block.entries[first], block.ends);
             const auto number = static_cast<std::uint32_t>((first - window) / width);
             tests += active + width - 1;
@@ -80,7 +80,7 @@ public:
 
     [[nodiscard]] std::size_t bytes() const noexcept {
         return bytes_of(entries_) + bytes_of(list_ends_) + bytes_of(active_) + bytes_of(active_ends_) +
-               bytes_of(candidates_);
+               bytes_of(candidates_) + bytes_of(met_);
     }
 
 private:
@@ -111,16 +111,24 @@ private:
         }
     };
 
-    /// An entry and those of a vector that it may overlap: which vector of the window, and a bit for each lane.
-    struct candidate {
-        std::uint32_t entry;
-        std::uint32_t met;
+    /// Of a few entries, the lanes of a vector that each of them meets.
+    struct met_lanes {
+        std::array<std::uint16_t, width> of;
     };
 
-    /// No branch: whether there are any cannot be foreseen.
-    inline void keep(std::size_t entry, std::uint32_t vector, std::uint32_t lanes) noexcept {
-        candidates_[found_] = {static_cast<std::uint32_t>(entry), vector << width | lanes};
-        found_ += lanes != 0;
+    void make_room(std::size_t candidates) {
+        if (candidates <= candidates_.size()) return;
+        candidates_.resize(candidates);
+        met_.resize(candidates);
+    }
+
+    /// Those of so many entries that meet any, without a branch: whether there are any cannot be foreseen.
+    inline void keep(simd::words entries, std::uint32_t present, const met_lanes& met, simd::words lanes,
+                     std::uint32_t vector) noexcept {
+        const simd::words some = simd::load_halves(met.of.data()) & lanes;
+        const std::uint32_t any = simd::bits(some != 0U) & present;
+        simd::store_where(&candidates_[found_], entries, any);
+        found_ += simd::store_where(&met_[found_], some | vector << width, any);
     }
 
     /// Those that began before the vector, against it.
@@ -134,17 +142,16 @@ private:
             simd::store_where(&active_ends_[stay], ends, beyond);
             stay += simd::store_where(&active_[stay], entries, beyond);
         };
-        std::uint32_t lanes[width];
+        met_lanes met{};
         for (std::size_t q = 0; q < active; q += width) {
             const simd::words entries = simd::load(&active_[q]);
             const simd::words ends = simd::load(&active_ends_[q]);
-            simd::store(lanes, simd::lanes_below(ends - static_cast<std::uint32_t>(first)));
             const std::size_t here = std::min(width, active - q);
-            for (std::size_t l = 0; l < here; ++l) {
-                const std::size_t i = active_[q + l];
-                keep(i, number, vector.met_by(block.entries[i]) & lanes[l]);
-            }
-            take(entries, ends, simd::lanes_below(here));
+            for (std::size_t l = 0; l < here; ++l)
+                met.of[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[active_[q + l]]));
+            const std::uint32_t present = simd::lanes_below(here);
+            keep(entries, present, met, simd::lanes_below(ends - static_cast<std::uint32_t>(first)), number);
+            take(entries, ends, present);
         }
         take(simd::places() + static_cast<std::uint32_t>(first), vector.ends, simd::every_lane);
         return stay;
@@ -153,12 +160,13 @@ private:
     /// Those of the vector, against the ones after them.
     void sweep_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
                       std::size_t first) noexcept {
-        std::uint32_t lanes[width];
         const simd::words after = simd::all(~std::uint32_t{1}) << simd::places();
-        simd::store(lanes, simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & after);
+        const simd::words lanes = simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & after;
+        met_lanes met{};
 #pragma clang loop unroll(full)
         for (std::size_t l = 0; l + 1 < width; ++l)
-            keep(first + l, number, vector.met_by(block.entries[first + l]) & lanes[l]);
+            met.of[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[first + l]));
+        keep(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
     }
 
     /// Appends what really overlaps.
@@ -166,16 +174,16 @@ private:
         std::size_t next = pairs.size();
         std::size_t most = next;
         for (std::size_t c = 0; c < found_; ++c)
-            most += static_cast<std::size_t>(std::popcount(candidates_[c].met & simd::every_lane));
+            most += static_cast<std::size_t>(std::popcount(met_[c] & simd::every_lane));
         if (most > pairs.capacity()) pairs.reserve(std::max(most, 2 * pairs.capacity()));
         pairs.resize(most);
         for (std::size_t c = 0; c < found_; ++c) {
-            const candidate found = candidates_[c];
-            const std::uint32_t i = block.entries[found.entry].index & column_entry::index_bits;
+            const std::uint32_t met = met_[c];
+            const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_bits;
             const box a = block.boxes[i];
             const std::uint32_t id = block.id_of(i);
-            const column_entry* const vector = &block.entries[window + (found.met >> width) * width];
-            for (std::uint32_t lanes = found.met & simd::every_lane; lanes != 0; lanes &= lanes - 1) {
+            const column_entry* const vector = &block.entries[window + (met >> width) * width];
+            for (std::uint32_t lanes = met & simd::every_lane; lanes != 0; lanes &= lanes - 1) {
                 const std::uint32_t j = vector[std::countr_zero(lanes)].index & column_entry::index_bits;
                 pairs[next] = ordered_pair(id, block.id_of(j));
                 next += overlaps(a, block.boxes[j]);
@@ -218,7 +226,8 @@ private:
     std::vector<std::uint32_t> list_ends_;  // the same
     std::vector<std::uint32_t> active_;     // entries that reach into the vector at hand
     std::vector<std::uint32_t> active_ends_;
-    std::vector<candidate> candidates_;
+    std::vector<std::uint32_t> candidates_;  // entries that may overlap some of a vector
+    std::vector<std::uint32_t> met_;         // by candidate: which vector of the window, and a bit for each lane
     std::size_t found_ = 0;
 };
 

@@ -82,8 +82,10 @@ TEST_CASE("sums run, places are gathered, comparisons become bits") {
     const simd::words gathered = simd::gather(table.data(), numbers(3, 1));
     std::array<std::uint16_t, n> lower{};
     simd::store_lower_halves(lower.data(), numbers(0x10003, 9));
+    const simd::words widened = simd::load_halves(lower.data());
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
+        REQUIRE(widened[i] == 3 * i + 9);
         REQUIRE(sums[i] == (sum += v[i]));
         REQUIRE(gathered[i] == (3 * i + 1) * (3 * i + 1));
         REQUIRE(lower[i] == 3 * i + 9);
