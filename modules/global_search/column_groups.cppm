@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -29,11 +30,27 @@ struct column_group {
 /// the threads.
 class column_groups {
 public:
-    /// So many groups, in the proportion of the columns; no more than those.
+    /// So many groups, in the proportion of the columns; no more than those on their axes. Where they are too few, as
+    /// of boxes along a line, groups are cut along them instead of across the axis that has fewer.
     [[nodiscard]] static column_plan coarser(column_plan plan, double groups) {
+        const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
+        const std::uint32_t most = plan.across[1 - fewer];
+        const auto share = [](double n, std::uint32_t greatest) {
+            return static_cast<std::uint32_t>(std::clamp(std::round(n), 1.0, static_cast<double>(greatest)));
+        };
         const double ratio = std::sqrt(groups / plan.columns());
-        for (std::uint32_t& n : plan.across)
-            n = std::clamp(static_cast<std::uint32_t>(std::lround(n * ratio)), std::uint32_t{1}, n);
+        std::array<std::uint32_t, 2> across{};
+        across[fewer] = share(plan.across[fewer] * ratio, plan.across[fewer]);
+        across[1 - fewer] = share(groups / across[fewer], most);
+        if (2 * across[0] * across[1] < groups) {
+            const int along = plan.axis;
+            const std::uint32_t beside = across[1 - fewer];
+            plan.axis = plan.axis_across(fewer);
+            const std::size_t first = plan.axis_across(0) == along ? 0 : 1;
+            across[first] = share(groups / beside, most_groups / beside);
+            across[1 - first] = beside;
+        }
+        plan.across = across;
         return plan;
     }
 
@@ -54,8 +71,12 @@ public:
         wide_first_.resize(wide_.size());
         wide_last_.resize(wide_.size());
         for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { classify(boxes, p); });
-        for (const part& p : parts_)
+        std::size_t copies = 0;
+        for (const part& p : parts_) {
             if (p.result != fill_result::whole) return p.result;
+            copies += p.copies;
+        }
+        if (copies > most_copies(boxes.size())) return fill_result::crowded;
         if (!make_room(most_in_group)) return fill_result::crowded;
         for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
         return fill_result::whole;
@@ -95,6 +116,8 @@ public:
     }
 
 private:
+    static constexpr std::uint32_t most_groups = 16'384;
+
     /// Boxes that one thread takes.
     struct part {
         std::size_t begin;
@@ -145,7 +168,7 @@ private:
                 ++p.next_copy[group];
                 ++p.copies;
             });
-            if (p.copies > most_copies(p.end - p.begin)) {
+            if (p.copies > most_copies(boxes.size())) {
                 p.result = fill_result::crowded;
                 return;
             }

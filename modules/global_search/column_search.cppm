@@ -89,7 +89,8 @@ private:
 
     using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 
-    struct worker {
+    // Cache lines come in twos; none is written by two workers.
+    struct alignas(128) worker {
         column_worker<Sort, Partition, Sweep, own_counters> own;
         std::vector<index_pair> pairs;
     };

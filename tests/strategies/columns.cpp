@@ -91,6 +91,25 @@ TEST_CASE("more boxes than one group takes are put into groups") {
     CHECK(pairs == true_pairs(boxes));
 }
 
+TEST_CASE("boxes on a line and in a plane, too, are put into groups, along any axis") {
+    for (const unsigned level_axes : {0b001U, 0b010U, 0b100U, 0b011U, 0b101U, 0b110U}) {
+        INFO("level on axes " << level_axes);
+        std::vector<box> boxes = random_boxes(3000, 500, 1, 8);
+        for (box& b : boxes)
+            for (int k = 0; k < 3; ++k)
+                if (level_axes >> k & 1U) b.min[k] = -1, b.max[k] = 1;
+        search_by_columns search({}, columns_partition({.group = 200}), {});
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) search.insert(id);
+        std::vector<index_pair> pairs;
+        search.update(boxes);
+        search.search(pairs);
+        std::ranges::sort(pairs);
+        CHECK(pairs == true_pairs(boxes));
+        CHECK(search.counters()[work::subsets] >= 10);
+        CHECK(search.counters()[work::subset_copies] < 2 * boxes.size());
+    }
+}
+
 TEST_CASE("a frame unlike the one that was planned for costs little more than one planned for it") {
     const std::size_t n = 12'000;
     const std::vector<box> cubes = random_boxes(n, 50, 1, 3);
