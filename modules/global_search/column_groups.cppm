@@ -218,6 +218,9 @@ private:
         box* const to = boxes_.data();
         std::uint32_t* const to_ids = ids_.data();
         const auto write = [&](std::size_t place, std::size_t i, std::uint32_t later_on) {
+            // The next cache lines of a group: no processor foresees that many places at once.
+            __builtin_prefetch(to + place + 8, 1);
+            __builtin_prefetch(to_ids + place + 16, 1);
             to[place] = boxes[i];
             to_ids[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | later_on;
         };
