@@ -64,9 +64,10 @@ public:
         clear();
         plan_ = plan;
         keys_.resize(boxes.size() + simd::width);
-        // Fewer boxes are not worth a thread.
+        // Fewer boxes are not worth a part; more parts than threads, since not all begin at once.
         constexpr std::size_t least = 4096;
-        parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, std::size_t{threads}));
+        const std::size_t most = threads > 1 ? 4 * threads : 1;
+        parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, most));
         wide_.resize(boxes.size() + simd::width * parts_.size());
         wide_first_.resize(wide_.size());
         wide_last_.resize(wide_.size());
@@ -118,7 +119,7 @@ public:
 private:
     static constexpr std::uint32_t most_groups = 16'384;
 
-    /// Boxes that one thread takes.
+    /// Boxes that one thread takes at a time.
     struct part {
         std::size_t begin;
         std::size_t end;

@@ -99,7 +99,6 @@ private:
         std::size_t worker;
         std::size_t begin;
         std::size_t end;
-        std::size_t place;  // among all
     };
 
     [[nodiscard]] unsigned threads() const noexcept { return static_cast<unsigned>(workers_.size()); }
@@ -169,7 +168,7 @@ private:
             worker& w = workers_[number];
             const std::size_t begin = w.pairs.size();
             search_group(static_cast<std::uint32_t>(g), w, w.pairs);
-            found_[g] = {number, begin, w.pairs.size(), 0};
+            found_[g] = {number, begin, w.pairs.size()};
         });
         collect(pairs);
     }
@@ -189,17 +188,13 @@ private:
     /// In the order of the groups, whichever thread took them.
     void collect(std::vector<index_pair>& pairs) {
         std::size_t all = pairs.size();
-        for (pairs_of_group& f : found_) {
-            f.place = all;
-            all += f.end - f.begin;
-        }
+        for (const worker& w : workers_) all += w.pairs.size();
         if (all > pairs.capacity()) pairs.reserve(std::max(all, 2 * pairs.capacity()));
-        pairs.resize(all);
-        for_each_index(found_.size(), threads(), [&](std::size_t g, std::size_t) {
-            const pairs_of_group& f = found_[g];
-            std::ranges::copy(std::span(workers_[f.worker].pairs).subspan(f.begin, f.end - f.begin),
-                              pairs.begin() + static_cast<std::ptrdiff_t>(f.place));
-        });
+        for (const pairs_of_group& f : found_) {
+            const auto from = workers_[f.worker].pairs.begin();
+            pairs.insert(pairs.end(), from + static_cast<std::ptrdiff_t>(f.begin),
+                         from + static_cast<std::ptrdiff_t>(f.end));
+        }
     }
 
     void add_up(Counters& counters) {

@@ -36,7 +36,7 @@ public:
     struct config {
         /// How many of the two axes across are cut.
         std::uint32_t axes = 2;
-        /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 12,000,
+        /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
         /// which fill half a second-level cache with their entries.
         std::optional<std::uint32_t> group;
         /// How many threads take groups.
@@ -91,7 +91,7 @@ public:
 
     /// How many of so many boxes are cut into columns together, about.
     [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
-        return std::min(boxes, std::size_t{config_.group.value_or(boxes <= 40'000 ? 40'000 : 12'000)});
+        return std::min(boxes, std::size_t{config_.group.value_or(boxes <= 40'000 ? 40'000 : 9'000)});
     }
     [[nodiscard]] unsigned threads() const noexcept { return config_.threads; }
 
