@@ -37,7 +37,8 @@ public:
         /// How many of the two axes across are cut.
         std::uint32_t axes = 2;
         /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
-        /// which fill half a second-level cache with their entries.
+        /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
+        /// be written in turn without much waiting.
         std::optional<std::uint32_t> group;
         /// How many threads take groups.
         std::uint32_t threads = 1;
@@ -91,7 +92,8 @@ public:
 
     /// How many of so many boxes are cut into columns together, about.
     [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
-        return std::min(boxes, std::size_t{config_.group.value_or(boxes <= 40'000 ? 40'000 : 9'000)});
+        if (config_.group) return std::min(boxes, std::size_t{*config_.group});
+        return boxes <= 40'000 ? boxes : std::max(std::size_t{9'000}, boxes / 300);
     }
     [[nodiscard]] unsigned threads() const noexcept { return config_.threads; }
 
