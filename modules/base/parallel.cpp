@@ -6,32 +6,30 @@ module;
 #include <oneapi/tbb/task_arena.h>
 #include <algorithm>
 #include <cstddef>
-#include <map>
-#include <mutex>
+#include <memory>
 
 module aabb.base;
 
-namespace aabb::detail {
+namespace aabb {
 
-namespace {
+struct worker_threads::arena {
+    tbb::task_arena of;
+};
 
-/// Kept from call to call: threads linger in it for a while, and begin at once when they are needed again.
-tbb::task_arena& arena_of(unsigned threads) {
-    static std::mutex only_one;
-    static std::map<unsigned, tbb::task_arena> arenas;
-    const std::scoped_lock lock(only_one);
-    // It warns when it is asked for more than there are processors.
-    return arenas.try_emplace(threads, std::min(static_cast<int>(threads), tbb::info::default_concurrency()))
-        .first->second;
-}
+// TBB warns when it is asked for more threads than there are processors.
+worker_threads::worker_threads(unsigned count)
+    : count_(count),
+      arena_(count > 1 ? std::make_unique<arena>(
+                             tbb::task_arena(std::min(static_cast<int>(count), tbb::info::default_concurrency())))
+                       : nullptr) {}
+worker_threads::worker_threads(worker_threads&&) noexcept = default;
+worker_threads& worker_threads::operator=(worker_threads&&) noexcept = default;
+worker_threads::~worker_threads() = default;
 
-}  // namespace
-
-void share_out(std::size_t count, unsigned threads, void (*call)(void* work, std::size_t i, std::size_t worker),
-               void* work) {
-    arena_of(threads).execute([&] {
+void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work) {
+    arena_->of.execute([&] {
         tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, count, 1),
+            tbb::blocked_range<std::size_t>(0, n, 1),
             [&](const tbb::blocked_range<std::size_t>& range) {
                 const auto worker = static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
                 for (std::size_t i = range.begin(); i != range.end(); ++i) call(work, i, worker);
@@ -40,4 +38,4 @@ void share_out(std::size_t count, unsigned threads, void (*call)(void* work, std
     });
 }
 
-}  // namespace aabb::detail
+}  // namespace aabb

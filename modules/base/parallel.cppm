@@ -1,25 +1,37 @@
 module;
 #include <cstddef>
+#include <memory>
 
 export module aabb.base:parallel;
 
-namespace aabb::detail {
-
-/// Calls `call(work, i, worker)`.
-void share_out(std::size_t count, unsigned threads, void (*call)(void* work, std::size_t i, std::size_t worker),
-               void* work);
-
-}  // namespace aabb::detail
-
 export namespace aabb {
 
-/// Calls `work(i, worker)` for each i below `count`, in no particular order on more than one thread; no two calls with
-/// one number of a worker, which is below `threads`, at a time. An exception ends it, and leaves it.
-template <class Work>
-void for_each_index(std::size_t count, unsigned threads, Work work) {
-    const auto call = [](void* made, std::size_t i, std::size_t worker) { (*static_cast<Work*>(made))(i, worker); };
-    if (threads > 1 && count > 1) return detail::share_out(count, threads, call, &work);
-    for (std::size_t i = 0; i < count; ++i) work(i, std::size_t{0});
-}
+/// Threads that work for one object. They linger for a while after each call, and begin the next one at once.
+class worker_threads {
+public:
+    explicit worker_threads(unsigned count);
+    worker_threads(worker_threads&&) noexcept;
+    worker_threads& operator=(worker_threads&&) noexcept;
+    ~worker_threads();
+
+    [[nodiscard]] unsigned count() const noexcept { return count_; }
+
+    /// Calls `work(i, worker)` for each i below `n`, in no particular order on more than one thread; no two calls with
+    /// one number of a worker, which is below `count`, at a time. An exception ends it, and leaves it.
+    template <class Work>
+    void for_each_index(std::size_t n, Work work) {
+        const auto call = [](void* made, std::size_t i, std::size_t worker) { (*static_cast<Work*>(made))(i, worker); };
+        if (count_ > 1 && n > 1) return share_out(n, call, &work);
+        for (std::size_t i = 0; i < n; ++i) work(i, std::size_t{0});
+    }
+
+private:
+    struct arena;
+
+    void share_out(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work);
+
+    unsigned count_;
+    std::unique_ptr<arena> arena_;  // none for one thread
+};
 
 }  // namespace aabb

@@ -42,12 +42,12 @@ public:
         std::array<std::uint32_t, 2> across{};
         across[fewer] = share(plan.across[fewer] * ratio, plan.across[fewer]);
         across[1 - fewer] = share(groups / across[fewer], most);
-        if (2 * across[0] * across[1] < groups) {
+        if (2 * across[0] * across[1] < groups && plan.most_along > across[fewer]) {
             const int along = plan.axis;
             const std::uint32_t beside = across[1 - fewer];
             plan.axis = plan.axis_across(fewer);
             const std::size_t first = plan.axis_across(0) == along ? 0 : 1;
-            across[first] = share(groups / beside, most_groups / beside);
+            across[first] = share(groups / beside, std::min(plan.most_along, most_groups / beside));
             across[1 - first] = beside;
         }
         plan.across = across;
@@ -60,18 +60,18 @@ public:
     /// @param most_in_group with a group of more boxes, copies included, there are no groups: crowded. Nor are there
     /// with a box that is invalid.
     [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
-                                         const column_plan& plan, std::size_t most_in_group, unsigned threads) {
+                                         const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
         plan_ = plan;
         keys_.resize(boxes.size() + simd::width);
         // Fewer boxes are not worth a part; more parts than threads, since not all begin at once.
         constexpr std::size_t least = 4096;
-        const std::size_t most = threads > 1 ? 4 * threads : 1;
+        const std::size_t most = threads.count() > 1 ? std::size_t{4} * threads.count() : 1;
         parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, most));
         wide_.resize(boxes.size() + simd::width * parts_.size());
         wide_first_.resize(wide_.size());
         wide_last_.resize(wide_.size());
-        for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { classify(boxes, p); });
+        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { classify(boxes, p); });
         std::size_t copies = 0;
         for (const part& p : parts_) {
             if (p.result != fill_result::whole) return p.result;
@@ -79,7 +79,7 @@ public:
         }
         if (copies > most_copies(boxes.size())) return fill_result::crowded;
         if (!make_room(most_in_group)) return fill_result::crowded;
-        for_each_index(parts_.size(), threads, [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
+        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
         return fill_result::whole;
     }
 

@@ -21,6 +21,7 @@ export namespace aabb {
 struct column_plan {
     int axis = 0;                               ///< along which columns run
     std::array<std::uint32_t, 2> across{1, 1};  ///< how many columns on the next axis and the one after it
+    std::uint32_t most_along = 1;               ///< how many boxes fit one behind the other along them
     vec3f origin{};
     vec3f scale{};  ///< to the whole numbers
 

@@ -29,9 +29,10 @@ export namespace aabb {
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
-    column_search(Sort sort, Partition partition, Sweep sweep) : partition_(std::move(partition)) {
+    column_search(Sort sort, Partition partition, Sweep sweep)
+        : partition_(std::move(partition)), threads_(partition_.threads()) {
         workers_.push_back({{std::move(sort), std::move(sweep)}, {}});
-        workers_.resize(partition_.threads(), workers_.front());
+        workers_.resize(threads_.count(), workers_.front());
     }
     // What was filled points into itself.
     column_search(const column_search&) = delete;
@@ -101,8 +102,6 @@ private:
         std::size_t end;
     };
 
-    [[nodiscard]] unsigned threads() const noexcept { return static_cast<unsigned>(workers_.size()); }
-
     void select(std::span<const box> boxes, const membership& objects) {
         present_ = {boxes, {}};
         if (objects.size() == boxes.size()) return;
@@ -139,7 +138,7 @@ private:
         for (;; is_anew = true) {
             if (is_anew) plan_groups();
             const std::size_t most = is_anew ? present_.boxes.size() : 2 * planned_fullest_ + 4096;
-            const fill_result result = groups_.distribute(present_.boxes, present_.ids, group_plan_, most, threads());
+            const fill_result result = groups_.distribute(present_.boxes, present_.ids, group_plan_, most, threads_);
             if (result == fill_result::invalid) return false;
             if (result == fill_result::whole) break;
             if (is_anew) return fill(true, counters);
@@ -158,13 +157,13 @@ private:
     }
 
     void search_groups(std::vector<index_pair>& pairs) {
-        if (threads() == 1) {
+        if (threads_.count() == 1) {
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
         for (worker& w : workers_) w.pairs.clear();
         found_.resize(groups_.size());
-        for_each_index(groups_.size(), threads(), [&](std::size_t g, std::size_t number) {
+        threads_.for_each_index(groups_.size(), [&](std::size_t g, std::size_t number) {
             worker& w = workers_[number];
             const std::size_t begin = w.pairs.size();
             search_group(static_cast<std::uint32_t>(g), w, w.pairs);
@@ -214,8 +213,9 @@ private:
     }
 
     [[no_unique_address]] Partition partition_;
-    std::vector<worker> workers_;
-    std::span<const box> boxes_;  // of the frame
+    worker_threads threads_;
+    std::vector<worker> workers_;  // one for each of them
+    std::span<const box> boxes_;   // of the frame
     frame_at_rest at_rest_;
     bool rests_ = false;
     column_group present_{};

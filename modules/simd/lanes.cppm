@@ -86,12 +86,14 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
     std::memcpy(to, &v, sizeof v);
 }
 
+/// Numbers of 16 bits.
 [[nodiscard, gnu::always_inline]] inline words load_halves(const std::uint16_t* from) noexcept {
     using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
     narrow v;
     std::memcpy(&v, from, sizeof v);
     return __builtin_convertvector(v, words);
 }
+
 /// The lower half of each number.
 [[gnu::always_inline]] inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
     using narrow = std::uint16_t __attribute__((vector_size(2 * width)));

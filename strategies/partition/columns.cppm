@@ -34,7 +34,7 @@ public:
     static constexpr std::string_view summary = "cuts boxes into columns before anything is sorted";
 
     struct config {
-        /// How many of the two axes across are cut.
+        /// How many of the two axes across are cut into columns.
         std::uint32_t axes = 2;
         /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
         /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
@@ -87,6 +87,7 @@ public:
             }
         }
         best.fit(seen.bounds);
+        best.most_along = static_cast<std::uint32_t>(std::min(most(seen, best.axis, true) / 4, 16'384.0));
         return best;
     }
 
@@ -173,8 +174,9 @@ private:
     template <class Before>
     [[nodiscard]] static std::array<float, shares.size()> outermost(std::span<float> values, Before before) {
         std::array<float, shares.size()> found{};
+        const std::size_t all = values.size();
         for (std::size_t i = shares.size(); i-- > 0;) {
-            const std::size_t out = shares[i] == 0 ? 0 : values.size() / shares[i];
+            const std::size_t out = shares[i] == 0 ? 0 : all / shares[i];
             const auto place = values.begin() + static_cast<std::ptrdiff_t>(out);
             std::ranges::nth_element(values, place, before);
             found[i] = *place;

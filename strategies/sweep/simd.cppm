@@ -117,7 +117,7 @@ private:
     };
 
     void make_room(std::size_t candidates) {
-        if (candidates <= candidates_.size()) return;
+        if (candidates <= met_.size()) return;
         candidates_.resize(candidates);
         met_.resize(candidates);
     }

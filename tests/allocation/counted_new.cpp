@@ -6,20 +6,22 @@
 
 namespace {
 
+// Stages may have threads. Not std::atomic: <atomic> cannot be read again behind a module that has it.
+
 /// Takes note of what malloc gave, or of what it is to be taken for.
 void* noted(void* memory) {
-    if (allocations.fails_in > 0 && --allocations.fails_in == 0) {
+    if (allocations.fails_in > 0 && __atomic_sub_fetch(&allocations.fails_in, 1, __ATOMIC_RELAXED) == 0) {
         std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc)
         memory = nullptr;
     }
     if (memory == nullptr) throw std::bad_alloc();
-    ++allocations.made;
-    ++allocations.alive;
+    __atomic_add_fetch(&allocations.made, 1, __ATOMIC_RELAXED);
+    __atomic_add_fetch(&allocations.alive, 1, __ATOMIC_RELAXED);
     return memory;
 }
 
 void give_back(void* memory) noexcept {
-    if (memory != nullptr) --allocations.alive;
+    if (memory != nullptr) __atomic_sub_fetch(&allocations.alive, 1, __ATOMIC_RELAXED);
     std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc)
 }
 

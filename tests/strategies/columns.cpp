@@ -91,6 +91,56 @@ TEST_CASE("more boxes than one group takes are put into groups") {
     CHECK(pairs == true_pairs(boxes));
 }
 
+TEST_CASE("a few boxes far away do not widen a plan much") {
+    std::vector<box> boxes = random_boxes(12'800, 50, 1, 9);
+    for (std::size_t i = 0; i < boxes.size(); i += 200)
+        for (int k = 0; k < 3; ++k) boxes[i].min[k] += 1e6F, boxes[i].max[k] += 1e6F;
+    const column_plan plan = columns_partition().plan(boxes, everywhere);
+    for (int k = 0; k < 3; ++k) {
+        // One in 200 is away; one in 64 is left out on either side, not one in 8.
+        CHECK(plan.origin[k] < 3);
+        CHECK(65'536 / plan.scale[k] > 46);
+        CHECK(65'536 / plan.scale[k] < 53);
+    }
+}
+
+TEST_CASE("groups are in proportion to the columns, and cut along them where those are too few") {
+    const auto groups = [](int axis, std::uint32_t u, std::uint32_t v, std::uint32_t along, double wanted) {
+        column_plan plan;
+        plan.axis = axis;
+        plan.across = {u, v};
+        plan.most_along = along;
+        return column_groups::coarser(plan, wanted);
+    };
+    const auto on_axis = [](const column_plan& plan, int axis) {
+        for (std::size_t i = 0; i < 2; ++i)
+            if (plan.axis_across(i) == axis) return plan.across[i];
+        return 1U;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        const column_plan cube = groups(axis, 40, 40, 100, 100);
+        CHECK(cube.axis == axis);
+        CHECK(on_axis(cube, u) == 10);
+        CHECK(on_axis(cube, v) == 10);
+        const column_plan plane = groups(axis, 1, 100, 100, 20);
+        CHECK(plane.axis == axis);
+        CHECK(on_axis(plane, v) == 20);
+        const column_plan line = groups(axis, 1, 1, 1000, 20);
+        CHECK(on_axis(line, axis) == 20);
+        CHECK(line.columns() == 20);
+        for (const bool swapped : {false, true}) {
+            const column_plan rod = swapped ? groups(axis, 3, 2, 1000, 60) : groups(axis, 2, 3, 1000, 60);
+            CHECK(on_axis(rod, axis) == 20);
+            CHECK(on_axis(rod, swapped ? u : v) == 3);
+            CHECK(rod.columns() == 60);
+        }
+        CHECK(groups(axis, 4, 4, 3, 1000).columns() == 16);      // no room along
+        CHECK(on_axis(groups(axis, 1, 1, 7, 1000), axis) == 7);  // boxes as long as columns
+    }
+}
+
 TEST_CASE("boxes on a line and in a plane, too, are put into groups, along any axis") {
     for (const unsigned level_axes : {0b001U, 0b010U, 0b100U, 0b011U, 0b101U, 0b110U}) {
         INFO("level on axes " << level_axes);
