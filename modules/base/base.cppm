@@ -8,5 +8,5 @@ export import :floating_point;
 export import :frame_state;
 export import :large_pages;
 export import :memory;
-export import :parallel;
 export import :shortest;
+export import :worker_threads;

@@ -87,7 +87,8 @@ public:
             }
         }
         best.fit(seen.bounds);
-        best.most_along = static_cast<std::uint32_t>(std::min(most(seen, best.axis, true) / 4, 16'384.0));
+        best.most_along =
+            static_cast<std::uint32_t>(std::min(most(seen, best.axis, true) / columns_a_box, double{most_columns}));
         return best;
     }
 
@@ -103,6 +104,7 @@ private:
     /// One of so many is left out on either side; none of 0.
     static constexpr std::array<std::size_t, 3> shares{0, 64, 8};
     static constexpr std::uint32_t most_columns = 16'384;
+    static constexpr double columns_a_box = 4;
     static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
                                                            20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
 
@@ -195,10 +197,10 @@ private:
         return c;
     }
 
-    /// Columns narrower than a quarter of a box gain nothing.
+    /// How many columns there may be; narrower ones gain nothing.
     [[nodiscard]] static double most(const sample& seen, int k, bool cut) {
         if (!cut || !seen.varies(k)) return 1;
-        return seen.extent[k] > 0 ? std::max(1.0, 4 * seen.width(k) / seen.extent[k]) : numbers.back();
+        return seen.extent[k] > 0 ? std::max(1.0, columns_a_box * seen.width(k) / seen.extent[k]) : numbers.back();
     }
 
     /// For a box, in tests of a vector: to bring its entries to their places, and to test each against those that it

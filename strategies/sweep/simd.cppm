@@ -112,9 +112,7 @@ private:
     };
 
     /// Of a few entries, the lanes of a vector that each of them meets.
-    struct met_lanes {
-        std::array<std::uint16_t, width> of;
-    };
+    using met_lanes = std::array<std::uint16_t, width>;
 
     void make_room(std::size_t candidates) {
         if (candidates <= met_.size()) return;
@@ -125,7 +123,7 @@ private:
     /// Those of so many entries that meet any, without a branch: whether there are any cannot be foreseen.
     inline void keep(simd::words entries, std::uint32_t present, const met_lanes& met, simd::words lanes,
                      std::uint32_t vector) noexcept {
-        const simd::words some = simd::load_halves(met.of.data()) & lanes;
+        const simd::words some = simd::load_halves(met.data()) & lanes;
         const std::uint32_t any = simd::bits(some != 0U) & present;
         simd::store_where(&candidates_[found_], entries, any);
         found_ += simd::store_where(&met_[found_], some | vector << width, any);
@@ -148,7 +146,7 @@ private:
             const simd::words ends = simd::load(&active_ends_[q]);
             const std::size_t here = std::min(width, active - q);
             for (std::size_t l = 0; l < here; ++l)
-                met.of[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[active_[q + l]]));
+                met[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[active_[q + l]]));
             const std::uint32_t present = simd::lanes_below(here);
             keep(entries, present, met, simd::lanes_below(ends - static_cast<std::uint32_t>(first)), number);
             take(entries, ends, present);
@@ -165,7 +163,7 @@ private:
         met_lanes met{};
 #pragma clang loop unroll(full)
         for (std::size_t l = 0; l + 1 < width; ++l)
-            met.of[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[first + l]));
+            met[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[first + l]));
         keep(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
     }
 

@@ -50,15 +50,15 @@ TEST_CASE("global search allocates nothing in steady state") {
     for (int frame = 0; frame < 9; ++frame) frames.push_back(orbiting(frame));
     for (const aabb::composition& composition : all_global_compositions()) {
         INFO(text_of_global(composition));
-        // A thread needs more memory when it is the first time that it takes a group so large.
-        if (text_of_global(composition).find("threads=") != std::string::npos) continue;
         const auto stage = global_of(composition, instrumentation::none);
         for (std::uint32_t id = 0; id < frames[0].size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
-        std::size_t before = 0;
         bool away = false;
-        for (int round = 0; round < 4; ++round) {
-            if (round == 3) before = allocations.made;
+        std::size_t made = 0;
+        // On several threads, one needs more memory when it first takes a group so large, which may be late.
+        const int rounds = text_of_global(composition).find("threads=") != std::string::npos ? 200 : 4;
+        for (int round = 0; round < rounds && (round < 4 || made > 0); ++round) {
+            const std::size_t before = allocations.made;
             for (const auto& boxes : frames) {
                 for (const std::uint32_t id : {7U, 30U, 299U}) away ? stage->insert(id) : stage->remove(id);
                 away = !away;
@@ -66,8 +66,8 @@ TEST_CASE("global search allocates nothing in steady state") {
                 stage->update(boxes);
                 stage->search(pairs);
             }
+            made = allocations.made - before;
         }
-        const std::size_t made = allocations.made - before;
         CHECK(made == 0);
         CHECK_FALSE(pairs.empty());
     }

@@ -36,7 +36,18 @@ void* operator new(std::size_t bytes, std::align_val_t alignment) {
     return noted(std::aligned_alloc(multiple, (bytes + multiple) / multiple * multiple));
 }
 // NOLINTEND(cppcoreguidelines-no-malloc)
+// The sanitizers' own would not match our delete; std::stable_sort calls it.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+    try {
+        return operator new(bytes);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
 void operator delete(void* memory) noexcept {
+    give_back(memory);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
     give_back(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {

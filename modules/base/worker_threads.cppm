@@ -2,7 +2,7 @@ module;
 #include <cstddef>
 #include <memory>
 
-export module aabb.base:parallel;
+export module aabb.base:worker_threads;
 
 export namespace aabb {
 
