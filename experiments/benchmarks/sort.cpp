@@ -56,9 +56,11 @@ template <class Sort>
 void count_work(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::work_counters counted;
     aabb::inversion_counter inversions;
-    for (list_of_frame list : lists) {
+    list_of_frame sorted;
+    for (const list_of_frame& list : lists) {
         counted.add(aabb::work::inversions, inversions.count(list));
-        sort.sort(std::span(list), counted);
+        sorted = list;
+        sort.sort(std::span(sorted), counted);
     }
     const auto elements = static_cast<double>(lists.size() * lists.front().size());
     const auto per_element = [&](aabb::work what) { return static_cast<double>(counted[what]) / elements; };
