@@ -111,6 +111,18 @@ public:
         return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
     }
 
+    /// Images of several vertices at once, by coordinate: bit by bit those of the vertices one by one.
+    template <class Doubles>
+    [[nodiscard]] inline std::array<Doubles, 3> images(const std::array<Doubles, 3>& x) const noexcept {
+        std::array<Doubles, 3> world;
+        for (int i = 0; i < 3; ++i)
+            world[i] = ((columns_b_[0][i] * x[0] + columns_b_[1][i] * x[1]) + columns_b_[2][i] * x[2]) + between_[i];
+        std::array<Doubles, 3> seen;
+        for (int i = 0; i < 3; ++i)
+            seen[i] = (rows_a_[0][i] * world[0] + rows_a_[1][i] * world[1]) + rows_a_[2][i] * world[2];
+        return seen;
+    }
+
     /// A box in A's frame that holds the image of every vertex in the box. The bounds are taken in double, grown by the
     /// margin derived above and rounded to nearest like the images: rounding is monotone, so none can leave the box.
     [[nodiscard]] inline box operator()(const box& b) const noexcept {
@@ -123,10 +135,17 @@ public:
         return {in_float(centre - radius), in_float(centre + radius)};
     }
 
-private:
     /// x, y, z and nothing.
     using lanes = double __attribute__((vector_size(32)));
 
+    /// The motion as it is applied to boxes: column j of RᴬᵀRᴮ, and Rᴬᵀ(tᴮ - tᴬ).
+    [[nodiscard]] inline const lanes& turn(int j) const noexcept { return turn_[j]; }
+    [[nodiscard]] inline const lanes& shift() const noexcept { return shift_; }
+    /// By which an image that is rounded to float, or a sum of up to 20 terms that stands for it, may differ from the
+    /// real one, but for denormals.
+    [[nodiscard]] inline lanes image_error() const noexcept { return margin_ * 0x1p25; }
+
+private:
     [[nodiscard]] static inline vec3f in_float(const lanes& v) noexcept {
         return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     }

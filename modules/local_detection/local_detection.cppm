@@ -1,6 +1,4 @@
 module;
-#include <array>
-#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -10,25 +8,48 @@ module;
 
 export module aabb.local_detection;
 
+export import :batched_walk;
 export import :build_node;
 export import :build_policy;
+export import :child_overlaps;
+export import :depth_first_walk;
 export import :leaf_test;
 export import :mesh_fit;
 export import :model;
 export import :tree_policy;
 export import :tree_survey;
+export import :triangle_batch;
+export import :triangle_block;
+export import :triangle_filter;
 export import :triangle_policy;
+export import :walk_goal;
+export import :wide_node;
+export import :wide_tree_policy;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.policy;
 
+namespace aabb::detail {
+
+template <class Tree, class Triangle, class Counters>
+struct walk_of {
+    using type = depth_first_walk<Tree, Triangle, Counters>;
+};
+template <WideTreePolicy Tree, class Triangle, class Counters>
+struct walk_of<Tree, Triangle, Counters> {
+    using type = batched_walk<Tree, Triangle, Counters>;
+};
+
+}  // namespace aabb::detail
+
 export namespace aabb {
 
-/// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles. The work
-/// is done in A's frame (`relative_pose`). Nothing is allocated once the stacks have grown to the deepest query. Every
-/// query throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
+/// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles: wide
+/// trees in batches, others depth first. The work is done in A's frame (`relative_pose`). Nothing is allocated once the
+/// walk's memory has grown to the deepest query. Every query throws input_error as `require_ieee_arithmetic` and
+/// `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);
@@ -43,7 +64,7 @@ public:
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_whole(pairs, [&] {
-            walk(a, pose_a, b, pose_b, [&](index_pair found) {
+            between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](index_pair found) {
                 pairs.push_back(found);
                 return false;
             });
@@ -54,7 +75,7 @@ public:
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
-        walk(a, pose_a, b, pose_b, [&](index_pair) {
+        between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](index_pair) {
             ++count;
             return false;
         });
@@ -65,7 +86,7 @@ public:
     [[nodiscard]] std::optional<index_pair> first_pair(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                                        const pose& pose_b) {
         std::optional<index_pair> first;
-        walk(a, pose_a, b, pose_b, [&](index_pair found) {
+        between(a, pose_a, b, pose_b, walk_goal::first_pair, [&](index_pair found) {
             first = found;
             return true;
         });
@@ -74,160 +95,26 @@ public:
 
     /// Appends every pair of intersecting triangles a < b of one mesh, neighbours that share a vertex included.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
-        constexpr same_frame here;
-        const auto emit = [&](index_pair found) {
-            pairs.push_back(ordered_pair(found.a, found.b));
-            return false;
-        };
-        begin();
-        nodes_.assign(1, m.root());
         append_whole(pairs, [&] {
-            while (!nodes_.empty()) {
-                const cursor at = nodes_.back();
-                nodes_.pop_back();
-                if (m.tree().is_leaf(at)) continue;
-                const auto [left, right] = m.tree().children(at, m.triangles());
-                nodes_.push_back(left);
-                nodes_.push_back(right);
-                push_if_near(m, m, here, {left, right, m.tree().bounds(right)}, side::both);
-                drain(m, m, here, emit);
-            }
+            walk_.within(triangle_, m, [&](index_pair found) {
+                pairs.push_back(ordered_pair(found.a, found.b));
+                return false;
+            });
         });
-        assert(stack_.empty());
     }
 
-    [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(stack_) + bytes_of(nodes_); }
+    [[nodiscard]] const Counters& counters() const noexcept { return walk_.counters(); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return walk_.bytes(); }
 
 private:
-    using cursor = typename Tree::cursor;
-
-    /// A pair of nodes still to be opened; the box of B's node stands in A's frame.
-    struct node_pair {
-        cursor a;
-        cursor b;
-        box b_bounds;
-    };
-
-    /// B stands where A does.
-    struct same_frame {
-        [[nodiscard]] box operator()(const box& b) const noexcept { return b; }
-        [[nodiscard]] triangle3f operator()(const triangle3f& t) const noexcept { return t; }
-    };
-
-    /// Whose node of a pair has not been tested against the other yet.
-    enum class side : std::uint8_t { a, b, both };
-
-    /// Forgets an earlier query, which may have stopped half-way.
-    void begin() {
-        require_ieee_arithmetic();
-        stack_.clear();
-        image_of_ = no_triangle;
-    }
-
-    /// `emit` takes a pair and says whether to stop.
     template <class Emit>
-    void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, Emit emit) {
-        const relative_pose to_a(pose_a, pose_b, b.bounds());
-        begin();
-        push_if_near(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, side::both);
-        drain(a, b, to_a, emit);
-    }
-
-    template <class Frame, class Emit>
-    void drain(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, Emit& emit) {
-        const Tree& tree_a = a.tree();
-        const Tree& tree_b = b.tree();
-        while (!stack_.empty()) {
-            const node_pair at = stack_.back();
-            stack_.pop_back();
-            counters_.add(work::node_visits);
-            const bool a_is_leaf = tree_a.is_leaf(at.a);
-            const bool b_is_leaf = tree_b.is_leaf(at.b);
-            if (a_is_leaf && b_is_leaf) {
-                if (intersect(a, b, to_a, at) && emit({tree_a.triangle(at.a), tree_b.triangle(at.b)})) return;
-            } else if (b_is_leaf || (!a_is_leaf && length(tree_a.bounds(at.a)) >= length(at.b_bounds))) {
-                const auto [left, right] = tree_a.children(at.a, a.triangles());
-                push_if_near(a, b, to_a, {right, at.b, at.b_bounds}, side::a);
-                push_if_near(a, b, to_a, {left, at.b, at.b_bounds}, side::a);
-            } else {
-                const auto [left, right] = tree_b.children(at.b, b.triangles());
-                push_if_near(a, b, to_a, {at.a, right, bounds_in_a(b, to_a, right, at.b_bounds)}, side::b);
-                push_if_near(a, b, to_a, {at.a, left, bounds_in_a(b, to_a, left, at.b_bounds)}, side::b);
-            }
-        }
-    }
-
-    template <class Frame>
-    [[nodiscard]] bool intersect(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& at) {
-        counters_.add(work::triangle_tests);
-        return triangle_.intersects(a.triangles().triangle(a.tree().triangle(at.a)), image(b, to_a, at.b));
-    }
-
-    /// The triangle of a leaf of B, in A's frame. A leaf meets many nodes of A in turn, so the last one is kept.
-    template <class Frame>
-    [[nodiscard]] const triangle3f& image(const model<Tree>& b, const Frame& to_a, const cursor& leaf) {
-        const std::uint32_t triangle = b.tree().triangle(leaf);
-        if (triangle != image_of_) image_ = to_a(b.triangles().triangle(triangle));
-        image_of_ = triangle;
-        return image_;
-    }
-
-    /// The box of a child of B's node, in A's frame. A leaf without a box goes on with its parent's, or with that of
-    /// its triangle as it stands in A's frame.
-    template <class Frame>
-    [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
-        if constexpr (!Tree::has_leaf_boxes)
-            if (b.tree().is_leaf(child))
-                return b.tree().leaf_test() == leaf_test_choice::triangle_aabb ? bounds_of(image(b, to_a, child))
-                                                                               : parent;
-        return to_a(b.tree().bounds(child));
-    }
-
-    template <class Frame>
-    void push_if_near(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
-                      side untested) {
-        if (may_meet(a, b, to_a, next, untested)) stack_.push_back(next);
-    }
-
-    template <class Frame>
-    [[nodiscard]] bool may_meet(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
-                                side untested) {
-        if constexpr (!Tree::has_leaf_boxes) {
-            const leaf_test_choice test = a.tree().leaf_test();
-            const bool a_is_leaf = a.tree().is_leaf(next.a);
-            const bool b_is_leaf = b.tree().is_leaf(next.b);
-            const bool tests_triangles =
-                test == leaf_test_choice::triangle_box || test == leaf_test_choice::moller_triangle_box;
-            // Without boxes of their own there is nothing to test leaves by.
-            if (a_is_leaf && b_is_leaf && test != leaf_test_choice::triangle_aabb) return true;
-            if (test == leaf_test_choice::none && (untested == side::a ? a_is_leaf : b_is_leaf)) return true;
-            if (tests_triangles && a_is_leaf)
-                return meets_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
-            if (tests_triangles && b_is_leaf) return meets_box(image(b, to_a, next.b), a.tree().bounds(next.a), test);
-        }
-        counters_.add(work::box_tests);
-        return overlaps(a.tree().bounds(next.a), next.b_bounds);
-    }
-
-    [[nodiscard]] bool meets_box(const triangle3f& t, const box& b, leaf_test_choice test) {
-        counters_.add(work::triangle_box_tests);
-        return test == leaf_test_choice::triangle_box ? triangle_meets_box(t, b) : moller_triangle_meets_box(t, b);
-    }
-
-    /// Of two nodes the longer one is opened first.
-    [[nodiscard]] static float length(const box& b) noexcept {
-        const int k = longest_axis(b);
-        return b.max[k] - b.min[k];
+    void between(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
+                 Emit emit) {
+        walk_.between(triangle_, a, b, relative_pose(pose_a, pose_b, b.bounds()), goal, emit);
     }
 
     [[no_unique_address]] Triangle triangle_;
-    [[no_unique_address]] Counters counters_;
-    std::vector<node_pair> stack_;
-    std::vector<cursor> nodes_;  // of one tree, still to be held against itself
-    static constexpr std::uint32_t no_triangle = 0xffffffff;
-    std::uint32_t image_of_ = no_triangle;  // triangle of B
-    triangle3f image_{};
+    typename detail::walk_of<Tree, Triangle, Counters>::type walk_;
 };
 
 }  // namespace aabb

@@ -43,9 +43,11 @@ public:
     /// Where every query begins.
     /// @throws input_error when the last refit did not succeed.
     [[nodiscard]] typename Tree::cursor root() const {
-        fit_.require();
+        require_fit();
         return tree_.root(*mesh_);
     }
+    /// @throws input_error when the last refit did not succeed.
+    void require_fit() const { fit_.require(); }
     [[nodiscard]] box bounds() const { return tree_.bounds(root()); }
 
 private:

@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -40,6 +41,16 @@ std::size_t paired(std::size_t left, std::size_t all) {
     return left + 1 < all ? left + 1 : left - 1;
 }
 
+/// How many triangles go to the left, where the build would have so many there.
+std::size_t left_of(leaf_pairing pairing, std::size_t left, std::size_t all) {
+    switch (pairing) {
+        case leaf_pairing::any: return left;
+        case leaf_pairing::even: return paired(left, all);
+        case leaf_pairing::full_left: return std::bit_ceil(all) / 2;
+    }
+    return left;
+}
+
 /// A range of elements to become a node.
 struct task {
     std::size_t begin;
@@ -68,7 +79,7 @@ std::vector<build_node> build_top_down(const mesh& m, leaf_pairing pairing, cons
         nodes.push_back({bounds, 0, range[0].triangle});
         if (range.size() == 1) continue;
         const split_choice chosen = split(range, bounds);
-        const std::size_t left = pairing == leaf_pairing::even ? paired(chosen.left, range.size()) : chosen.left;
+        const std::size_t left = left_of(pairing, chosen.left, range.size());
         std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                  [axis = chosen.axis](const build_element& p, const build_element& q) {
                                      // Ties go by index, so that the tree does not depend on the library.

@@ -17,6 +17,7 @@ struct exact_triangle : orientation_test<orientations> {
     static constexpr std::string_view name = "exact";
     static constexpr std::string_view summary =
         "exact for any finite triangles, zero-area ones included: orientation signs, filtered in double";
+    static constexpr bool filtered = true;
 
     [[nodiscard]] static triangle_intersection intersection(const triangle3d& s, const triangle3d& t) {
         return intersection_of(s, t);

@@ -4,6 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 import aabb.simd;
@@ -92,4 +93,45 @@ TEST_CASE("sums run, places are gathered, comparisons become bits") {
     }
     REQUIRE(simd::bits(simd::places() < 3U) == 7U);
     REQUIRE(simd::bits(simd::places() == simd::places()) == simd::every_lane);
+}
+
+TEST_CASE("eight numbers at a time: taken by place, whole parts as bytes, compared each with each") {
+    const std::array<float, 8> from{-1, 0.5F, 254.9F, 255, 256, 1e30F, std::numeric_limits<float>::quiet_NaN(), 7.99F};
+    const simd::eight_words places{7, 8, 1, 2, 3, 4, 13, 15};
+    const simd::eight_floats taken = simd::taken(from.data(), places);
+    for (int i = 0; i < 8; ++i) {
+        const float wanted = from[places[i] & 7U];
+        REQUIRE((taken[i] == wanted || (taken[i] != taken[i] && wanted != wanted)));
+    }
+    const simd::eight_bytes whole = simd::whole_bytes(simd::load_eight<simd::eight_floats>(from.data()));
+    const std::array<int, 8> expected{0, 0, 254, 255, 255, 255, 0, 7};
+    for (int i = 0; i < 8; ++i) REQUIRE(int{whole[i]} == expected[static_cast<std::size_t>(i)]);
+    const std::array<std::uint8_t, 8> a{0, 1, 127, 128, 200, 254, 255, 7};
+    const std::uint64_t held = simd::no_greater(a.data(), whole);
+    for (unsigned j = 0; j < 8; ++j)
+        for (unsigned i = 0; i < 8; ++i) REQUIRE((held >> (8 * j + i) & 1U) == (a[i] <= whole[j] ? 1U : 0U));
+}
+
+TEST_CASE("places of set bits come in order") {
+    for (const std::uint64_t set : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{1} << 63, ~std::uint64_t{0},
+                                    std::uint64_t{0x8421f00d00c0ffee}}) {
+        std::array<std::uint8_t, 64> places{};
+        simd::store_places(places.data(), set);
+        std::size_t next = 0;
+        for (unsigned i = 0; i < 64; ++i)
+            if (set >> i & 1U) REQUIRE(unsigned{places[next++]} == i);
+    }
+}
+
+TEST_CASE("eight points become three columns") {
+    std::array<std::array<float, 3>, 8> points{};
+    std::array<const float*, 8> from{};
+    for (std::size_t i = 0; i < 8; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) points[i][k] = static_cast<float>(10 * i + k);
+        from[i] = points[i].data();
+    }
+    std::array<float, 24> columns{};
+    simd::store_columns_of_eight_points(from.data(), columns.data());
+    for (std::size_t i = 0; i < 8; ++i)
+        for (std::size_t k = 0; k < 3; ++k) REQUIRE(columns[8 * k + i] == points[i][k]);
 }

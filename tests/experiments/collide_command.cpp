@@ -80,8 +80,8 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     REQUIRE(reference["neighbours"] == 6 + 6 + 3);
     REQUIRE(reference["pairs"] > 0);
     REQUIRE(reference["triangles"] == std::vector{9});
-    const auto tree =
-        GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal", "quantized");
+    const auto tree = GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal",
+                               "quantized", "implicit");
     const auto summary = nlohmann::json::parse(run_program(joined(base, {"--tree", tree})).out);
     REQUIRE(summary["pairs"] == reference["pairs"]);
     REQUIRE(summary["neighbours"] == reference["neighbours"]);

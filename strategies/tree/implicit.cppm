@@ -1,0 +1,142 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <vector>
+
+export module aabb.tree.implicit;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.local_detection;
+
+export namespace aabb {
+
+/// A balanced tree without indices: every node has eight children, and where they stand follows from where it stands.
+/// Boxes are in 8 bits a plane (`wide_node`), 9.2 bytes a triangle; which triangle stands where takes as many bits as
+/// there are digits in their number. Its nodes are walked in batches (`batched_walk`); seen as a binary tree, node
+/// (height, index) holds the triangles at places index * 2^height and up to 2^height - 1 beyond.
+/// When to use: for the fastest queries.
+class implicit_tree {
+public:
+    static constexpr std::string_view name = "implicit";
+    static constexpr std::string_view summary =
+        "eight children a node in 64 bytes, no indices, walked in batches: the fastest queries";
+    static constexpr bool has_leaf_boxes = true;
+    static constexpr leaf_pairing pairing = leaf_pairing::full_left;
+
+    struct cursor {
+        std::uint32_t height;
+        std::uint32_t index;
+    };
+
+    void pack(std::span<const build_node> nodes) {
+        triangles_ = static_cast<std::uint32_t>(nodes.size() / 2 + 1);
+        bits_ = std::bit_width(triangles_ - 1);
+        places_.assign((std::size_t{triangles_} * bits_ + 7) / 8 + read_beyond, {});
+        std::vector<box> boxes;
+        boxes.reserve(triangles_);
+        for (const build_node& n : nodes) {
+            if (!n.is_leaf()) continue;
+            set_triangle(boxes.size(), n.triangle);
+            boxes.push_back(n.bounds);
+        }
+        std::size_t all = 0;
+        levels_ = 0;
+        for (std::size_t below = triangles_; levels_ == 0 || below > 1;) {
+            below = (below + wide_node::most_children - 1) / wide_node::most_children;
+            begins_[levels_++] = all;
+            all += below;
+        }
+        nodes_.resize(all);
+        fit(boxes);
+    }
+
+    void refit(const mesh& m, std::vector<box>& boxes) {
+        boxes.resize(triangles_);
+        for (std::uint32_t place = 0; place < triangles_; ++place)
+            boxes[place] = bounds_of(m.triangle(triangle_at(place)));
+        fit(boxes);
+    }
+
+    [[nodiscard]] inline cursor root(const mesh&) const noexcept {
+        return normal({static_cast<std::uint32_t>(std::bit_width(triangles_ - 1)), 0});
+    }
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.height == 0; }
+    [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
+        return {normal({at.height - 1, 2 * at.index}), normal({at.height - 1, 2 * at.index + 1})};
+    }
+    [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
+        const std::size_t level = std::min<std::size_t>(at.height / 3, levels() - 1);
+        const auto above = static_cast<std::uint32_t>(at.height - 3 * level);  // the node is 2^above children
+        const std::uint32_t first = at.index << above;
+        const wide_node& n = nodes_[begins_[level] + first / wide_node::most_children];
+        const std::uint32_t begin = first % wide_node::most_children;
+        const std::uint32_t end = std::min<std::uint32_t>(begin + (1U << above), n.children);
+        box all = empty_box();
+        for (std::uint32_t i = begin; i < end; ++i) all = merged(all, n.child(i));
+        return all;
+    }
+    [[nodiscard]] inline std::uint32_t triangle(const cursor& at) const noexcept { return triangle_at(at.index); }
+    [[nodiscard]] tree_bytes bytes() const noexcept { return {bytes_of(nodes_), bytes_of(places_)}; }
+
+    [[nodiscard]] inline std::size_t levels() const noexcept { return levels_; }
+    [[nodiscard]] inline const wide_node* level(std::size_t l) const noexcept { return &nodes_[begins_[l]]; }
+    [[nodiscard]] inline std::uint32_t triangle_at(std::uint32_t place) const noexcept {
+        const std::size_t bit = std::size_t{place} * bits_;
+        std::uint64_t word = 0;
+        std::memcpy(&word, &places_[bit / 8], sizeof word);
+        return static_cast<std::uint32_t>(word >> bit % 8 & ((std::uint64_t{1} << bits_) - 1));
+    }
+
+private:
+    static constexpr std::size_t read_beyond = 8;
+    static constexpr std::size_t most_levels = 11;
+    static_assert(std::uint64_t{1} << 3 * most_levels > most_triangles);
+
+    void set_triangle(std::size_t place, std::uint32_t triangle) noexcept {
+        const std::size_t bit = place * bits_;
+        std::uint64_t word = 0;
+        std::memcpy(&word, &places_[bit / 8], sizeof word);
+        word |= std::uint64_t{triangle} << bit % 8;
+        std::memcpy(&places_[bit / 8], &word, sizeof word);
+    }
+
+    /// A node of one child is that child.
+    [[nodiscard]] inline cursor normal(cursor at) const noexcept {
+        while (at.height > 0 && (std::uint64_t{2} * at.index + 1) << (at.height - 1) >= triangles_)
+            at = {at.height - 1, 2 * at.index};
+        return at;
+    }
+
+    /// @param boxes of the triangles by place; scratch
+    void fit(std::span<box> boxes) noexcept {
+        for (std::size_t l = 0; l < levels(); ++l) {
+            std::size_t made = 0;
+            for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children) {
+                const auto children = boxes.subspan(i, std::min(wide_node::most_children, boxes.size() - i));
+                nodes_[begins_[l] + made].encode(children);
+                box all = empty_box();
+                for (const box& b : children) all = merged(all, b);
+                boxes[made++] = all;
+            }
+            boxes = boxes.first(made);
+        }
+    }
+
+    std::uint32_t triangles_ = 0;
+    std::size_t bits_ = 0;  // of a triangle's index
+    std::vector<wide_node> nodes_;
+    std::vector<std::byte> places_;  // which triangle stands where
+    std::size_t levels_ = 0;
+    std::array<std::size_t, most_levels> begins_{};
+};
+
+static_assert(TreePolicy<implicit_tree> && WideTreePolicy<implicit_tree>);
+
+}  // namespace aabb

@@ -1,0 +1,261 @@
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "../random_poses.hpp"
+#include "../triangle_pairs.hpp"
+
+import aabb;
+import aabb.build.median;
+import aabb.simd;
+import aabb.tree.implicit;
+import aabb.triangle.exact;
+
+using namespace aabb;
+
+namespace {
+
+triangle3f as_triangle(const triangle_pairs::triangle& t) {
+    triangle3f made;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            made[i][k] = static_cast<float>(t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+    return made;
+}
+
+/// As many pairs as a vector has lanes, coordinate by coordinate.
+struct pairs_of_a_vector {
+    std::array<std::array<float, simd::width>, 9> a{};
+    std::array<std::array<float, simd::width>, 9> b{};
+
+    void set(std::size_t lane, const triangle3f& s, const triangle3f& t) {
+        for (std::size_t row = 0; row < 9; ++row) {
+            a[row][lane] = s[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+            b[row][lane] = t[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+        }
+    }
+    [[nodiscard]] filtered_pairs filtered() const {
+        return triangle_filter::decide(a[0].data(), b[0].data(), simd::width);
+    }
+};
+
+float any_float() {
+    const float x = *rc::gen::element(0.0F, 1.0F, -1.0F, 1e-3F, 1e-40F, std::numeric_limits<float>::denorm_min(), 1e30F,
+                                      -1e30F, std::numeric_limits<float>::max(), -std::numeric_limits<float>::max());
+    return *rc::gen::arbitrary<bool>() ? x : static_cast<float>(uniform(-1, 1)) * x;
+}
+
+std::vector<box> any_boxes() {
+    std::vector<box> boxes(*rc::gen::inRange<std::size_t>(1, 9));
+    const vec3f centre{any_float(), any_float(), any_float()};
+    const float size = std::abs(any_float());
+    for (box& b : boxes)
+        for (int k = 0; k < 3; ++k) {
+            const auto near = [&] {
+                const double x = centre[k] + uniform(-1, 1) * size;
+                constexpr double most = std::numeric_limits<float>::max();
+                return static_cast<float>(std::clamp(x, -most, most));
+            };
+            const float p = near();
+            const float q = *rc::gen::arbitrary<bool>() ? p : near();
+            b.min[k] = std::min(p, q);
+            b.max[k] = std::max(p, q);
+        }
+    return boxes;
+}
+
+/// Somewhere in the box, its corners above all.
+vec3f point_in(const box& b) {
+    vec3f p;
+    for (int k = 0; k < 3; ++k) {
+        const int where = *rc::gen::inRange(0, 4);
+        const double between = b.min[k] + (double{b.max[k]} - b.min[k]) * uniform(0, 1);
+        p[k] = where == 0   ? b.min[k]
+               : where == 1 ? b.max[k]
+                            : std::clamp(static_cast<float>(between), b.min[k], b.max[k]);
+    }
+    return p;
+}
+
+box all_of(const std::vector<box>& boxes) {
+    box all = empty_box();
+    for (const box& b : boxes) all = merged(all, b);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("the filter decides as the exact test does, and leaves what rounding puts in doubt") {
+    triangle_pairs::generator g{5};
+    std::size_t decided = 0;
+    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement) {
+            CAPTURE(triangle_pairs::patterns[pattern], triangle_pairs::placements[placement]);
+            bool same = true;
+            for (int round = 0; round < 400; ++round) {
+                pairs_of_a_vector pairs;
+                std::uint32_t truth = 0;
+                for (std::size_t lane = 0; lane < simd::width; ++lane) {
+                    const auto pair =
+                        triangle_pairs::placed<float>(g, triangle_pairs::patterned(g, pattern), placement);
+                    const triangle3f s = as_triangle(pair[0]);
+                    const triangle3f t = as_triangle(pair[1]);
+                    pairs.set(lane, s, t);
+                    truth |= static_cast<std::uint32_t>(exact_triangle::intersects(s, t)) << lane;
+                }
+                const filtered_pairs found = pairs.filtered();
+                same &= (found.hits & found.undecided) == 0;
+                same &= found.hits == (truth & ~found.undecided);
+                decided += simd::width - static_cast<std::size_t>(std::popcount(found.undecided));
+            }
+            CHECK(same);
+        }
+    CHECK(decided > 0);
+}
+
+TEST_CASE("the filter leaves few of ordinary pairs undecided, of every size") {
+    triangle_pairs::generator g{6};
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    for (const float size : {1e-9F, 1.0F, 1e9F}) {
+        std::size_t undecided = 0;
+        std::size_t hits = 0;
+        for (int round = 0; round < 2000; ++round) {
+            pairs_of_a_vector pairs;
+            for (auto* rows : {&pairs.a, &pairs.b})
+                for (auto& row : *rows)
+                    for (float& x : row) x = size * coordinate(g);
+            const filtered_pairs found = pairs.filtered();
+            undecided += static_cast<std::size_t>(std::popcount(found.undecided));
+            hits += static_cast<std::size_t>(std::popcount(found.hits));
+        }
+        CAPTURE(size);
+        CHECK(undecided * 1000 < 2000 * simd::width);
+        CHECK(hits > 100 * simd::width);
+    }
+}
+
+TEST_CASE("a wide node holds the boxes that it takes, whatever their size and place") {
+    REQUIRE(rc::check([] {
+        const std::vector<box> boxes = any_boxes();
+        wide_node n{};
+        n.encode(boxes);
+        RC_ASSERT(n.children == boxes.size());
+        const box all = all_of(boxes);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const box held = n.child(i);
+            RC_ASSERT(contains(held, boxes[i]));
+            // No plane is further out than a 64th of the whole, or than what a float is rounded by there.
+            for (int k = 0; k < 3; ++k) {
+                const double step =
+                    std::max((double{all.max[k]} - all.min[k]) / 64,
+                             std::max(std::abs(double{all.min[k]}), std::abs(double{all.max[k]})) * 0x1p-20);
+                RC_ASSERT(double{boxes[i].min[k]} - held.min[k] <= step + 0x1p-125);
+                RC_ASSERT(double{held.max[k]} - boxes[i].max[k] <= step + 0x1p-125);
+            }
+        }
+    }));
+}
+
+TEST_CASE("children that meet are found, however one node is turned against the other") {
+    std::size_t met = 0;
+    std::size_t apart = 0;
+    REQUIRE(rc::check([&] {
+        const std::vector<box> b = any_boxes();
+        const double far = *rc::gen::element(0.0, 1.0, 1e3);
+        std::array<double, 4> q{1, 0, 0, 0};
+        if (*rc::gen::arbitrary<bool>()) {
+            for (double& x : q) x = uniform(-1, 1);
+            q[0] += 1.01;
+        }
+        const pose pose_b = turned_by(q, {far * uniform(-1, 1), far * uniform(-1, 1), far * uniform(-1, 1)});
+        const auto reachable = [&]() -> bool {
+            try {
+                static_cast<void>(relative_pose({}, pose_b, all_of(b)));
+                return true;
+            } catch (const input_error&) {
+                return false;
+            }
+        };
+        RC_PRE(reachable());
+        const relative_pose to_a({}, pose_b, all_of(b));
+        wide_node node_b{};
+        node_b.encode(b);
+        // Children of A are drawn around images of points of B's, so that many just meet.
+        std::vector<box> a(*rc::gen::inRange<std::size_t>(1, 9));
+        const float size = *rc::gen::element(0.0F, 1e-3F, 1.0F, 1e20F);
+        for (box& one : a) {
+            const vec3f seen = to_a(point_in(b[*rc::gen::inRange<std::size_t>(0, b.size())]));
+            one = bounds_of(seen);
+            for (int k = 0; k < 3; ++k) {
+                constexpr float most = std::numeric_limits<float>::max();
+                one.min[k] = std::max(-most, one.min[k] - size * static_cast<float>(uniform(-0.5, 1)));
+                one.max[k] =
+                    std::min(most, std::max(one.min[k], one.max[k] + size * static_cast<float>(uniform(-0.5, 1))));
+            }
+        }
+        wide_node node_a{};
+        node_a.encode(a);
+        const std::uint64_t found = child_overlaps(to_a)(node_a, node_b);
+        for (int sample = 0; sample < 40; ++sample) {
+            const auto j = *rc::gen::inRange<std::size_t>(0, b.size());
+            const box seen = bounds_of(to_a(point_in(b[j])));
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                const bool bit = found >> (8 * j + i) & 1U;
+                if (overlaps(a[i], seen)) RC_ASSERT(bit);
+                met += overlaps(a[i], seen);
+                apart += !bit;
+            }
+        }
+        // Of children that are not there, none.
+        for (std::size_t j = 0; j < 8; ++j)
+            for (std::size_t i = 0; i < 8; ++i)
+                if (i >= a.size() || j >= b.size()) RC_ASSERT((found >> (8 * j + i) & 1U) == 0);
+    }));
+    CHECK(met > 1000);
+    CHECK(apart > 1000);
+}
+
+TEST_CASE("the triangles of a block are moved as they are one by one, and held against boxes without a loss") {
+    REQUIRE(rc::check([] {
+        std::array<double, 4> q{};
+        for (double& x : q) x = uniform(-1, 1);
+        q[0] += 1.01;
+        const pose pose_a = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+        const float size = *rc::gen::element(1e-30F, 1.0F, 1e30F);
+        mesh m;
+        const auto triangles = *rc::gen::inRange<std::uint32_t>(1, 9);
+        for (std::uint32_t t = 0; t < triangles; ++t) {
+            for (int c = 0; c < 3; ++c)
+                m.vertices.push_back({size * static_cast<float>(uniform(-1, 1)),
+                                      size * static_cast<float>(uniform(-1, 1)),
+                                      size * static_cast<float>(uniform(-1, 1))});
+            m.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+        }
+        const relative_pose to_a(pose_a, {}, bounds_of(m));
+        const model<aabb::implicit_tree> built(m, aabb::median_build());
+        triangle_block moved;
+        moved.load(m, built.tree(), 0);
+        moved.move(to_a);
+        moved.bound();
+        std::vector<box> around;
+        for (std::uint32_t t = 0; t < triangles; ++t) {
+            const triangle3f image = to_a(m.triangle(built.tree().triangle_at(t)));
+            RC_ASSERT(moved.triangle(t) == image);
+            around.push_back(bounds_of(image));
+        }
+        wide_node n{};
+        n.encode(around);
+        const std::uint64_t met = child_overlaps::leaves(n, moved);
+        for (std::size_t i = 0; i < triangles; ++i)
+            for (std::size_t j = 0; j < triangles; ++j)
+                if (overlaps(around[i], around[j])) RC_ASSERT(met >> (8 * j + i) & 1U);
+    }));
+}
