@@ -26,6 +26,7 @@ import aabb.pipeline;
 import aabb.registry;
 import aabb.validation;
 import aabblab.files;
+import aabblab.numbers;
 import aabblab.pair_output;
 import aabblab.play;
 import aabblab.progress;
@@ -151,8 +152,8 @@ void print_json(const both_stages& both, const contacts_result& result) {
 void print_text(const contacts_request& request, const both_stages& both, const contacts_result& result) {
     double all = 0;
     for (const double ms : result.milliseconds) all += ms;
-    print(fmt::format("{}: {} objects, {} frames\n", visible(request.motion), result.objects,
-                      result.milliseconds.size()));
+    print(fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
+                      counted(result.milliseconds.size(), "frame")));
     print(fmt::format("{} contacts of triangles in {} contacts of objects ({} pairs of boxes), digest {}\n",
                       result.contacts, result.object_pairs, result.candidates, result.digest));
     print(fmt::format("{}{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", both.name,

@@ -22,6 +22,7 @@ import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.files;
+import aabblab.numbers;
 import aabblab.pair_output;
 import aabblab.play;
 import aabblab.progress;
@@ -93,8 +94,8 @@ void print_json(const search_method& method, const search_result& result) {
 }
 
 void print_text(const pairs_request& request, const search_method& method, const search_result& result) {
-    print(fmt::format("{}: {} objects, {} frames\n", visible(request.recording), result.objects,
-                      result.milliseconds.size()));
+    print(fmt::format("{}: {}, {}\n", visible(request.recording), counted(result.objects, "object"),
+                      counted(result.milliseconds.size(), "frame")));
     print(fmt::format("{} overlapping pairs, digest {}\n", result.pairs, result.digest));
     if (!result.milliseconds.empty())
         print(fmt::format("{}{}: {:.3f} ms a frame (median)\n", method.name, method.exact ? "" : " (inexact)",

@@ -28,6 +28,7 @@ import aabb.policy;
 import aabb.registry;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.numbers;
 import aabblab.picture;
 import aabblab.play;
 import aabblab.progress;
@@ -203,7 +204,7 @@ void write_scene(const scene_request& request) {
             for (std::size_t done = 1; scene.next(boxes); ++done) shown.at(done);
         }
     }
-    const std::string size = fmt::format("{} objects, {} frames", scene.objects(), scene.frames());
+    const std::string size = counted(scene.objects(), "object") + ", " + counted(scene.frames(), "frame");
     if (request.out) print(fmt::format("wrote {}: {}\n", visible(*request.out), size));
     if (motion) {
         motion->commit();

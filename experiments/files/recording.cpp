@@ -116,7 +116,7 @@ std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& fil
         throw aabb::input_error(name + ": its header announces " + std::to_string(h.objects) + " objects and " +
                                 std::to_string(h.last_frame) + " frames; neither can be negative");
     if (!aabb::is_valid(unpacked(h.world)))
-        throw aabb::input_error(name + ": the world box in its header is not finite or inverted");
+        throw aabb::input_error(name + ": the world box in its header is inverted or not finite");
     // Counted in boxes: in bytes the announced size may not fit a number.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
     const std::uint64_t held = (size - sizeof(header)) / sizeof(box_record);

@@ -45,11 +45,13 @@ struct set_difference {
     }
 
     /// Says the first one; empty where there is none.
-    [[nodiscard]] std::string first() const {
+    [[nodiscard]] std::string first(const std::vector<T>& exact) const {
         if (missing.empty() && invented.empty()) return {};
         if (invented.empty() || (!missing.empty() && missing[0] < invented[0]))
             return text_of(missing[0]) + " is missing";
-        return text_of(invented[0]) + " is reported, but not once in the exact answer";
+        return text_of(invented[0]) + (std::ranges::binary_search(exact, invented[0])
+                                           ? " is reported more than once"
+                                           : " is reported, but is not in the exact answer");
     }
 
     std::vector<T> missing;
@@ -74,13 +76,13 @@ public:
         found_.add(player_.sorted_pairs(), player_.sorted_contacts());
         if (who_.whole_boxes) {
             const set_difference boxes(exact.pairs(), player_.sorted_pairs());
-            if (who_.exact_boxes) note(frame, boxes.first());
+            if (who_.exact_boxes) note(frame, boxes.first(exact.pairs()));
             boxes_missing_ += boxes.missing.size();
             boxes_invented_ += boxes.invented.size();
         }
         if (!scene_.meshes()) return;
         const set_difference contacts(exact.contacts(), player_.sorted_contacts());
-        if (who_.exact) note(frame, contacts.first());
+        if (who_.exact) note(frame, contacts.first(exact.contacts()));
         contacts_missing_ += contacts.missing.size();
         contacts_invented_ += contacts.invented.size();
         classify(contacts);

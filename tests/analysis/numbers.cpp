@@ -2,6 +2,7 @@
 
 import aabblab.numbers;
 
+using aabblab::counted;
 using aabblab::three_digits;
 
 TEST_CASE("Three digits are three, after a carry too") {
@@ -12,4 +13,10 @@ TEST_CASE("Three digits are three, after a carry too") {
     CHECK(three_digits(99.96) == "100");
     CHECK(three_digits(-9.996) == "-10.0");
     CHECK(three_digits(1234.5) == "1234");
+}
+
+TEST_CASE("One is one, all others are several") {
+    CHECK(counted(0, "frame") == "0 frames");
+    CHECK(counted(1, "frame") == "1 frame");
+    CHECK(counted(12345, "object") == "12,345 objects");
 }

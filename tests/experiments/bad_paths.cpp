@@ -204,6 +204,6 @@ TEST_CASE("What a terminal would obey is shown instead") {
                                  {"contacts", folder.write("\x1b.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"), mesh}};
     const program_result collided = run_program(printed[0]);
     CHECK(collided.out.find(shown + " (4 triangles) against") != std::string::npos);
-    CHECK(run_program(printed[2]).out.find("/\\x1b.txt: 1 objects") != std::string::npos);
+    CHECK(run_program(printed[2]).out.find("/\\x1b.txt: 1 object, ") != std::string::npos);
     require_refused(printed[1], shown);  // it would write over the mesh
 }

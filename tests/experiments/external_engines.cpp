@@ -80,7 +80,7 @@ TEST_CASE("An external engine is held against the exact answer and has the times
 TEST_CASE("What an external engine gets wrong is a failure, and counted where it says that it may") {
     const auto [fault, says] = GENERATE(table<std::string, std::string>({
         {"sed -i 2d \"$2\"\n", " is missing\n"},
-        {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is reported, but not once in the exact answer\n"},
+        {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is reported, but is not in the exact answer\n"},
         {"sed -i 1q \"$2\"\n", " is missing\n"},
     }));
     const temporary_folder folder;

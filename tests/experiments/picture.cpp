@@ -130,7 +130,8 @@ TEST_CASE("scene draws every kind, without a recording where none is wanted") {
     INFO(result.err);
     REQUIRE(result.status == 0);
     REQUIRE(folder.files() == 1);
-    REQUIRE(holds(result.out, "wrote " + file + ": " + objects + " objects, 3 frames\n"));
+    REQUIRE(holds(result.out,
+                  "wrote " + file + ": " + objects + (objects == "1" ? " object" : " objects") + ", 3 frames\n"));
     REQUIRE(holds(result.out, "mean displacement a frame: "));
     const std::string svg = bytes_of_file(file);
     for (const std::string& part : {">" + kind + "<", "objects=" + objects + " frames=2", std::string(" seed=9<")})

@@ -161,7 +161,7 @@ TEST_CASE("recordings that cannot be used are refused") {
              {header(-1, 0), "its header announces -1 objects and 0 frames; neither can be negative"},
              {header(1, -1), "its header announces 1 objects and -1 frames; neither can be negative"},
              {header(1, 0, box_bytes({0, 0, 0}, {nan, 1, 1})) + unit,
-              "the world box in its header is not finite or inverted"},
+              "the world box in its header is inverted or not finite"},
              {header(1, 1) + unit,
               "its header announces 2 boxes (1 objects, 1 + 1 frames), but the file has 32 bytes of them, 32 each"},
              {header(1, 0) + unit + "x",

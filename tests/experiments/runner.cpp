@@ -137,6 +137,8 @@ TEST_CASE("A composition that loses a pair or reports one twice is named, and ge
         INFO(failures[0]);
         REQUIRE(
             failures[0].starts_with("wrong is wrong on brownian (objects=200 frames=3 seed=1), frame 2: the pair "));
+        REQUIRE(
+            failures[0].ends_with(fault == wrong_search::fault::loses ? " is missing" : " is reported more than once"));
         REQUIRE(results.rows().size() == 6);
         for (const row& r : results.rows()) REQUIRE(r.name[aabb::strategy_kind::sort] != "wrong");
         const auto differences = aabblab::read_differences(folder / "r/differences.csv");

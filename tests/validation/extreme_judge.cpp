@@ -61,10 +61,11 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
     const judgement more = judged(judge, [](pair_list& pairs) { pairs.push_back({0, 7}); });
     CHECK(more.said == verdict::wrong);
     CHECK(more.invented == 3);
-    CHECK(more.reason == "frame 0: the pair 0 7 is reported, but not once in the exact answer");
+    CHECK(more.reason == "frame 0: the pair 0 7 is reported, but is not in the exact answer");
     const judgement twice = judged(judge, [](pair_list& pairs) { pairs.push_back(pairs[0]); });
     CHECK(twice.said == verdict::wrong);
     CHECK(twice.invented == 3);
+    CHECK(twice.reason == "frame 0: the pair 0 1 is reported more than once");
     const judgement refused = judged(judge, [](pair_list&) { refuse(); });
     CHECK(refused.said == verdict::refused);
     CHECK(refused.reason == "not today");

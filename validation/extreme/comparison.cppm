@@ -21,10 +21,12 @@ struct pair_comparison {
         std::ranges::sort(found);
         std::ranges::set_difference(exact, found, std::back_inserter(missing));
         std::ranges::set_difference(found, exact, std::back_inserter(invented));
+        repeated = !invented.empty() && std::ranges::binary_search(exact, invented[0]);
     }
 
     std::vector<index_pair> missing;
     std::vector<index_pair> invented;  ///< a pair that is reported again, too
+    bool repeated = false;             ///< the first of these is such a pair
 };
 
 /// Keeps the first thing that is wrong.
@@ -42,7 +44,8 @@ inline void add(judgement& made, const pair_comparison& found, const std::string
     if (!found.missing.empty()) make_wrong(made, where + ": the pair " + text_of(found.missing[0]) + " is missing");
     if (!found.invented.empty())
         make_wrong(made, where + ": the pair " + text_of(found.invented[0]) +
-                             " is reported, but not once in the exact answer");
+                             (found.repeated ? " is reported more than once"
+                                             : " is reported, but is not in the exact answer"));
 }
 
 /// Does the work of a query in the scene's arithmetic, and holds its sentence against what it must be refused with.

@@ -129,7 +129,7 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
 
 std::string heading_of(const scene_summary& scene) {
     std::string text =
-        fmt::format("{}: {} objects, {} frames\n", scene.scene.kind, grouped(scene.objects), scene.frames);
+        fmt::format("{}: {}, {}\n", scene.scene.kind, counted(scene.objects, "object"), counted(scene.frames, "frame"));
     std::string parameters = settings_text(scene.scene);
     if (scene.seeds.size() == 1) parameters += fmt::format("{}seed={}", parameters.empty() ? "" : " ", scene.seeds[0]);
     text += parameters + "\n";

@@ -17,6 +17,7 @@ module aabblab.picture;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.validation;
+import aabblab.numbers;
 import :panel;
 
 namespace aabblab {
@@ -120,8 +121,8 @@ std::vector<std::string> caption_lines(const survey& seen, const picture_caption
     std::vector<std::string> lines;
     add_wrapped(lines, caption.summary);
     add_wrapped(lines, caption.parameters);
-    lines.push_back(
-        fmt::format("{} objects, {} frames; {}", seen.first().boxes.size(), seen.frames(), displacement_text(seen)));
+    lines.push_back(fmt::format("{}, {}; {}", counted(seen.first().boxes.size(), "object"),
+                                counted(seen.frames(), "frame"), displacement_text(seen)));
     constexpr std::string_view names = "xyz";
     lines.push_back(fmt::format(
         "seen along {}: {} across, {} upwards{}{}", names[static_cast<std::size_t>(3 - view.across() - view.up())],

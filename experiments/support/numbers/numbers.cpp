@@ -6,6 +6,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 module aabblab.numbers;
 
@@ -15,6 +16,10 @@ std::string grouped(std::uint64_t n) {
     std::string digits = std::to_string(n);
     for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
     return digits;
+}
+
+std::string counted(std::uint64_t n, std::string_view what) {
+    return grouped(n) + " " + std::string(what) + (n == 1 ? "" : "s");
 }
 
 std::string three_digits(double value) {
