@@ -27,6 +27,7 @@ struct external_engine {
     std::string name;
     std::vector<std::string> command;  ///< as it is written; the names of three files are added
     std::string program;               ///< the first word of it, where it was found
+    std::string place;                 ///< where the command stands in the config, "FILE:LINE"
     bool exact = true;                 ///< a difference from the exact answer is a failure, not a measurement
 };
 

@@ -163,7 +163,7 @@ document::document(const std::string& text, std::string file, std::size_t most, 
 }
 
 void document::fail(int line, const std::string& sentence) const {
-    throw aabb::input_error(file_ + ":" + std::to_string(line) + ": " + sentence);
+    throw aabb::input_error(place(line) + ": " + sentence);
 }
 
 void document::fail_type(const std::string& key, const node& value, std::string_view expected) const {

@@ -53,6 +53,8 @@ public:
     /// Of the config.
     [[nodiscard]] std::filesystem::path folder() const { return std::filesystem::path(file_).parent_path(); }
 
+    /// "FILE:LINE"
+    [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
     [[noreturn]] void fail(int line, const std::string& sentence) const;
     /// "KEY is a number; expected WHAT".
     [[noreturn]] void fail_type(const std::string& key, const node& value, std::string_view expected) const;

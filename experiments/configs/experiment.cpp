@@ -75,7 +75,10 @@ std::vector<std::string> engines_of(const document& doc) {
 /// A program as it is named, or, as files are, from the folder of the config. One without a slash is looked for in
 /// PATH.
 std::string found_program(const document& doc, const std::string& name) {
-    return name.find('/') == std::string::npos ? name : found_file(name, doc.folder()).string();
+    if (name.find('/') == std::string::npos) return name;
+    const std::filesystem::path found = found_file(name, doc.folder());
+    if (std::filesystem::is_directory(found)) throw aabb::input_error(name + " is a folder; expected a program");
+    return found.string();
 }
 
 external_engine external_of(const document& doc, const node& table) {
@@ -95,6 +98,7 @@ external_engine external_of(const document& doc, const node& table) {
     if (engine.command.empty() || engine.command[0].empty())
         doc.fail(command->line, "the command of '" + engine.name + "' is empty; expected a program");
     doc.at(command->line, [&] { engine.program = found_program(doc, engine.command[0]); });
+    engine.place = doc.place(command->line);
     if (const node* exact = table.find("exact")) {
         if (exact->kind != node_kind::boolean) doc.fail_type("exact", *exact, "true or false");
         engine.exact = exact->text == "true";

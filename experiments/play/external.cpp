@@ -3,6 +3,7 @@ module;
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -33,9 +34,15 @@ import aabblab.scenes;
 
 namespace aabblab {
 
-exchange_folder::~exchange_folder() {
-    std::error_code ignored;
-    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+namespace {
+
+/// What is quoted of a row that may be of any length.
+constexpr std::size_t longest_quote = 60;
+
+}  // namespace
+
+std::string exchange_folder::scene_text() const {
+    return scene_.kind + " (" + parameters_text(scene_) + ")";
 }
 
 const std::filesystem::path& exchange_folder::recording() {
@@ -45,11 +52,11 @@ const std::filesystem::path& exchange_folder::recording() {
     if (error || !mkdtemp(name.data()))
         throw aabb::input_error(
             "external engines cannot be given a scene: there is no folder for temporary files (TMPDIR)");
-    folder_ = name;
+    guard_.emplace(name);
     const auto scene = make_box_scene(scene_);
     objects_ = scene->objects();
     frames_ = scene->frames();
-    const std::filesystem::path file = folder_ / "scene.aabbs";
+    const std::filesystem::path file = std::filesystem::path(name) / "scene.aabbs";
     write_recording(*scene, scene_.kind, parameters_text(scene_), file, {});
     return recording_ = file;
 }
@@ -57,6 +64,7 @@ const std::filesystem::path& exchange_folder::recording() {
 answer_table::answer_table(std::string what, const std::filesystem::path& file, std::string columns)
     : what_(std::move(what)), columns_(std::move(columns)), in_(file) {
     if (!in_) throw aabb::input_error(what_ + " are not there: it wrote no such file");
+    if (std::filesystem::is_directory(file)) throw aabb::input_error(what_ + " are a folder; expected a file");
     if (!next() && line_ == 0) throw aabb::input_error(what_ + " are an empty file; expected the line " + columns_);
     if (text_ != columns_) fail("expected the line " + columns_);
 }
@@ -95,15 +103,27 @@ double answer_table::milliseconds(std::size_t column) const {
 }
 
 void answer_table::fail(const std::string& sentence) const {
-    throw aabb::input_error(what_ + ", line " + std::to_string(line_) + ": " + sentence);
+    const std::string row = text_.size() > longest_quote ? text_.substr(0, longest_quote) + "…" : text_;
+    throw aabb::input_error(what_ + ", line " + std::to_string(line_) + ", '" + row + "': " + sentence);
 }
 
 external_search::external_search(const external_engine& who, exchange_folder& exchange, std::vector<told_times>& told)
-    : name_("external engine '" + who.name + "'") {
-    run(who, exchange);
-    read_times(told);
-    table_.emplace("the pairs of the " + name_, pairs_file_, "frame,a,b");
-    read_ahead();
+    : place_(who.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + who.name + "'") {
+    in_place([&] {
+        run(who, exchange);
+        read_times(told);
+        table_.emplace("the pairs of the " + name_, pairs_file_, "frame,a,b");
+        read_ahead();
+    });
+}
+
+template <class Work>
+void external_search::in_place(Work work) const {
+    try {
+        work();
+    } catch (const aabb::input_error& error) {
+        throw aabb::input_error(place_ + error.what());
+    }
 }
 
 void external_search::run(const external_engine& who, exchange_folder& exchange) {
@@ -116,7 +136,12 @@ void external_search::run(const external_engine& who, exchange_folder& exchange)
     for (const std::filesystem::path& file : {pairs_file_, times_file_}) std::filesystem::remove(file);
     std::vector<std::string> arguments(who.command.begin() + 1, who.command.end());
     for (const std::filesystem::path& file : {recording, pairs_file_, times_file_}) arguments.push_back(file.string());
-    const child_result ended = run_child(who.program, arguments, {});
+    // In a group that is not the terminal's it must not wait for what is typed there.
+    const child_result ended = run_child(who.program, arguments,
+                                         {.folder = {}, .input = "/dev/null", .errors = {}, .group = exchange.group()});
+    if (ended.refused == ENOENT && who.program.find('/') == std::string::npos)
+        throw aabb::input_error("the " + name_ + ": there is no program " + who.program + " in PATH; write ./" +
+                                who.program + " for one in the folder of the config");
     if (ended.refused != 0)
         throw aabb::input_error("the " + name_ + ": " + who.program +
                                 " cannot be started: " + std::strerror(ended.refused));
@@ -133,6 +158,8 @@ void external_search::read_times(std::vector<told_times>& told) const {
         if (table.number(0, "a frame", frames_) != told.size())
             table.fail("expected frame " + std::to_string(told.size()) + "; each stands once, in order");
         told.push_back({table.milliseconds(1), table.milliseconds(2)});
+        // No ratio can be formed with it, and nothing takes no time.
+        if (told.back().update_ms + told.back().search_ms == 0) table.fail("expected more than 0 ms, the two together");
     }
     if (told.size() < frames_)
         throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(told.size()));
@@ -149,6 +176,10 @@ void external_search::read_ahead() {
 }
 
 void external_search::update(std::span<const aabb::box>) {
+    in_place([this] { take_frame(); });
+}
+
+void external_search::take_frame() {
     pairs_.clear();
     for (; ahead_ && ahead_->frame <= frame_; read_ahead()) {
         if (ahead_->frame < frame_) table_->fail("frames do not stand in order");

@@ -18,28 +18,34 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.pipeline;
 import aabblab.configs;
+import aabblab.processes;
 import aabblab.scenes;
 import :player;
 
 namespace aabblab {
 
 /// A folder in which the external engines of a scene find its recording and leave their answers; made when it is first
-/// asked for, and gone with this.
+/// asked for, and gone with this, as are the engines.
 class exchange_folder {
 public:
     explicit exchange_folder(scene_choice scene) : scene_(std::move(scene)) {}
     exchange_folder(const exchange_folder&) = delete;
     exchange_folder& operator=(const exchange_folder&) = delete;
-    ~exchange_folder();
+    ~exchange_folder() = default;
 
+    /// "brownian (objects=1000 seed=1)"
+    [[nodiscard]] std::string scene_text() const;
     /// The scene from its first frame to its last.
     [[nodiscard]] const std::filesystem::path& recording();
     [[nodiscard]] std::size_t objects() const { return objects_; }
     [[nodiscard]] std::size_t frames() const { return frames_; }
+    /// Of processes, which they join.
+    [[nodiscard]] int group() const { return guard_ ? guard_->group() : 0; }
 
 private:
     scene_choice scene_;
-    std::filesystem::path folder_, recording_;
+    std::optional<folder_guard> guard_;
+    std::filesystem::path recording_;
     std::size_t objects_ = 0, frames_ = 0;
 };
 
@@ -56,7 +62,7 @@ public:
     /// A number below `end`.
     [[nodiscard]] std::uint32_t number(std::size_t column, std::string_view of, std::size_t end) const;
     [[nodiscard]] double milliseconds(std::size_t column) const;
-    /// Of the row, with its line.
+    /// Of the row, with its line and what stands there.
     [[noreturn]] void fail(const std::string& sentence) const;
 
 private:
@@ -66,7 +72,8 @@ private:
     std::vector<std::string_view> fields_;  // of text_
 };
 
-/// What such a program found, in place of a search: it has played the whole scene when this is made.
+/// What such a program found, in place of a search: it has played the whole scene when this is made. Its errors begin
+/// with the place in the config and the scene.
 class external_search final : public aabb::global_stage {
 public:
     /// Runs the program.
@@ -92,8 +99,12 @@ private:
     void run(const external_engine& who, exchange_folder& exchange);
     void read_times(std::vector<told_times>& told) const;
     void read_ahead();
+    void take_frame();
+    /// Does what may fail.
+    template <class Work>
+    void in_place(Work work) const;
 
-    std::string name_;
+    std::string place_, name_;
     std::filesystem::path pairs_file_, times_file_;
     std::size_t objects_ = 0, frames_ = 0;
     std::optional<answer_table> table_;

@@ -1,10 +1,18 @@
 // Programs of others that join an experiment by the pairs and the times that they write.
 #include "program.hpp"
 
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
+#include <csignal>
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +51,34 @@ std::string refusal_of(const std::string& text) {
         return error.what();
     }
     return "accepted";
+}
+
+/// Its process.
+pid_t started(std::vector<std::string> arguments) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    REQUIRE(posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ) == 0);
+    return child;
+}
+
+/// Whether a process is gone, or waits for nothing but to be asked how it ended.
+bool has_ended(pid_t process) {
+    std::ifstream in("/proc/" + std::to_string(process) + "/stat");
+    std::string text;
+    std::getline(in, text);
+    const std::size_t name_end = text.rfind(')');
+    return name_end == std::string::npos || text[name_end + 2] == 'Z';
+}
+
+/// Within half a minute.
+bool comes_true(const std::function<bool()>& what) {
+    for (int attempt = 0; attempt < 3000; ++attempt) {
+        if (what()) return true;
+        usleep(10'000);
+    }
+    return false;
 }
 
 }  // namespace
@@ -107,31 +143,40 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
         {"rm \"$3\"\n", "the times of the external engine 'mine' are not there: it wrote no such file"},
         {": >\"$2\"\n", "the pairs of the external engine 'mine' are an empty file; expected the line frame,a,b"},
         {"sed -i 1d \"$3\"\n",
-         "the times of the external engine 'mine', line 1: expected the line frame,update_ms,search_ms"},
-        {"sed -i '2s/$/,7/' \"$2\"\n", "the pairs of the external engine 'mine', line 2: expected frame,a,b"},
-        {"sed -i '2s/.*/0,4/' \"$2\"\n", "the pairs of the external engine 'mine', line 2: expected frame,a,b"},
-        {"sed -i '2s/.*//' \"$2\"\n", "the pairs of the external engine 'mine', line 2: expected frame,a,b"},
+         "the times of the external engine 'mine', line 1, '0,0.5,1.25': expected the line frame,update_ms,search_ms"},
+        {"rm \"$2\"; mkdir \"$2\"\n", "the pairs of the external engine 'mine' are a folder; expected a file"},
+        {"sed -i '2s/.*/0,1,2,7/' \"$2\"\n",
+         "the pairs of the external engine 'mine', line 2, '0,1,2,7': expected frame,a,b"},
+        {"sed -i \"2s/.*/$(printf %070d 7)/\" \"$2\"\n",
+         "the pairs of the external engine 'mine', line 2, '" + std::string(60, '0') + "…': expected frame,a,b"},
+        {"sed -i '2s/.*/0,4/' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '0,4': expected frame,a,b"},
+        {"sed -i '2s/.*//' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '': expected frame,a,b"},
         {"sed -i '2s/.*/0,1,x/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2: expected an object below 150"},
+         "the pairs of the external engine 'mine', line 2, '0,1,x': expected an object below 150"},
         {"sed -i '2s/.*/0,-1,2/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2: expected an object below 150"},
+         "the pairs of the external engine 'mine', line 2, '0,-1,2': expected an object below 150"},
         {"sed -i '2s/.*/0,1,150/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2: expected an object below 150"},
+         "the pairs of the external engine 'mine', line 2, '0,1,150': expected an object below 150"},
         {"echo 4,1,2 >>\"$2\"\n", ": expected a frame below 4"},
         {"sed -i '2s/.*/0,7,7/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2: object 7 is paired with itself"},
+         "the pairs of the external engine 'mine', line 2, '0,7,7': object 7 is paired with itself"},
         {"echo 0,1,2 >>\"$2\"\n", ": frames do not stand in order"},
         {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", "the pairs of the external engine 'mine' have 5 6 twice in frame 0"},
         {"sed -i '$d' \"$3\"\n", "the times of the external engine 'mine' end before frame 3"},
         {"sed -i '3s/.*/2,1,1/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3: expected frame 1; each stands once, in order"},
+         "the times of the external engine 'mine', line 3, '2,1,1': expected frame 1; each stands once, in order"},
         {"sed -i '3s/.*/1,-1,1/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3: expected a time in milliseconds, finite and not negative"},
+         "the times of the external engine 'mine', line 3, '1,-1,1': expected a time in milliseconds, finite and not "
+         "negative"},
         {"sed -i '3s/.*/1,nan,1/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3: expected a time in milliseconds, finite and not negative"},
+         "the times of the external engine 'mine', line 3, '1,nan,1': expected a time in milliseconds, finite and not "
+         "negative"},
         {"sed -i '3s/.*/1,1,2ms/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3: expected a time in milliseconds, finite and not negative"},
-        {"echo 4,1,1 >>\"$3\"\n", "the times of the external engine 'mine', line 6: expected a frame below 4"},
+         "the times of the external engine 'mine', line 3, '1,1,2ms': expected a time in milliseconds, finite and not "
+         "negative"},
+        {"sed -i '3s/.*/1,0,0/' \"$3\"\n",
+         "the times of the external engine 'mine', line 3, '1,0,0': expected more than 0 ms, the two together"},
+        {"echo 4,1,1 >>\"$3\"\n", "the times of the external engine 'mine', line 6, '4,1,1': expected a frame below 4"},
     }));
     CAPTURE(fault);
     const temporary_folder folder;
@@ -140,7 +185,51 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
     CAPTURE(result.err);
     REQUIRE(result.status == 2);
     REQUIRE(is_one_sentence(result.err));
+    REQUIRE(result.err.starts_with("aabblab: " + (folder / "joined.toml").string() +
+                                   ":4: brownian (objects=150 frames=3 seed=1): "));
     REQUIRE(result.err.find(says + "\n") != std::string::npos);
+}
+
+TEST_CASE("An external engine may tell its time in one of the two columns") {
+    const temporary_folder folder;
+    const std::string columns = GENERATE("0,1.25", "0.5,0");
+    CAPTURE(columns);
+    REQUIRE(run_with(folder, good + "sed -i '2,$s/0.5,1.25/" + columns + "/' \"$3\"\n").status == 0);
+}
+
+TEST_CASE("An interrupted run leaves neither its external engine nor what was exchanged") {
+    const auto [ended_by, processes] = GENERATE(table<int, std::string>({
+        {SIGTERM, "1"},
+        {SIGINT, "1"},
+        {SIGKILL, "1"},
+        {SIGTERM, "2"},
+    }));
+    CAPTURE(ended_by, processes);
+    const temporary_folder folder;
+    const auto exchanged = folder / "tmp";
+    std::filesystem::create_directory(exchanged);
+    // What it started itself has to end too.
+    std::filesystem::permissions(folder.write("mine",
+                                              "#!/bin/sh\nsleep 1000 &\ncd \"${0%/*}\"\necho $$ $! >began.part\n"
+                                              "mv began.part began\nwait\n"),
+                                 std::filesystem::perms::owner_all);
+    const auto config = folder.write("joined.toml", config_of("brownian", "") + "processes = " + processes + "\n");
+    const pid_t program =
+        started({"sh", "-c", "exec \"$0\" \"$@\" >/dev/null 2>&1", "env", "TMPDIR=" + exchanged.string(),
+                 AABBLAB_UNDER_TEST, "run", config.string(), "--out", (folder / "out").string()});
+    const bool began = comes_true([&] { return std::filesystem::exists(folder / "began"); });
+    const bool was_there = !std::filesystem::is_empty(exchanged);
+    kill(program, ended_by);
+    waitpid(program, nullptr, 0);
+    REQUIRE(began);
+    REQUIRE(was_there);
+    pid_t engine = 0;
+    pid_t of_engine = 0;
+    std::ifstream(folder / "began") >> engine >> of_engine;
+    REQUIRE(of_engine > 0);
+    CHECK(comes_true([&] { return has_ended(engine); }));
+    CHECK(comes_true([&] { return has_ended(of_engine); }));
+    CHECK(comes_true([&] { return std::filesystem::is_empty(exchanged); }));
 }
 
 TEST_CASE("An external engine that cannot be started gets one sentence and status 2") {
@@ -151,7 +240,17 @@ TEST_CASE("An external engine that cannot be started gets one sentence and statu
     CAPTURE(refused.err);
     REQUIRE(refused.status == 2);
     REQUIRE(is_one_sentence(refused.err));
+    REQUIRE(refused.err.starts_with("aabblab: " + config.string() + ":4: brownian ("));
     REQUIRE(refused.err.find("mine cannot be started: Permission denied\n") != std::string::npos);
+    const auto bare = folder.write("bare.toml",
+                                   "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = \"no_such_program\"\n"
+                                   "[[scene]]\nkind = \"brownian\"\nobjects = 5\n");
+    const program_result unknown = run_program({"run", bare.string(), "--out", (folder / "bare").string()});
+    CAPTURE(unknown.err);
+    REQUIRE(unknown.status == 2);
+    REQUIRE(is_one_sentence(unknown.err));
+    REQUIRE(unknown.err.find("the external engine 'mine': there is no program no_such_program in PATH; write "
+                             "./no_such_program for one in the folder of the config\n") != std::string::npos);
 }
 
 TEST_CASE("An external engine has no part in scenes of meshes") {
@@ -182,6 +281,7 @@ TEST_CASE("External engines in a config are checked, and are part of its hash") 
         {"[[external]]\nname = \"a\"\ncommand = []\n", ":4: the command of 'a' is empty; expected a program"},
         {"[[external]]\nname = \"a\"\ncommand = \"\"\n", ":4: the command of 'a' is empty; expected a program"},
         {"[[external]]\nname = \"a\"\ncommand = \"./no/such\"\n", ":4: ./no/such: no such file"},
+        {"[[external]]\nname = \"a\"\ncommand = \"/usr/\"\n", ":4: /usr/ is a folder; expected a program"},
         {"[[external]]\nname = \"a\"\ncommand = \"ls\"\nexact = 1\n", ":5: exact is a number; expected true or false"},
         {"[[external]]\nname = \"a\"\ncomand = \"ls\"\n", "did you mean 'command'?"},
         {"[[external]]\nname = \"a\"\ncommand = \"ls\"\n[[external]]\nname = \"a\"\ncommand = \"ls\"\n",

@@ -9,7 +9,9 @@ module;
 #include <csignal>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -47,6 +49,7 @@ struct pipe_ends {
 void become(char* const* arguments, const surroundings& where, int output, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(127);  // it ended before that
+    if (where.group != 0) setpgid(0, where.group);
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(where.input.c_str(), O_RDONLY, STDIN_FILENO) ||
         !redirect(where.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
         (!where.folder.empty() && chdir(where.folder.c_str()) != 0))
@@ -54,6 +57,20 @@ void become(char* const* arguments, const surroundings& where, int output, pid_t
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGPIPE, SIG_DFL);
     execvp(*arguments, arguments);
+}
+
+/// Ends when its standard input does. TERM, which it ignores, ends those of its group who might still write; in the end
+/// it kills all of them, and itself.
+constexpr const char* guard_script =
+    "trap '' HUP INT TERM; read -r end; kill -s TERM 0; rm -rf -- \"$1\"; kill -s KILL 0";
+
+/// As `become`. Nobody who reads our output waits for it.
+[[noreturn]] void become_guard(int input, const char* folder) {
+    setpgid(0, 0);
+    if (dup2(input, STDIN_FILENO) >= 0 && redirect("/dev/null", O_WRONLY, STDOUT_FILENO) &&
+        redirect("/dev/null", O_WRONLY, STDERR_FILENO))
+        execl("/bin/sh", "sh", "-c", guard_script, "sh", folder, nullptr);
+    _exit(127);
 }
 
 std::string read_all(int input) {
@@ -97,6 +114,25 @@ child_result run_child(const std::string& program, const std::vector<std::string
     result.printed = read_all(output.ends[0]);
     while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
     return result;
+}
+
+folder_guard::folder_guard(std::filesystem::path folder) : folder_(std::move(folder)) {
+    pipe_ends life;
+    if (!life.open()) return;
+    const pid_t guard = fork();
+    if (guard < 0) return;
+    if (guard == 0) become_guard(life.ends[0], folder_.c_str());
+    // Whoever of the two is first: the group is there when this returns.
+    setpgid(guard, guard);
+    guard_ = guard;
+    held_ = std::exchange(life.ends[1], -1);
+}
+
+folder_guard::~folder_guard() {
+    if (held_ >= 0) close(held_);
+    while (guard_ != 0 && waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) continue;
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
 }
 
 }  // namespace aabblab
