@@ -15,10 +15,12 @@ module;
 module aabblab.configs;
 
 import :document;
+import aabb.base;
 import aabb.digest;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.registry;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -155,14 +157,49 @@ struct written_scene {
     scene_choice choice;
     const scene_info* info;
     int line;
+    int file_line = 0;  ///< of the name of the file that it plays
 };
+
+/// The first line that names a strategy; 0 where none does.
+int line_naming(const node& in, const std::string& strategy) {
+    if (in.kind == node_kind::text && in.text.substr(0, in.text.find(':')) == strategy) return in.line;
+    for (const node& item : in.items)
+        if (const int line = line_naming(item, strategy); line > 0) return line;
+    return 0;
+}
 
 /// Refuses a composition that has no use for a scene of boxes.
 void require_playable(const document& doc, const written_scene& scene, const experiment& e) {
     if (scene.info->has_meshes) return;
+    const node* compose = doc.root().find("compose");
     for (const aabb::composition& c : e.compositions)
-        if (const std::string reason = needs_meshes(c); !reason.empty())
-            doc.fail(scene.line, scene.choice.kind + ": " + reason);
+        for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+            const auto strategy = std::ranges::find(aabb::strategies(kind), c[kind].name, &aabb::strategy_info::name);
+            if (strategy->needs_meshes.empty()) continue;
+            const int line = compose ? line_naming(*compose, strategy->name) : 0;
+            doc.fail(line > 0 ? line : scene.line, scene.choice.kind + ": " + strategy->needs_meshes);
+        }
+}
+
+/// Where the file that a scene plays is named; 0 where none is.
+int line_of_file(const scene_choice& choice, const std::vector<alternatives>& keys) {
+    const auto file = std::ranges::find(choice.settings, "file", &aabb::setting::name);
+    const auto key = std::ranges::find(keys, "file", &alternatives::first);
+    if (file == choice.settings.end() || key == keys.end()) return 0;
+    return std::ranges::find(key->second, file->value, &located_text::text)->line;
+}
+
+/// Makes the scene once. What is wrong with the file that it plays begins with the file's name.
+void add_content(const document& doc, const written_scene& scene, aabb::digest& digest) {
+    try {
+        add_content(digest, scene.choice, *scene.info);
+    } catch (const aabb::input_error& error) {
+        const std::string sentence = error.what();
+        const auto file = std::ranges::find(scene.choice.settings, "file", &aabb::setting::name);
+        const bool of_file = scene.info->plays_file && scene.file_line > 0 && !file->value.empty() &&
+                             sentence.starts_with(found_file(file->value, doc.folder()).string());
+        doc.fail(of_file ? scene.file_line : scene.line, sentence);
+    }
 }
 
 void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size,
@@ -188,10 +225,10 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         doc.require_few(written.line, "scenes", factors, scenes.all().size());
         for (const std::vector<aabb::setting>& settings : multiplied(keys))
             for (const std::optional<std::uint64_t> one : seeds) {
-                const scene_choice choice{kind.text, settings, meshes, one, doc.folder()};
-                const std::string text = choice.kind + " " + parameters_text(choice);
-                if (!scenes.add({choice, &info, written.line}, text))
-                    doc.fail(written.line, "this scene is listed twice: " + text);
+                written_scene made{{kind.text, settings, meshes, one, doc.folder()}, &info, written.line};
+                made.file_line = line_of_file(made.choice, keys);
+                const std::string text = made.choice.kind + " " + parameters_text(made.choice);
+                if (!scenes.add(made, text)) doc.fail(written.line, "this scene is listed twice: " + text);
             }
     }
 }
@@ -221,10 +258,9 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
                                                      : "every scene of this config is left out by quick = false");
     aabb::digest content;
     for (const written_scene& scene : written.all()) {
-        const auto& [choice, info, line] = scene;
         require_playable(doc, scene, e);
-        doc.at(line, [&] { add_content(content, choice, *info); });
-        e.scenes.push_back(choice);
+        add_content(doc, scene, content);
+        e.scenes.push_back(scene.choice);
     }
     e.content_digest = content.text();
 }

@@ -97,6 +97,10 @@ TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in 
     const std::string splits = "[compose]\nprepare = [\"none\", \"split_mesh\"]\n";
     REQUIRE(refusal_of(minimal + splits)
                 .ends_with("split_mesh divides meshes, and there are only boxes here; split_large divides boxes"));
+    // With the line that asks for it.
+    REQUIRE(refusal_of(minimal + splits).find(":6: brownian: split_mesh divides") != std::string::npos);
+    REQUIRE(refusal_of(minimal + "[[compose]]\nsort = \"std\"\n[[compose]]\nprepare = { name = \"split_mesh\" }\n")
+                .find(":8: brownian: split_mesh divides") != std::string::npos);
     const experiment e = parsed("name = \"x\"\n[[scene]]\nkind = \"mesh_swarm\"\nmeshes = [\"icosphere\"]\n" + splits);
     REQUIRE(e.compositions.size() == 2);
 }

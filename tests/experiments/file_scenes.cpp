@@ -187,7 +187,9 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN, in the last box
     const std::string bad = folder.write("bad.aabbs", bytes);
     CHECK(refusal_of(recording_config("file = " + in_toml(bad) + "\n")) ==
-          "test.toml:3: " + bad + ": frame 3: box 59 has a coordinate that is not finite");
+          "test.toml:5: " + bad + ": frame 3: box 59 has a coordinate that is not finite");
+    CHECK(refusal_of(recording_config("file = [\n" + in_toml(file) + ",\n" + in_toml(bad) + "]\n"))
+              .starts_with("test.toml:7: " + bad + ": frame 3: "));
     const auto motion = [&](const std::string& poses, const std::string& meshes) {
         const std::string motion_file = folder.write("m.txt", poses);
         return refusal_of("name = \"c\"\n[[scene]]\nkind = \"motion\"\nfile = " + in_toml(motion_file) + "\n" + meshes);
@@ -196,6 +198,7 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     CHECK(motion(still, "") == "test.toml:2: motion needs at least one mesh");
     CHECK(motion("x", "meshes = [\"icosphere\"]\n").find("m.txt:1: expected the number of a frame") !=
           std::string::npos);
+    CHECK(motion("x", "meshes = [\"icosphere\"]\n").starts_with("test.toml:4: " + folder.path().string()));
     CHECK(motion(still, "meshes = [\"icosphere\", \"icosphere\"]\n").find("moves 1 objects, but there are 2 meshes") !=
           std::string::npos);
     CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
