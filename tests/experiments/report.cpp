@@ -141,8 +141,24 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     const auto scene = aabblab::summarise(std::vector<row>{counted, engine, again})[0];
     REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene)) ==
             "#,composition,comparisons,subset copies,copies an object,KiB projections\n"
-            "1,this composition,100,22.5,2.250,4.0\n");
+            "1,std + one_axis,100,22.5,2.250,4.0\n");
     REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0]).columns.empty());
+}
+
+TEST_CASE("A composition that is the only one is named, above the table where its name is long") {
+    row engine = repeat_of("", 0, 1);
+    engine.name = {};
+    engine.name.engine = "cgal";
+    for (const auto& [sort, shown] : {std::pair("std", "std + one_axis"),
+                                      std::pair("shell:gaps=ciura,and=what_more_there_is", "this composition")}) {
+        const auto scene = aabblab::summarise(std::vector<row>{repeat_of(sort, 0, 2), engine})[0];
+        CHECK(column_of(aabblab::table_of(scene), "composition") == texts{"cgal", shown});
+        const std::string heading = aabblab::heading_of(scene);
+        INFO(heading);
+        CHECK(heading.find("\nthis composition: sort " + std::string(sort) + ", sweep one_axis\n") !=
+              std::string::npos);
+        CHECK(heading.find("ratio to " + std::string(shown) + "\n") != std::string::npos);
+    }
 }
 
 TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those without times") {

@@ -38,9 +38,18 @@ std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> diff
         for (const aabb::strategy_kind kind : differing) cells.push_back(name[kind]);
     else
         cells.push_back(name.engine);
-    if (cells.size() == 1) cells.emplace_back("this composition");
+    if (cells.size() == 1) cells.push_back(only_name_of(name));
     cells.resize(1 + std::max<std::size_t>(differing.size(), 1));
     return cells;
+}
+
+std::string only_name_of(const contender_name& name) {
+    constexpr std::size_t most = 32;  // beside all columns of numbers, in a line of 80
+    std::string text;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string one = text_in_line(kind, name[kind]); !one.empty())
+            text += (text.empty() ? "" : " + ") + one;
+    return text.empty() || text_width(text) > most ? "this composition" : text;
 }
 
 }  // namespace aabblab

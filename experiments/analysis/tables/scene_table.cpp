@@ -135,7 +135,8 @@ std::string heading_of(const scene_summary& scene) {
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
-    if (!scene.common.empty()) text += "all compositions: " + scene.common + "\n";
+    if (!scene.common.empty())
+        text += (scene.differing.empty() ? "this composition: " : "all compositions: ") + scene.common + "\n";
     std::string same;
     for (const shared_column& one : shared_columns(ranking_of(scene)))
         if (one.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(one.above), one.cells[0]);

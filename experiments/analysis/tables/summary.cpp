@@ -132,7 +132,7 @@ void set_labels(scene_summary& scene) {
         for (const aabb::strategy_kind kind : scene.differing)
             if (const std::string value = text_in_line(kind, line.name[kind]); !value.empty())
                 line.label += (line.label.empty() ? "" : " + ") + value;
-        if (line.label.empty()) line.label = "this composition";
+        if (line.label.empty()) line.label = only_name_of(line.name);
     }
 }
 

@@ -129,5 +129,7 @@ namespace aabblab {
 [[nodiscard]] std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing);
 [[nodiscard]] std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing,
                                                      const contender_name& name, std::size_t rank);
+/// Of a composition that is the only one: all its strategies, or "this composition" where a table has no room for them.
+[[nodiscard]] std::string only_name_of(const contender_name& name);
 
 }  // namespace aabblab
