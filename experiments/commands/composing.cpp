@@ -54,6 +54,7 @@ void stage_options::add_to(CLI::App& command) {
                             "), as in NAME:parameter=value")
             ->type_name("S");
     }
+    command.footer("aabblab list has every strategy with its parameters.");
 }
 
 bool stage_options::any() const {

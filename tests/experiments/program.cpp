@@ -34,6 +34,8 @@ TEST_CASE("The program prints its version and its help") {
          {"pairs", "collide", "contacts", "classify", "scene", "list", "run", "test", "data", "benchmark"})
         REQUIRE(help.out.find(std::string("\n  ") + command + " ") != std::string::npos);
     REQUIRE(run_program({"pairs", "--help"}).out.find("--sweep") != std::string::npos);
+    for (const char* command : {"pairs", "collide", "contacts"})
+        REQUIRE(run_program({command, "--help"}).out.find("aabblab list has every strategy") != std::string::npos);
 }
 
 TEST_CASE("A command line that is wrong gets one sentence and status 2") {
