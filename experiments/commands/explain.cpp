@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -44,11 +45,13 @@ std::string left_out_by(aabb::strategy_kind kind, const std::string& choice) {
     return found == aabb::strategies(kind).end() ? "" : found->leaves_out;
 }
 
-/// Two frames, so that buffers have grown and what is kept between frames is there.
+/// So that buffers have grown and what is kept between frames is there.
+constexpr std::size_t explained_frames = 2;
+
 void explain_contender(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
     player p(who, scene, aabb::instrumentation::none);
-    play(scene, p, [](const played_frame&) {}, 2);
+    play(scene, p, [](const played_frame&) {}, explained_frames);
     const contender_name& name = who.name;
     print("  " + text_of(name) + "\n");
     print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
@@ -81,6 +84,10 @@ void explain(const std::string& config) {
     const experiment e = open_experiment(config, false);
     for (const scene_choice& scene : e.scenes) {
         print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n");
+        if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
+            print(fmt::format(
+                "  bytes are those after {} of {} frames; run tells those after the last, which may be more\n",
+                explained_frames, frames));
         explain_unused(e, scene);
         for (const contender& who : contenders_for(e, scene)) explain_contender(scene, who);
         print("\n");

@@ -112,6 +112,8 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
     const program_result explained = run_program({"explain", config});
     CHECK(explained.status == 0);
     CHECK(explained.out.find("motion (file=" + motion) != std::string::npos);
+    CHECK(explained.out.find("\n  bytes are those after 2 of 4 frames; run tells those after the last, which may be "
+                             "more\n") != std::string::npos);
     const auto manifest = nlohmann::json::parse(bytes_of_file(folder / "out/manifest.json"));
     for (const auto& scene : manifest["scenes"]) {
         const auto& parameters = scene["parameters"];
@@ -196,9 +198,9 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     };
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
     CHECK(motion(still, "") == "test.toml:2: motion needs at least one mesh");
+    CHECK(motion("x", "meshes = [\"icosphere\"]\n").starts_with("test.toml:4: " + folder.path().string()));
     CHECK(motion("x", "meshes = [\"icosphere\"]\n").find("m.txt:1: expected the number of a frame") !=
           std::string::npos);
-    CHECK(motion("x", "meshes = [\"icosphere\"]\n").starts_with("test.toml:4: " + folder.path().string()));
     CHECK(motion(still, "meshes = [\"icosphere\", \"icosphere\"]\n").find("moves 1 objects, but there are 2 meshes") !=
           std::string::npos);
     CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
