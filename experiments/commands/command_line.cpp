@@ -28,6 +28,19 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
+/// How a parameter of a strategy that the command takes is given; empty where none has one of this name.
+std::string option_with(const std::string& parameter, const std::vector<std::string>& options) {
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        const std::string option = "--" + std::string(name_of(kind));
+        if (std::ranges::find(options, option) == options.end()) continue;
+        for (const aabb::strategy_info& strategy : aabb::strategies(kind))
+            if (std::ranges::find(strategy.parameters, parameter, &aabb::parameter_info::name) !=
+                strategy.parameters.end())
+                return option + " " + strategy.name + ":" + parameter + "=…";
+    }
+    return {};
+}
+
 std::string unknown_option(const CLI::App& command, const std::string& argument) {
     std::string name = argument.substr(0, argument.find('='));
     name.erase(0, name.find_first_not_of('-'));
@@ -35,7 +48,10 @@ std::string unknown_option(const CLI::App& command, const std::string& argument)
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (const auto names = aabb::strategy_names(kind); std::ranges::find(names, name) != names.end())
             return "'" + name + "' is a strategy; write --" + std::string(name_of(kind)) + " " + name;
-    return aabb::unknown_name("option", argument.substr(0, argument.find('=')), option_names(command));
+    const std::vector<std::string> options = option_names(command);
+    if (const std::string option = option_with(name, options); !option.empty())
+        return "'" + name + "' is a parameter of a strategy, as in " + option;
+    return aabb::unknown_name("option", argument.substr(0, argument.find('=')), options);
 }
 
 /// "validate extreme"

@@ -1,6 +1,5 @@
 module;
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -29,22 +28,36 @@ export namespace aabb {
     return above[b.size()];
 }
 
-/// The known name closest to an unknown one; the first of equals. A name that holds the unknown one whole ("grid" in
-/// "uniform_grid") is as near as a single slip. `known` must not be empty.
+/// The known name closest to an unknown one, the first of equals; empty where none is near: where more than a third of
+/// the letters of the longer one differ. A name that holds the unknown one whole ("grid" in "uniform_grid") is as near
+/// as a single slip, and so is one that makes up half of it.
 [[nodiscard]] inline std::string nearest_name(std::string_view unknown, std::span<const std::string> known) {
-    assert(!known.empty());
-    return *std::ranges::min_element(known, {}, [&](const std::string& name) {
-        const bool holds = unknown.size() > 2 && name.find(unknown) != std::string::npos;
-        return holds ? std::size_t{1} : edit_distance(unknown, name);
-    });
+    std::string_view nearest;
+    std::size_t least = std::string_view::npos;
+    for (const std::string_view name : known) {
+        const auto holds_other = [](std::string_view longer, std::string_view shorter) {
+            return shorter.size() > 2 && longer.find(shorter) != std::string_view::npos;
+        };
+        const bool holds =
+            holds_other(name, unknown) || (2 * name.size() >= unknown.size() && holds_other(unknown, name));
+        const std::size_t distance = holds ? 1 : edit_distance(unknown, name);
+        if (distance >= least || (!holds && distance > std::max(unknown.size(), name.size()) / 3)) continue;
+        least = distance;
+        nearest = name;
+    }
+    return std::string(nearest);
 }
 
-/// The sentence for a name nobody knows: what it was meant to be, and which name is nearest.
+/// The sentence for a name nobody knows: what it was meant to be, and which name is nearest, or, where none is, all
+/// that fit into a line.
 [[nodiscard]] inline std::string unknown_name(std::string_view what, std::string_view name,
                                               std::span<const std::string> known) {
     std::string text = "unknown " + std::string(what) + " '" + std::string(name) + "'";
-    if (!known.empty()) text += "; did you mean '" + nearest_name(name, known) + "'?";
-    return text;
+    if (const std::string nearest = nearest_name(name, known); !nearest.empty())
+        return text + "; did you mean '" + nearest + "'?";
+    std::string all;
+    for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+    return all.empty() || all.size() > 120 ? text : text + "; expected one of " + all;
 }
 
 }  // namespace aabb

@@ -130,10 +130,29 @@ std::vector<std::string> strategy_names(strategy_kind kind) {
     return names;
 }
 
+namespace {
+
+/// The one kind that has a strategy of this name.
+std::optional<strategy_kind> only_kind_of(const std::string& name) {
+    std::optional<strategy_kind> only;
+    for (const strategy_kind kind : strategy_kinds) {
+        if (std::ranges::find(strategies(kind), name, &strategy_info::name) == strategies(kind).end()) continue;
+        if (only) return std::nullopt;
+        only = kind;
+    }
+    return only;
+}
+
+}  // namespace
+
 void require_known(strategy_kind kind, const strategy_choice& choice) {
     const std::vector<std::string> names = strategy_names(kind);
-    if (std::ranges::find(names, choice.name) == names.end())
+    if (std::ranges::find(names, choice.name) == names.end()) {
+        if (const std::optional<strategy_kind> other = only_kind_of(choice.name))
+            throw input_error("'" + choice.name + "' is of the kind " + std::string(name_of(*other)) + ", not " +
+                              std::string(name_of(kind)));
         throw input_error(unknown_name(name_of(kind), choice.name, names));
+    }
     std::set<std::string_view> seen;
     for (const setting& s : choice.settings) {
         if (!seen.insert(s.name).second) throw input_error(choice.name + ": " + s.name + " is given twice");

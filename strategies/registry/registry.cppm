@@ -36,7 +36,7 @@ struct strategy_info {
 [[nodiscard]] std::vector<std::string> strategy_names(strategy_kind kind);
 
 /// Refuses an unknown name, an unknown parameter, or a value that is not one.
-/// @throws input_error with the nearest valid name.
+/// @throws input_error with the nearest valid name, or the kind that the name is of.
 void require_known(strategy_kind kind, const strategy_choice& choice);
 
 /// What is said of each kind, if anything.

@@ -121,7 +121,18 @@ TEST_CASE("the nearest name is the one a typing slip away") {
     CHECK(nearest_name("hsell", names) == "shell");
     CHECK(nearest_name("insetrion", names) == "insertion");
     CHECK(nearest_name("ertion", names) == "insertion");
+    CHECK(nearest_name("insertion_sort", names) == "insertion");
     CHECK(edit_distance("", "abc") == 3);
     CHECK(edit_distance("ab", "ba") == 1);
     CHECK(edit_distance("same", "same") == 0);
+}
+
+TEST_CASE("a name that is far from all others has no nearest one") {
+    const std::vector<std::string> names = {"insertion", "std", "shell"};
+    for (const char* far : {"", "x", "columns", "bucket", "radix", "shovels", "shells_and_more"})
+        CHECK(nearest_name(far, names).empty());
+    CHECK(nearest_name("shells", std::vector<std::string>{}).empty());
+    CHECK(unknown_name("sort", "columns", names) == "unknown sort 'columns'; expected one of insertion, std, shell");
+    CHECK(unknown_name("sort", "columns", std::vector<std::string>{}) == "unknown sort 'columns'");
+    CHECK(unknown_name("sort", "columns", std::vector<std::string>{std::string(121, 'x')}) == "unknown sort 'columns'");
 }

@@ -55,6 +55,10 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         {{"collide", "icosphere"}, "collide: expected B, the other mesh, or --self"},
         {{"scene", "brownian"}, "scene: expected --out, --motion or --picture"},
         {{"list", "--jsn"}, "did you mean '--json'?"},
+        {{"list", "--threads"}, "list: unknown option '--threads'; expected one of --help, --json\n"},
+        {{"pairs", "x", "--threads", "2"},
+         "'threads' is a parameter of a strategy, as in --partition columns:threads=…\n"},
+        {{"pairs", "x", "--partition", "bucket"}, "'bucket' is of the kind sort, not partition\n"},
     }));
     const program_result result = run_program(arguments);
     INFO(result.err);

@@ -109,7 +109,9 @@ TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
     const std::string where = " (a mesh is a file, here or in " + folder.path().string() + ", or a shape)";
     REQUIRE(error_of("elefant.off") == "unknown mesh 'elefant.off'; did you mean 'elephant.off'?" + where);
     REQUIRE(error_of("ikosphere") == "unknown mesh 'ikosphere'; did you mean 'icosphere'?" + where);
-    REQUIRE(error_of("") == "unknown mesh ''; did you mean 'square'?" + where);
+    REQUIRE(error_of("").starts_with("unknown mesh ''"));
+    REQUIRE(error_of("").ends_with(where));
+    REQUIRE(error_of("").find("did you mean") == std::string::npos);
     REQUIRE(error_of(folder.path().string()) == folder.path().string() + ": is a folder, not a file");
     REQUIRE(error_of("icosphere:triangle=7") == "unknown parameter of icosphere 'triangle'; did you mean 'triangles'?");
     REQUIRE(error_of("icosphere:triangles=1e9") ==

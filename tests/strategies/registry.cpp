@@ -39,6 +39,18 @@ TEST_CASE("an unknown strategy is refused with the nearest name") {
                          Message("unknown parameter of leafless 'leaftest'; did you mean 'leaf_test'?"));
 }
 
+TEST_CASE("a strategy of another kind is refused with its kind, and never with a name that is far") {
+    CHECK_THROWS_MATCHES(require_known(strategy_kind::partition, {"bucket", {}}), input_error,
+                         Message("'bucket' is of the kind sort, not partition"));
+    CHECK_THROWS_MATCHES(composed({{strategy_kind::sort, "columns:threads=2"}}), input_error,
+                         Message("'columns' is of the kind partition, not sort"));
+    // Several kinds have a "none".
+    std::string sorts;
+    for (const std::string& name : strategy_names(strategy_kind::sort)) sorts += (sorts.empty() ? "" : ", ") + name;
+    CHECK_THROWS_MATCHES(require_known(strategy_kind::sort, {"none", {}}), input_error,
+                         Message("unknown sort 'none'; expected one of " + sorts));
+}
+
 TEST_CASE("a parameter that is a kind of its own is refused with the new spelling") {
     CHECK_THROWS_MATCHES(require_known(strategy_kind::tree, parse_strategy("canonical:build=sah")), input_error,
                          Message("canonical has no parameter build, which is a kind of its own: write build = \"sah\" "
