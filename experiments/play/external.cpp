@@ -103,7 +103,15 @@ double answer_table::milliseconds(std::size_t column) const {
 }
 
 void answer_table::fail(const std::string& sentence) const {
-    const std::string row = text_.size() > longest_quote ? text_.substr(0, longest_quote) + "…" : text_;
+    std::string row;
+    for (const char c : std::string_view(text_).substr(0, longest_quote)) {
+        // A sentence would end there.
+        if (c == 0)
+            row += "\\x00";
+        else
+            row += c;
+    }
+    if (text_.size() > longest_quote) row += "…";
     throw aabb::input_error(what_ + ", line " + std::to_string(line_) + ", '" + row + "': " + sentence);
 }
 
