@@ -45,7 +45,8 @@ public:
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(pairs_) + bytes_of(steps_) + bytes_of(blocks_a_) + bytes_of(blocks_b_);
+        std::size_t all =
+            sizeof waiting_ + bytes_of(pairs_) + bytes_of(steps_) + bytes_of(blocks_a_) + bytes_of(blocks_b_);
         for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
         return all;
     }
@@ -54,7 +55,7 @@ private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = 32;
-    static constexpr std::size_t blocks = 64;
+    static constexpr std::size_t most_blocks = 32;  // a power of two
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
 
@@ -69,6 +70,13 @@ private:
         std::vector<std::uint32_t> a;
         std::vector<std::uint32_t> b;
         std::size_t size = 0;
+
+        /// For all pairs of children of one more pair.
+        inline void make_room() {
+            if (size + most_children_of_pair <= a.size()) return;
+            b.resize(2 * size + most_children_of_pair);
+            a.resize(2 * size + most_children_of_pair);
+        }
     };
 
     /// The triangles of a leaf, of one query.
@@ -125,16 +133,12 @@ private:
             steps_.push_back(now);
         }
         if (pairs_.size() < steps_.size()) pairs_.resize(steps_.size());
-        for (node_pairs& p : pairs_) {
-            // Up to a vector is stored beyond the last.
-            p.a.resize(most_at_once * most_children_of_pair + simd::width);
-            p.b.resize(most_at_once * most_children_of_pair + simd::width);
-            p.size = 0;
-        }
+        for (node_pairs& p : pairs_) p.size = 0;
+        pairs_[0].make_room();
         pairs_[0].a[0] = pairs_[0].b[0] = 0;
         pairs_[0].size = 1;
-        blocks_a_.resize(blocks);
-        blocks_b_.resize(blocks);
+        make_room(blocks_a_, a);
+        make_room(blocks_b_, b);
         waiting_.clear();
         ++query_;
     }
@@ -149,8 +153,8 @@ private:
         const bool opens_b = steps_[step + 1].b < at.b;
         const node_pairs& from = pairs_[step];
         node_pairs& to = pairs_[step + 1];
-        std::size_t found = to.size;
         for (std::size_t i = begin; i < end; ++i) {
+            to.make_room();
             const std::uint32_t node_a = from.a[i];
             const std::uint32_t node_b = from.b[i];
             const wide_node& of_a = nodes_a[node_a];
@@ -168,12 +172,11 @@ private:
             for (std::size_t p = 0; p < count; p += children) {
                 const auto place =
                     __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&places[p]), simd::eight_words);
-                simd::store_eight(&to.a[found + p], first_a + (place & 7U));
-                simd::store_eight(&to.b[found + p], first_b + (place >> 3U));
+                simd::store_eight(&to.a[to.size + p], first_a + (place & 7U));
+                simd::store_eight(&to.b[to.size + p], first_b + (place >> 3U));
             }
-            found += count;
+            to.size += count;
         }
-        to.size = found;
     }
 
     /// Pairs of leaves: those of their triangles that may meet wait for the test.
@@ -202,10 +205,16 @@ private:
         return false;
     }
 
+    /// As many as leaves, if they are few, else `most_blocks`.
+    static void make_room(std::vector<kept_block>& kept, const model<Tree>& m) {
+        const std::size_t leaves = (m.triangles().triangles.size() + children - 1) / children;
+        kept.resize(std::max(kept.size(), std::min(most_blocks, std::bit_ceil(leaves))));
+    }
+
     template <class Prepare>
     [[nodiscard]] const triangle_block& block(std::vector<kept_block>& kept, const model<Tree>& m, std::uint32_t leaf,
                                               Prepare prepare) {
-        kept_block& place = kept[leaf % blocks];
+        kept_block& place = kept[leaf & (kept.size() - 1)];
         const std::uint64_t wanted = query_ << 32U | leaf;
         if (place.query_and_leaf != wanted) {
             place.block.load(m.triangles(), m.tree(), leaf);

@@ -70,7 +70,7 @@ public:
 private:
     static constexpr std::size_t rows = 9;
     static constexpr std::size_t most_of_a_leaf_pair = 64;
-    static constexpr std::size_t capacity = 320;
+    static constexpr std::size_t capacity = 144;
     static constexpr unsigned pair_bits = 6;  // of a pair among those of a leaf pair
     using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;
 
