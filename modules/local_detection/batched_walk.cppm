@@ -4,7 +4,6 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 export module aabb.local_detection:batched_walk;

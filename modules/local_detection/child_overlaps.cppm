@@ -2,7 +2,6 @@ module;
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 export module aabb.local_detection:child_overlaps;
 

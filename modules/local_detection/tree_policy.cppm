@@ -24,7 +24,7 @@ struct tree_bytes {
 };
 
 /// A bounding-volume tree over the triangles of a mesh, one triangle a leaf: a layout, which packs the nodes that a
-/// build made. One that wants them in pairs of leaves says `static constexpr leaf_pairing pairing`. A cursor stands at
+/// build made. One that wants leaves at certain places says `static constexpr leaf_pairing pairing`. A cursor stands at
 /// a node; what it carries is the layout's own business. `bounds(cursor)` is a box that holds the node's triangles;
 /// that of a leaf in a layout without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit` takes a mesh
 /// of the same triangles whose vertices have moved; it uses the boxes as scratch.

@@ -90,11 +90,11 @@ private:
 
     void keep_from(std::size_t done) noexcept {
         pairs_ -= done;
+        if (pairs_ == 0) return clear();
         for (std::size_t row = 0; row < rows; ++row) {
             std::copy_n(&a_[row][done], pairs_, a_[row].data());
             std::copy_n(&b_[row][done], pairs_, b_[row].data());
         }
-        if (pairs_ == 0) return clear();
         const std::uint32_t first = origin_[done] >> pair_bits;
         for (std::size_t i = 0; i < pairs_; ++i) origin_[i] = origin_[done + i] - (first << pair_bits);
         leaf_pairs_ -= first;

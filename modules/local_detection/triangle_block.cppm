@@ -24,13 +24,6 @@ struct triangle_block {
     alignas(32) std::array<row, 3> upper;
     std::uint32_t triangles;
 
-    [[nodiscard]] inline triangle3f triangle(std::size_t i) const noexcept {
-        triangle3f t;
-        for (int c = 0; c < 3; ++c)
-            for (int k = 0; k < 3; ++k) t[c][k] = corner[static_cast<std::size_t>(c)][static_cast<std::size_t>(k)][i];
-        return t;
-    }
-
     /// As they lie in the mesh.
     template <WideTreePolicy Tree>
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf) noexcept {
