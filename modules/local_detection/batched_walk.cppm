@@ -4,6 +4,8 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 export module aabb.local_detection:batched_walk;
@@ -12,10 +14,11 @@ import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.simd;
-import :child_overlaps;
+import :child_pairs;
+import :leaf_pairs;
 import :model;
+import :nearest_pair;
 import :triangle_batch;
-import :triangle_block;
 import :triangle_policy;
 import :walk_goal;
 import :wide_node;
@@ -44,8 +47,7 @@ public:
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all =
-            sizeof waiting_ + bytes_of(pairs_) + bytes_of(steps_) + bytes_of(blocks_a_) + bytes_of(blocks_b_);
+        std::size_t all = sizeof *this + bytes_of(pairs_) + bytes_of(steps_) + children_.bytes() + leaves_.bytes();
         for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
         return all;
     }
@@ -54,12 +56,12 @@ private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = 32;
-    static constexpr std::size_t most_blocks = 32;  // a power of two
+    static constexpr std::size_t most_missed = 4;
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
 
-    /// Of which levels the nodes of a pair are.
-    struct levels {
+    /// How many levels of nodes lie below and with the nodes of a pair: 0 for leaves.
+    struct heights {
         std::size_t a;
         std::size_t b;
     };
@@ -78,52 +80,53 @@ private:
         }
     };
 
-    /// The triangles of a leaf, of one query.
-    struct kept_block {
-        std::uint64_t query_and_leaf = 0;
-        triangle_block block;
-    };
-
     template <class Emit>
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
               walk_goal goal, Emit emit) {
-        begin(a, b);
+        begin(a, b, to_a);
         // For the first pair few at a time: what lies beyond it is not needed.
-        const std::size_t at_once = goal == walk_goal::first_pair ? 1 : most_at_once;
-        const child_overlaps overlaps(to_a);
+        const bool any_pair = goal == walk_goal::first_pair;
+        const std::size_t at_once = any_pair ? 1 : most_at_once;
         const auto emit_pair = [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
             return emit(
                 index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)});
         };
-        for (std::size_t step = 0;;) {
-            node_pairs& from = pairs_[step];
-            if (from.size == 0) {
+        std::size_t step = 0;
+        std::size_t missed = 0;  // pairs of leaves
+        for (;;) {
+            if (pairs_[step].size == 0) {
+                step = steps_.size();
+                while (step > 0 && pairs_[step - 1].size == 0) --step;
                 if (step == 0) break;
                 --step;
-                continue;
             }
+            node_pairs& from = pairs_[step];
             const std::size_t end = from.size;
             const std::size_t begin = end - std::min(end, at_once);
             from.size = begin;
             counters_.add(work::node_visits, end - begin);
             if (step + 1 < steps_.size()) {
-                open(a.tree(), b.tree(), overlaps, what, step, begin, end);
+                open(a.tree(), b.tree(), what, any_pair, step, begin, end);
                 ++step;
-            } else {
-                if (test_leaves(test, a, b, to_a, what, begin, end, emit_pair)) return;
-                if (goal == walk_goal::first_pair && waiting_.decide(test, true, emit_pair)) return;
+                continue;
             }
+            if (test_leaves(test, a, b, to_a, what, begin, end, emit_pair)) return;
+            if (!any_pair) continue;
+            if (waiting_.decide(test, true, emit_pair)) return;
+            // What looks near may be parallel all over: then it is better to go on elsewhere.
+            if (++missed % most_missed == 0)
+                for (step = 0; pairs_[step].size == 0 && step + 1 < steps_.size();) ++step;
         }
         static_cast<void>(waiting_.decide(test, true, emit_pair));
     }
 
-    void begin(const model<Tree>& a, const model<Tree>& b) {
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a) {
         require_ieee_arithmetic();
         a.require_fit();
         b.require_fit();
         steps_.clear();
         // The higher of two nodes is opened first, until both are leaves.
-        levels now{a.tree().levels() - 1, b.tree().levels() - 1};
+        heights now{a.tree().levels(), b.tree().levels()};
         steps_.push_back(now);
         while (now.a > 0 || now.b > 0) {
             const std::size_t higher = std::max(now.a, now.b);
@@ -136,18 +139,17 @@ private:
         pairs_[0].make_room();
         pairs_[0].a[0] = pairs_[0].b[0] = 0;
         pairs_[0].size = 1;
-        make_room(blocks_a_, a);
-        make_room(blocks_b_, b);
+        children_.begin(a.tree(), b.tree(), to_a, a.bounds());
+        leaves_.begin(a, b);
         waiting_.clear();
-        ++query_;
     }
 
-    /// Those pairs of children that may meet go to the next step.
-    void open(const Tree& a, const Tree& b, const child_overlaps& overlaps, extent what, std::size_t step,
-              std::size_t begin, std::size_t end) {
-        const levels at = steps_[step];
-        const wide_node* const nodes_a = a.level(at.a);
-        const wide_node* const nodes_b = b.level(at.b);
+    /// Those pairs of children that may meet go to the next step, from which the last is taken first.
+    void open(const Tree& a, const Tree& b, extent what, bool nearest_last, std::size_t step, std::size_t begin,
+              std::size_t end) {
+        const heights at = steps_[step];
+        const wide_node* const nodes_a = a.level(at.a - 1);
+        const wide_node* const nodes_b = b.level(at.b - 1);
         const bool opens_a = steps_[step + 1].a < at.a;
         const bool opens_b = steps_[step + 1].b < at.b;
         const node_pairs& from = pairs_[step];
@@ -159,7 +161,7 @@ private:
             const wide_node& of_a = nodes_a[node_a];
             const wide_node& of_b = nodes_b[node_b];
             counters_.add(work::box_tests, std::uint64_t{of_a.children} * of_b.children);
-            std::uint64_t met = overlaps(of_a, of_b);
+            std::uint64_t met = children_(of_a, of_b);
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
             if (!opens_a) met = any_of_columns(met);
             if (!opens_b) met = any_of_rows(met);
@@ -168,6 +170,9 @@ private:
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
             simd::store_places(places.data(), met);
             const auto count = static_cast<std::size_t>(std::popcount(met));
+            if (nearest_last && count > 1)
+                std::swap(places[nearest_pair(std::span(places).first(count), of_a, children_.in_a(of_b))],
+                          places[count - 1]);
             for (std::size_t p = 0; p < count; p += children) {
                 const auto place =
                     __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&places[p]), simd::eight_words);
@@ -185,42 +190,21 @@ private:
                                    const relative_pose& to_a, extent what, std::size_t begin, std::size_t end,
                                    const Emit& emit) {
         const node_pairs& from = pairs_[steps_.size() - 1];
-        const wide_node* const leaves_a = a.tree().level(0);
         for (std::size_t p = begin; p < end; ++p) {
             const std::uint32_t leaf_a = from.a[p];
             const std::uint32_t leaf_b = from.b[p];
-            const triangle_block& of_b = block(blocks_b_, b, leaf_b, [&](triangle_block& fresh) {
-                fresh.move(to_a);
-                fresh.bound();
-            });
-            counters_.add(work::box_tests, std::uint64_t{leaves_a[leaf_a].children} * of_b.triangles);
-            std::uint64_t met = child_overlaps::leaves(leaves_a[leaf_a], of_b);
+            const leaf_of_b& of_b = leaves_.moved(b, leaf_b, to_a);
+            const leaf_of_a* const of_a = leaves_.near(a, leaf_a, of_b);
+            if (of_a == nullptr) continue;
+            counters_.add(work::box_tests, std::uint64_t{of_a->block.triangles} * of_b.block.triangles);
+            std::uint64_t met = of_a->codes.planes.overlaps(of_a->codes.grid, of_b.boxes);
             if (what == extent::one_mesh && leaf_a == leaf_b) met &= not_twice & not_itself;
             if (met == 0) continue;
             counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
-            waiting_.add(met, leaf_a, block(blocks_a_, a, leaf_a, [](triangle_block&) {}), leaf_b, of_b);
+            waiting_.add(met, leaf_a, of_a->block, leaf_b, of_b.block);
             if (waiting_.is_full() && waiting_.decide(test, false, emit)) return true;
         }
         return false;
-    }
-
-    /// As many as leaves, if they are few, else `most_blocks`.
-    static void make_room(std::vector<kept_block>& kept, const model<Tree>& m) {
-        const std::size_t leaves = (m.triangles().triangles.size() + children - 1) / children;
-        kept.resize(std::max(kept.size(), std::min(most_blocks, std::bit_ceil(leaves))));
-    }
-
-    template <class Prepare>
-    [[nodiscard]] const triangle_block& block(std::vector<kept_block>& kept, const model<Tree>& m, std::uint32_t leaf,
-                                              Prepare prepare) {
-        kept_block& place = kept[leaf & (kept.size() - 1)];
-        const std::uint64_t wanted = query_ << 32U | leaf;
-        if (place.query_and_leaf != wanted) {
-            place.block.load(m.triangles(), m.tree(), leaf);
-            prepare(place.block);
-            place.query_and_leaf = wanted;
-        }
-        return place.block;
     }
 
     /// Child i of a node and child j of the same with i <= j, or i != j.
@@ -243,12 +227,11 @@ private:
     }
 
     [[no_unique_address]] Counters counters_;
-    std::vector<levels> steps_;
+    std::vector<heights> steps_;
     std::vector<node_pairs> pairs_;  // by step
-    std::vector<kept_block> blocks_a_;
-    std::vector<kept_block> blocks_b_;  // in A's frame, with boxes
+    child_pairs<Tree> children_;
+    leaf_pairs<Tree> leaves_;
     triangle_batch<Triangle> waiting_;
-    std::uint64_t query_ = 0;
 };
 
 }  // namespace aabb

@@ -15,8 +15,8 @@ export namespace aabb {
 /// that `build_node` says. Boxes are the smallest ones. The same tree for the same mesh on every machine; it ends on
 /// any mesh that `require_valid` accepts, however many centroids are equal.
 template <class B>
-concept TreeBuilder = requires(const B builder, const mesh& m, leaf_pairing pairing) {
-    { builder.build(m, pairing) } -> std::same_as<std::vector<build_node>>;
+concept TreeBuilder = requires(const B builder, const mesh& m, leaf_arrangement arrangement) {
+    { builder.build(m, arrangement) } -> std::same_as<std::vector<build_node>>;
 };
 
 template <class B>
@@ -30,15 +30,15 @@ public:
     tree_builder& operator=(const tree_builder&) = delete;
     virtual ~tree_builder() = default;
 
-    [[nodiscard]] virtual std::vector<build_node> build(const mesh& m, leaf_pairing pairing) const = 0;
+    [[nodiscard]] virtual std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const = 0;
 };
 
 template <BuildPolicy Build>
 class built_by final : public tree_builder {
 public:
     explicit built_by(Build build = {}) : build_(std::move(build)) {}
-    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_pairing pairing) const override {
-        return build_.build(m, pairing);
+    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const override {
+        return build_.build(m, arrangement);
     }
 
 private:

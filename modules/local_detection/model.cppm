@@ -24,7 +24,7 @@ public:
         : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
         require_ieee_arithmetic();
         require_valid(m);
-        tree_.pack(builder.build(m, leaf_pairing_of<Tree>));
+        tree_.pack(builder.build(m, leaf_arrangement_of<Tree>));
     }
 
     /// After vertices of the mesh have moved.

@@ -24,10 +24,10 @@ struct tree_bytes {
 };
 
 /// A bounding-volume tree over the triangles of a mesh, one triangle a leaf: a layout, which packs the nodes that a
-/// build made. One that wants leaves at certain places says `static constexpr leaf_pairing pairing`. A cursor stands at
-/// a node; what it carries is the layout's own business. `bounds(cursor)` is a box that holds the node's triangles;
-/// that of a leaf in a layout without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit` takes a mesh
-/// of the same triangles whose vertices have moved; it uses the boxes as scratch.
+/// build made. One that wants leaves at certain places says `static constexpr leaf_arrangement arrangement`. A cursor
+/// stands at a node; what it carries is the layout's own business. `bounds(cursor)` is a box that holds the node's
+/// triangles; that of a leaf in a layout without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit`
+/// takes a mesh of the same triangles whose vertices have moved; it uses the boxes as scratch.
 template <class T>
 concept TreePolicy = Strategy<T> &&
                      requires(T tree, const T built, std::span<const build_node> nodes, const mesh& m,
@@ -48,11 +48,11 @@ concept TreePolicy = Strategy<T> &&
 
 /// How the nodes of a tree are to be built for it.
 template <TreePolicy T>
-inline constexpr leaf_pairing leaf_pairing_of = [] {
-    if constexpr (requires { T::pairing; })
-        return T::pairing;
+inline constexpr leaf_arrangement leaf_arrangement_of = [] {
+    if constexpr (requires { T::arrangement; })
+        return T::arrangement;
     else
-        return leaf_pairing::any;
+        return leaf_arrangement::any;
 }();
 
 }  // namespace aabb

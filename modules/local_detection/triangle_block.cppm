@@ -8,29 +8,26 @@ export module aabb.local_detection:triangle_block;
 
 import aabb.geometry;
 import aabb.simd;
-import :wide_node;
+import :eight_boxes;
 import :wide_tree_policy;
 
 export namespace aabb {
 
-/// The triangles below a node of level 0, coordinate by coordinate, and their boxes. Where there are less than eight,
-/// the last one fills the rest.
+/// The triangles of a leaf, coordinate by coordinate. Where there are less than eight, the last one fills the rest.
 struct triangle_block {
-    static constexpr std::size_t width = wide_node::most_children;
+    static constexpr std::size_t width = eight_boxes::most;
     using row = std::array<float, width>;
 
     alignas(32) std::array<std::array<row, 3>, 3> corner;  ///< corner c, axis k: [c][k]
-    alignas(32) std::array<row, 3> lower;
-    alignas(32) std::array<row, 3> upper;
     std::uint32_t triangles;
 
     /// As they lie in the mesh.
     template <WideTreePolicy Tree>
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf) noexcept {
-        triangles = tree.level(0)[leaf].children;
+        triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
+        const std::array<std::uint32_t, width> numbers = tree.triangles_of(leaf);
         std::array<const std::uint32_t*, width> vertices;
-        for (std::uint32_t i = 0; i < width; ++i)
-            vertices[i] = m.triangles[tree.triangle_at(width * leaf + std::min(i, triangles - 1))].data();
+        for (std::uint32_t i = 0; i < width; ++i) vertices[i] = m.triangles[numbers[i]].data();
         for (std::size_t c = 0; c < 3; ++c) {
             std::array<const float*, width> points;
             for (std::size_t i = 0; i < width; ++i) points[i] = m.vertices[vertices[i][c]].at;
@@ -51,14 +48,15 @@ struct triangle_block {
         }
     }
 
-    void bound() noexcept {
+    inline void bounds(eight_boxes& boxes) const noexcept {
+        const auto lesser = [](simd::eight_floats p, simd::eight_floats q) { return p < q ? p : q; };
+        const auto greater = [](simd::eight_floats p, simd::eight_floats q) { return p > q ? p : q; };
         for (std::size_t k = 0; k < 3; ++k) {
             const auto at = [&](std::size_t c) { return simd::load_eight<simd::eight_floats>(corner[c][k].data()); };
-            const auto low = __builtin_elementwise_min(__builtin_elementwise_min(at(0), at(1)), at(2));
-            const auto high = __builtin_elementwise_max(__builtin_elementwise_max(at(0), at(1)), at(2));
-            simd::store_eight(lower[k].data(), low);
-            simd::store_eight(upper[k].data(), high);
+            simd::store_eight(boxes.lower[k].data(), lesser(lesser(at(0), at(1)), at(2)));
+            simd::store_eight(boxes.upper[k].data(), greater(greater(at(0), at(1)), at(2)));
         }
+        boxes.count = triangles;
     }
 };
 

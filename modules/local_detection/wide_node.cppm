@@ -12,6 +12,8 @@ export module aabb.local_detection:wide_node;
 
 import aabb.geometry;
 import aabb.simd;
+import :box_codes;
+import :eight_boxes;
 
 export namespace aabb {
 
@@ -20,14 +22,12 @@ export namespace aabb {
 ///
 /// Along axis k the grid has planes at i * 2^exponent[k] for whole i, and code q, from 1 to 254, stands for i =
 /// origin[k] + q. Both are exact: |i| stays below 2^24, so that a plane is a float, unless it lies beyond the range of
-/// floats. Codes 0 and 255 are those of planes outside of the grid, in tests of boxes against these.
+/// floats.
 struct wide_node {
-    static constexpr std::size_t most_children = 8;
+    static constexpr std::size_t most_children = eight_boxes::most;
     static constexpr int last_code = 255;
 
-    using codes = std::array<std::uint8_t, most_children>;
-    std::array<codes, 3> lower;
-    std::array<codes, 3> upper;  ///< each less than 255 by the plane's code: so that one comparison serves both
+    box_codes planes;
     std::array<std::int32_t, 3> origin;
     std::array<std::int8_t, 3> exponent;
     std::uint8_t children;
@@ -36,6 +36,32 @@ struct wide_node {
     void encode(std::span<const box> boxes) noexcept {
         children = static_cast<std::uint8_t>(boxes.size());
         for (int k = 0; k < 3; ++k) encode_axis(boxes, k);
+        planes.keep_first(children);
+    }
+
+    [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
+
+    /// Products with its scale are exact, or beyond all codes, so no plane is rounded past a whole step.
+    [[nodiscard]] inline code_grid grid() const noexcept {
+        code_grid g;
+        for (std::size_t k = 0; k < 3; ++k) {
+            g.scale[k] = std::bit_cast<float>(static_cast<std::uint32_t>(127 - exponent[k]) << 23U);
+            g.offset[k] = static_cast<float>(origin[k]);
+        }
+        return g;
+    }
+
+    /// Whether the child's box may overlap another.
+    [[nodiscard]] inline bool meets(std::size_t child, const box& other) const noexcept {
+        const code_grid g = grid();
+        bool met = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto axis = static_cast<int>(k);
+            met &= static_cast<float>(planes.lower[k][child]) <= other.max[axis] * g.scale[k] - g.offset[k];
+            met &=
+                static_cast<float>(planes.upper[k][child]) <= last_code - (other.min[axis] * g.scale[k] - g.offset[k]);
+        }
+        return met;
     }
 
     /// As encoded: no smaller than the box that was taken.
@@ -43,8 +69,8 @@ struct wide_node {
         box b;
         for (int k = 0; k < 3; ++k) {
             const auto axis = static_cast<std::size_t>(k);
-            b.min[k] = plane(axis, lower[axis][i]);
-            b.max[k] = plane(axis, last_code - upper[axis][i]);
+            b.min[k] = plane(axis, planes.lower[axis][i]);
+            b.max[k] = plane(axis, last_code - planes.upper[axis][i]);
         }
         return b;
     }
@@ -82,17 +108,17 @@ private:
         const auto axis = static_cast<std::size_t>(k);
         origin[axis] = static_cast<std::int32_t>(first);
         exponent[axis] = static_cast<std::int8_t>(power);
-        store_codes(lower[axis], __builtin_elementwise_floor(least * steps) - first);
-        store_codes(upper[axis], last_code - (__builtin_elementwise_ceil(most * steps) - first));
+        store_codes(planes.lower[axis], __builtin_elementwise_floor(least * steps) - first);
+        store_codes(planes.upper[axis], last_code - (__builtin_elementwise_ceil(most * steps) - first));
     }
 
-    static inline void store_codes(codes& to, simd::eight_doubles whole) noexcept {
+    static inline void store_codes(box_codes::row& to, simd::eight_doubles whole) noexcept {
         simd::store_eight(to.data(), simd::whole_bytes(__builtin_convertvector(whole, simd::eight_floats)));
     }
 
     [[nodiscard]] inline float plane(std::size_t axis, int code) const noexcept {
         constexpr double most = std::numeric_limits<float>::max();
-        const double at = (origin[axis] + code) * power_of_two(exponent[axis]);
+        const double at = (origin[axis] + code) * step(axis);
         return static_cast<float>(std::clamp(at, -most, most));
     }
 };

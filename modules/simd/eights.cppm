@@ -32,6 +32,17 @@ namespace aabb::simd::detail {
 }
 #endif
 
+using two_points_of_four = float __attribute__((vector_size(32)));
+/// Each with a fourth number that is not theirs.
+[[nodiscard, gnu::always_inline]] inline two_points_of_four two_points(const float* p, const float* q) noexcept {
+#if defined(__AVX512VL__)
+    const __m256 low = _mm256_castps128_ps256(_mm_maskz_loadu_ps(7, p));
+    return _mm256_insertf128_ps(low, _mm_maskz_loadu_ps(7, q), 1);
+#else
+    return two_points_of_four{p[0], p[1], p[2], 0, q[0], q[1], q[2], 0};
+#endif
+}
+
 }  // namespace aabb::simd::detail
 
 export namespace aabb::simd {
@@ -57,11 +68,7 @@ template <class Number, class Vector>
 
 /// Of eight points of three numbers: their columns, eight numbers each, one behind the other.
 [[gnu::always_inline]] inline void store_columns_of_eight_points(const float* const* points, float* columns) noexcept {
-    const auto row = [&](int i) {
-        const float* const p = points[i];
-        const float* const q = points[i + 4];
-        return eight_floats{p[0], p[1], p[2], 0, q[0], q[1], q[2], 0};
-    };
+    const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
     const auto low = [](eight_floats p, eight_floats q) {
         return __builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13);
     };
@@ -92,12 +99,19 @@ template <class Number, class Vector>
     return v;
 }
 
-/// Of each of eight numbers the whole part, no more than 255, and 0 where it is less or not a number.
+[[nodiscard, gnu::always_inline]] inline float least(eight_floats v) noexcept {
+    const auto lesser = [](eight_floats p, eight_floats q) { return p < q ? p : q; };
+    v = lesser(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+    v = lesser(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+    return lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6))[0];
+}
+
+/// Of each of eight numbers the whole part, no more than 254, and 0 where it is less or not a number.
 [[nodiscard, gnu::always_inline]] inline eight_bytes whole_bytes(eight_floats v) noexcept {
     using eight_ints = std::int32_t __attribute__((vector_size(32)));
     const eight_floats none{};
     const eight_floats above = v > none ? v : none;
-    const eight_floats most = none + 255;
+    const eight_floats most = none + 254;
     return __builtin_convertvector(__builtin_convertvector(above < most ? above : most, eight_ints), eight_bytes);
 }
 

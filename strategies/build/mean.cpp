@@ -18,7 +18,7 @@ namespace aabb {
 
 namespace {
 
-split_choice mean_split(std::span<const build_element> range, const box& bounds) {
+split_choice mean_split(std::span<const build_element> range, const box& bounds, std::size_t /*left*/) {
     const int axis = longest_axis(bounds);
     double sum = 0;
     for (const build_element& e : range) sum += e.centroid[axis];
@@ -30,8 +30,8 @@ split_choice mean_split(std::span<const build_element> range, const box& bounds)
 
 }  // namespace
 
-std::vector<build_node> mean_build::build(const mesh& m, leaf_pairing pairing) {
-    return build_top_down(m, pairing, mean_split);
+std::vector<build_node> mean_build::build(const mesh& m, leaf_arrangement arrangement) {
+    return build_top_down(m, arrangement, mean_split);
 }
 
 }  // namespace aabb

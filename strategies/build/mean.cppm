@@ -16,7 +16,7 @@ struct mean_build {
     static constexpr std::string_view name = "mean";
     static constexpr std::string_view summary = "at the mean of the triangles' centroids along the longest axis";
 
-    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_pairing pairing);
+    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement);
 };
 
 static_assert(BuildPolicy<mean_build>);

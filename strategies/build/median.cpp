@@ -9,8 +9,8 @@ import aabb.build.top_down;
 
 namespace aabb {
 
-std::vector<build_node> median_build::build(const mesh& m, leaf_pairing pairing) {
-    return build_top_down(m, pairing, median_split);
+std::vector<build_node> median_build::build(const mesh& m, leaf_arrangement arrangement) {
+    return build_top_down(m, arrangement, median_split);
 }
 
 }  // namespace aabb

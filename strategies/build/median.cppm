@@ -17,7 +17,7 @@ struct median_build {
     static constexpr std::string_view summary =
         "at the median of the triangles' centroids along the longest axis: the paper's, balanced";
 
-    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_pairing pairing);
+    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement);
 };
 
 static_assert(BuildPolicy<median_build>);

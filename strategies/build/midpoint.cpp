@@ -17,7 +17,7 @@ namespace aabb {
 
 namespace {
 
-split_choice midpoint_split(std::span<const build_element> range, const box& bounds) {
+split_choice midpoint_split(std::span<const build_element> range, const box& bounds, std::size_t /*left*/) {
     const int axis = longest_axis(bounds);
     // In double, so that the sum cannot overflow.
     const double middle = (double{bounds.min[axis]} + double{bounds.max[axis]}) / 2;
@@ -28,8 +28,8 @@ split_choice midpoint_split(std::span<const build_element> range, const box& bou
 
 }  // namespace
 
-std::vector<build_node> midpoint_build::build(const mesh& m, leaf_pairing pairing) {
-    return build_top_down(m, pairing, midpoint_split);
+std::vector<build_node> midpoint_build::build(const mesh& m, leaf_arrangement arrangement) {
+    return build_top_down(m, arrangement, midpoint_split);
 }
 
 }  // namespace aabb

@@ -18,7 +18,7 @@ struct midpoint_build {
     static constexpr std::string_view name = "midpoint";
     static constexpr std::string_view summary = "in the middle of the longest axis of the node's box";
 
-    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_pairing pairing);
+    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement);
 };
 
 static_assert(BuildPolicy<midpoint_build>);

@@ -16,7 +16,7 @@ struct sah_build {
     static constexpr std::string_view name = "sah";
     static constexpr std::string_view summary = "by the surface-area heuristic, in 16 bins on each axis";
 
-    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_pairing pairing);
+    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement);
 };
 
 static_assert(BuildPolicy<sah_build>);

@@ -41,16 +41,6 @@ std::size_t paired(std::size_t left, std::size_t all) {
     return left + 1 < all ? left + 1 : left - 1;
 }
 
-/// How many triangles go to the left, where the build would have so many there.
-std::size_t left_of(leaf_pairing pairing, std::size_t left, std::size_t all) {
-    switch (pairing) {
-        case leaf_pairing::any: return left;
-        case leaf_pairing::even: return paired(left, all);
-        case leaf_pairing::full_left: return std::bit_ceil(all) / 2;
-    }
-    return left;
-}
-
 /// A range of elements to become a node.
 struct task {
     std::size_t begin;
@@ -61,7 +51,7 @@ constexpr std::uint32_t no_parent = 0xffffffff;
 
 }  // namespace
 
-std::vector<build_node> build_top_down(const mesh& m, leaf_pairing pairing, const split_rule& split) {
+std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement, const split_rule& split) {
     std::vector<build_element> elements;
     elements.reserve(m.triangles.size());
     for (std::uint32_t t = 0; t < m.triangle_count(); ++t) elements.push_back(element_of(m, t));
@@ -78,8 +68,12 @@ std::vector<build_node> build_top_down(const mesh& m, leaf_pairing pairing, cons
         if (now.parent != no_parent) nodes[now.parent].right = here;
         nodes.push_back({bounds, 0, range[0].triangle});
         if (range.size() == 1) continue;
-        const split_choice chosen = split(range, bounds);
-        const std::size_t left = left_of(pairing, chosen.left, range.size());
+        const std::size_t wanted =
+            arrangement == leaf_arrangement::full_left ? std::bit_ceil(range.size()) / 2 : any_number;
+        const split_choice chosen = split(range, bounds, wanted);
+        const std::size_t left = wanted != any_number                     ? wanted
+                                 : arrangement == leaf_arrangement::pairs ? paired(chosen.left, range.size())
+                                                                          : chosen.left;
         std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                  [axis = chosen.axis](const build_element& p, const build_element& q) {
                                      // Ties go by index, so that the tree does not depend on the library.

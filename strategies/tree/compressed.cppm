@@ -19,7 +19,7 @@ export namespace aabb {
 /// The paper's compressed storage (section 3.2, table 1) without loss: no leaves, and two siblings share one record of
 /// six planes, 12 bytes a node. Where both children are leaves there is nothing to describe: such nodes stand behind
 /// the others, as two triangle indices without planes and without the symbol byte. That takes 20.5 bytes a triangle in
-/// place of table 1's 21. Leaves come in pairs (`leaf_pairing::even`), since one beside an internal node would waste
+/// place of table 1's 21. Leaves come in pairs (`leaf_arrangement::pairs`), since one beside an internal node would waste
 /// half a record. When to use: for the least memory with exact boxes.
 class compressed_tree {
 public:
@@ -28,7 +28,7 @@ public:
         "the paper's compressed nodes without loss: no leaves, six planes and a symbol for two siblings";
     static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
     static constexpr bool has_leaf_boxes = false;
-    static constexpr leaf_pairing pairing = leaf_pairing::even;
+    static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 
     using config = leafless_config;
     static constexpr auto parameters = leafless_parameters;

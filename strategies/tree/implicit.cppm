@@ -18,17 +18,18 @@ import aabb.local_detection;
 export namespace aabb {
 
 /// A balanced tree without indices: every node has eight children, and where they stand follows from where it stands.
-/// Boxes are in 8 bits a plane (`wide_node`), 9.2 bytes a triangle; which triangle stands where takes as many bits as
-/// there are digits in their number. Its nodes are walked in batches (`batched_walk`); seen as a binary tree, node
-/// (height, index) holds the triangles at places index * 2^height and up to 2^height - 1 beyond.
+/// Boxes are in 8 bits a plane (`wide_node`). Leaves are eight triangles, whose boxes are made when they are met, so
+/// that nodes take 1.15 bytes a triangle; which triangle stands where takes as many bits as there are digits in their
+/// number. Nodes are walked in batches (`batched_walk`). Seen as a binary tree, node (height, index) holds the
+/// triangles at places index * 2^height and up to 2^height - 1 beyond; below leaves, all have the leaf's box.
 /// When to use: for the fastest queries.
 class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";
     static constexpr std::string_view summary =
-        "eight children a node in 64 bytes, no indices, walked in batches: the fastest queries";
+        "eight children a node in 64 bytes, no indices, no leaf boxes, walked in batches: fastest, smallest";
     static constexpr bool has_leaf_boxes = true;
-    static constexpr leaf_pairing pairing = leaf_pairing::full_left;
+    static constexpr leaf_arrangement arrangement = leaf_arrangement::full_left;
 
     struct cursor {
         std::uint32_t height;
@@ -48,8 +49,8 @@ public:
         }
         std::size_t all = 0;
         levels_ = 0;
-        for (std::size_t below = triangles_; levels_ == 0 || below > 1;) {
-            below = (below + wide_node::most_children - 1) / wide_node::most_children;
+        for (std::size_t below = groups_of(triangles_); levels_ == 0 || below > 1;) {
+            below = groups_of(below);
             begins_[levels_++] = all;
             all += below;
         }
@@ -72,9 +73,11 @@ public:
         return {normal({at.height - 1, 2 * at.index}), normal({at.height - 1, 2 * at.index + 1})};
     }
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
-        const std::size_t level = std::min<std::size_t>(at.height / 3, levels() - 1);
-        const auto above = static_cast<std::uint32_t>(at.height - 3 * level);  // the node is 2^above children
-        const std::uint32_t first = at.index << above;
+        const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above leaves
+        const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;
+        const std::size_t level = std::min<std::size_t>(height / 3, levels() - 1);
+        const auto above = static_cast<std::uint32_t>(height - 3 * level);  // the node is 2^above children
+        const std::uint32_t first = index << above;
         const wide_node& n = nodes_[begins_[level] + first / wide_node::most_children];
         const std::uint32_t begin = first % wide_node::most_children;
         const std::uint32_t end = std::min<std::uint32_t>(begin + (1U << above), n.children);
@@ -94,10 +97,30 @@ public:
         return static_cast<std::uint32_t>(word >> bit % 8 & ((std::uint64_t{1} << bits_) - 1));
     }
 
+    /// The places of a leaf begin with a byte.
+    [[nodiscard]] inline std::array<std::uint32_t, eight_boxes::most> triangles_of(std::uint32_t leaf) const noexcept {
+        const std::byte* const from = &places_[std::size_t{leaf} * bits_];
+        const std::uint32_t last = triangles_ - 1 - leaf * static_cast<std::uint32_t>(eight_boxes::most);
+        const std::uint64_t mask = (std::uint64_t{1} << bits_) - 1;
+        std::array<std::uint32_t, eight_boxes::most> numbers;
+        for (std::uint32_t i = 0; i < numbers.size(); ++i) {
+            const std::size_t bit = std::min(i, last) * bits_;
+            std::uint64_t word = 0;
+            std::memcpy(&word, from + bit / 8, sizeof word);
+            numbers[i] = static_cast<std::uint32_t>(word >> bit % 8 & mask);
+        }
+        return numbers;
+    }
+
 private:
     static constexpr std::size_t read_beyond = 8;
-    static constexpr std::size_t most_levels = 11;
-    static_assert(std::uint64_t{1} << 3 * most_levels > most_triangles);
+    static constexpr std::uint32_t leaf_height = 3;
+    static constexpr std::size_t most_levels = 10;
+    static_assert(std::uint64_t{1} << (leaf_height + 3 * most_levels) > most_triangles);
+
+    [[nodiscard]] static constexpr std::size_t groups_of(std::size_t count) noexcept {
+        return (count + wide_node::most_children - 1) / wide_node::most_children;
+    }
 
     void set_triangle(std::size_t place, std::uint32_t triangle) noexcept {
         const std::size_t bit = place * bits_;
@@ -116,17 +139,25 @@ private:
 
     /// @param boxes of the triangles by place; scratch
     void fit(std::span<box> boxes) noexcept {
+        boxes = merged_in_eights(boxes);
         for (std::size_t l = 0; l < levels(); ++l) {
-            std::size_t made = 0;
-            for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children) {
-                const auto children = boxes.subspan(i, std::min(wide_node::most_children, boxes.size() - i));
-                nodes_[begins_[l] + made].encode(children);
-                box all = empty_box();
-                for (const box& b : children) all = merged(all, b);
-                boxes[made++] = all;
-            }
-            boxes = boxes.first(made);
+            wide_node* node = &nodes_[begins_[l]];
+            for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children)
+                (node++)->encode(boxes.subspan(i, std::min(wide_node::most_children, boxes.size() - i)));
+            boxes = merged_in_eights(boxes);
         }
+    }
+
+    /// In place.
+    [[nodiscard]] static std::span<box> merged_in_eights(std::span<box> boxes) noexcept {
+        std::size_t made = 0;
+        for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children) {
+            box all = empty_box();
+            for (const box& b : boxes.subspan(i, std::min(wide_node::most_children, boxes.size() - i)))
+                all = merged(all, b);
+            boxes[made++] = all;
+        }
+        return boxes.first(made);
     }
 
     std::uint32_t triangles_ = 0;

@@ -94,7 +94,7 @@ struct fake_sweep {
 struct fake_build {
     static constexpr std::string_view name = "fake";
     static constexpr std::string_view summary = "as many nodes as a tree has, and a box for the root";
-    [[nodiscard]] static std::vector<aabb::build_node> build(const aabb::mesh& m, aabb::leaf_pairing) {
+    [[nodiscard]] static std::vector<aabb::build_node> build(const aabb::mesh& m, aabb::leaf_arrangement) {
         return std::vector<aabb::build_node>(2 * m.triangles.size() - 1, {bounds_of(m), 0, 0});
     }
 };

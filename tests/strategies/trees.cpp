@@ -205,7 +205,7 @@ TEST_CASE("the half-steps hold the canonical tree, box by box") {
             shared_planes_tree shared;
             leafless_tree leafless;
             compressed_literal_tree literal;
-            const std::vector<build_node> nodes = build.build(m, leaf_pairing::any);
+            const std::vector<build_node> nodes = build.build(m, leaf_arrangement::any);
             canonical.pack(nodes);
             shared.pack(nodes);
             leafless.pack(nodes);
@@ -247,10 +247,10 @@ TEST_CASE("layouts take the bytes that the paper says, or less") {
     }
 }
 
-TEST_CASE("an implicit tree takes 64 bytes for eight children, and for a triangle the bits of their number") {
+TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a triangle the bits of their number") {
     for (const std::uint32_t n : {1U, 8U, 9U, 64U, 65U, 1000U}) {
         std::size_t nodes = 0;
-        for (std::size_t below = n; nodes == 0 || below > 1;) nodes += below = (below + 7) / 8;
+        for (std::size_t below = (n + 7) / 8; nodes == 0 || below > 1;) nodes += below = (below + 7) / 8;
         const auto bits = static_cast<std::size_t>(std::bit_width(n - 1));
         INFO(n << " triangles");
         CHECK(bytes_of_tree("implicit", strip(n)) == 64 * nodes + (n * bits + 7) / 8 + 8);
@@ -270,7 +270,7 @@ TEST_CASE("builds split where they say") {
     mesh points;
     for (const float x : {0.0F, 6.0F, 9.0F, 9.5F, 10.0F}) points.vertices.push_back({x, 0, 0});
     for (std::uint32_t i = 0; i < points.vertices.size(); ++i) points.triangles.push_back({i, i, i});
-    const auto left_end = [&](const auto& build) { return build.build(points, leaf_pairing::any)[1].bounds.max[0]; };
+    const auto left_end = [&](const auto& build) { return build.build(points, leaf_arrangement::any)[1].bounds.max[0]; };
     CHECK(left_end(midpoint_build()) == 0);
     CHECK(left_end(mean_build()) == 6);
     // Work that the heuristic is made for: two clusters of different sizes.

@@ -91,7 +91,85 @@ box all_of(const std::vector<box>& boxes) {
     return all;
 }
 
+/// Where there are less than eight, the last one fills the rest.
+eight_boxes in_eight(const std::vector<box>& boxes) {
+    eight_boxes made{};
+    made.count = static_cast<std::uint32_t>(boxes.size());
+    for (std::size_t i = 0; i < eight_boxes::most; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const box& b = boxes[std::min(i, boxes.size() - 1)];
+            made.lower[k][i] = b.min[static_cast<int>(k)];
+            made.upper[k][i] = b.max[static_cast<int>(k)];
+        }
+    return made;
+}
+
+std::uint64_t met_by_codes(const std::vector<box>& a, const std::vector<box>& b) {
+    leaf_codes codes{};
+    codes.encode(in_eight(a));
+    return codes.planes.overlaps(codes.grid, in_eight(b));
+}
+
 }  // namespace
+
+TEST_CASE("boxes of a leaf that meet others are found, whatever their size and place") {
+    std::size_t met = 0;
+    REQUIRE(rc::check([&] {
+        const std::vector<box> a = any_boxes();
+        // Such as share planes with those of A, and any others.
+        std::vector<box> b = any_boxes();
+        for (box& one : b)
+            for (int k = 0; k < 3; ++k) {
+                const box& of_a = a[*rc::gen::inRange<std::size_t>(0, a.size())];
+                const int what = *rc::gen::inRange(0, 4);
+                if (what == 0) one.min[k] = one.max[k] = of_a.max[k];
+                if (what == 1) one.min[k] = one.max[k] = of_a.min[k];
+                if (what == 2) one.min[k] = of_a.min[k], one.max[k] = of_a.max[k];
+            }
+        const std::uint64_t found = met_by_codes(a, b);
+        for (std::size_t j = 0; j < 8; ++j)
+            for (std::size_t i = 0; i < 8; ++i) {
+                const bool bit = found >> (8 * j + i) & 1U;
+                if (i >= a.size() || j >= b.size()) {
+                    RC_ASSERT(!bit);
+                } else if (overlaps(a[i], b[j])) {
+                    RC_ASSERT(bit);
+                    ++met;
+                }
+            }
+    }));
+    CHECK(met > 100);
+}
+
+TEST_CASE("few boxes of a leaf are found that meet nothing, of every size and wherever they lie") {
+    triangle_pairs::generator g{7};
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    for (const float size : {1e-30F, 1.0F, 1e30F})
+        for (const float far : {0.0F, 1.0F, 1000.0F}) {
+            std::size_t apart = 0;
+            std::size_t found_apart = 0;
+            for (int round = 0; round < 200; ++round) {
+                std::vector<box> a(8);
+                std::vector<box> b(8);
+                for (auto* boxes : {&a, &b})
+                    for (box& one : *boxes)
+                        for (int k = 0; k < 3; ++k) {
+                            one.min[k] = size * (far + coordinate(g));
+                            one.max[k] = one.min[k] + size * std::abs(coordinate(g)) / 2;
+                        }
+                const std::uint64_t found = met_by_codes(a, b);
+                for (std::size_t j = 0; j < 8; ++j)
+                    for (std::size_t i = 0; i < 8; ++i) {
+                        const bool is_apart = !overlaps(a[i], b[j]);
+                        apart += is_apart;
+                        found_apart += is_apart && (found >> (8 * j + i) & 1U) != 0;
+                    }
+            }
+            CAPTURE(size, far);
+            CHECK(apart > 10000);
+            CHECK(found_apart * 100 < apart);
+        }
+}
 
 TEST_CASE("the filter decides as the exact test does, and leaves what rounding puts in doubt") {
     triangle_pairs::generator g{5};
@@ -167,6 +245,7 @@ TEST_CASE("a wide node holds the boxes that it takes, whatever their size and pl
 TEST_CASE("children that meet are found, however one node is turned against the other") {
     std::size_t met = 0;
     std::size_t apart = 0;
+    std::size_t apart_in_b = 0;
     REQUIRE(rc::check([&] {
         const std::vector<box> b = any_boxes();
         const double far = *rc::gen::element(0.0, 1.0, 1e3);
@@ -203,27 +282,34 @@ TEST_CASE("children that meet are found, however one node is turned against the 
         }
         wide_node node_a{};
         node_a.encode(a);
-        const std::uint64_t found = child_overlaps(to_a)(node_a, node_b);
+        eight_boxes images{};
+        box_images(to_a.to_boxes()).store(node_b, images);
+        const std::uint64_t in_a = node_a.planes.overlaps(node_a.grid(), images);
+        box_images(to_a.back_to_boxes(all_of(a))).store(node_a, images);
+        const std::uint64_t in_b = node_b.planes.overlaps(node_b.grid(), images);
         for (int sample = 0; sample < 40; ++sample) {
             const auto j = *rc::gen::inRange<std::size_t>(0, b.size());
             const box seen = bounds_of(to_a(point_in(b[j])));
             for (std::size_t i = 0; i < a.size(); ++i) {
-                const bool bit = found >> (8 * j + i) & 1U;
+                const bool bit = in_a >> (8 * j + i) & 1U;
                 if (overlaps(a[i], seen)) RC_ASSERT(bit);
+                if (overlaps(a[i], seen)) RC_ASSERT(in_b >> (8 * i + j) & 1U);
                 met += overlaps(a[i], seen);
                 apart += !bit;
+                apart_in_b += (in_b >> (8 * i + j) & 1U) == 0;
             }
         }
         // Of children that are not there, none.
         for (std::size_t j = 0; j < 8; ++j)
             for (std::size_t i = 0; i < 8; ++i)
-                if (i >= a.size() || j >= b.size()) RC_ASSERT((found >> (8 * j + i) & 1U) == 0);
+                if (i >= a.size() || j >= b.size()) RC_ASSERT(((in_a >> (8 * j + i) | in_b >> (8 * i + j)) & 1U) == 0);
     }));
     CHECK(met > 1000);
     CHECK(apart > 1000);
+    CHECK(apart_in_b > 1000);
 }
 
-TEST_CASE("the triangles of a block are moved as they are one by one, and held against boxes without a loss") {
+TEST_CASE("the triangles of a block are moved as they are one by one, and held in boxes") {
     REQUIRE(rc::check([] {
         std::array<double, 4> q{};
         for (double& x : q) x = uniform(-1, 1);
@@ -244,7 +330,6 @@ TEST_CASE("the triangles of a block are moved as they are one by one, and held a
         triangle_block moved;
         moved.load(m, built.tree(), 0);
         moved.move(to_a);
-        moved.bound();
         std::vector<box> around;
         for (std::uint32_t t = 0; t < triangles; ++t) {
             const triangle3f image = to_a(m.triangle(built.tree().triangle_at(t)));
@@ -253,11 +338,13 @@ TEST_CASE("the triangles of a block are moved as they are one by one, and held a
                           image[static_cast<int>(row / 3)][static_cast<int>(row % 3)]);
             around.push_back(bounds_of(image));
         }
-        wide_node n{};
-        n.encode(around);
-        const std::uint64_t met = child_overlaps::leaves(n, moved);
+        eight_boxes bounds{};
+        moved.bounds(bounds);
+        RC_ASSERT(bounds.count == triangles);
         for (std::size_t i = 0; i < triangles; ++i)
-            for (std::size_t j = 0; j < triangles; ++j)
-                if (overlaps(around[i], around[j])) RC_ASSERT(met >> (8 * j + i) & 1U);
+            for (int k = 0; k < 3; ++k) {
+                RC_ASSERT(bounds.lower[static_cast<std::size_t>(k)][i] == around[i].min[k]);
+                RC_ASSERT(bounds.upper[static_cast<std::size_t>(k)][i] == around[i].max[k]);
+            }
     }));
 }

@@ -1,0 +1,81 @@
+module;
+#include <cstddef>
+#include <cstdint>
+
+export module aabb.local_detection:child_pairs;
+
+import aabb.geometry;
+import :box_images;
+import :eight_boxes;
+import :recently_made;
+import :wide_node;
+import :wide_tree_policy;
+
+export namespace aabb {
+
+/// Which children of two nodes, of the same pair of trees, may meet: all sixty-four pairs at once. The boxes of B's
+/// children are taken into A's frame and held against those of A's node, and where a turn makes them much larger, those
+/// of A's into B's frame as well. A node meets many, so that its boxes in the other frame are kept.
+template <WideTreePolicy Tree>
+class child_pairs {
+public:
+    /// @param to_a must outlive the query
+    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a) {
+        first_a_ = a.level(0);
+        first_b_ = b.level(0);
+        to_a_ = box_images(to_a.to_boxes());
+        in_a_.begin(nodes(b));
+        turned_ = to_a.growth() > least_growth;
+        if (!turned_) return;
+        to_b_ = box_images(to_a.back_to_boxes(bounds_of_a));
+        in_b_.begin(nodes(a));
+    }
+
+    /// Bit 8 j + i for child i of A's node and child j of B's. Pairs of children whose triangles meet are among them.
+    [[nodiscard]] inline std::uint64_t operator()(const wide_node& a, const wide_node& b) {
+        const std::uint64_t met = a.planes.overlaps(a.grid(), in_a(b));
+        if (!turned_ || met == 0) return met;
+        return met & transposed(b.planes.overlaps(
+                         b.grid(), in_b_.get(number(a, first_a_), [&](eight_boxes& made) { to_b_.store(a, made); })));
+    }
+
+    /// The boxes of the children of B's node in A's frame.
+    [[nodiscard]] inline const eight_boxes& in_a(const wide_node& b) {
+        return in_a_.get(number(b, first_b_), [&](eight_boxes& made) { to_a_.store(b, made); });
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return in_a_.bytes() + in_b_.bytes(); }
+
+private:
+    static constexpr std::size_t most_kept = 32;
+    static constexpr double least_growth = 1.2;  // from here on, the second test saves more than it costs
+
+    [[nodiscard]] static std::size_t nodes(const Tree& t) noexcept {
+        return static_cast<std::size_t>(t.level(t.levels() - 1) - t.level(0)) + 1;
+    }
+    [[nodiscard]] static inline std::uint32_t number(const wide_node& n, const wide_node* first) noexcept {
+        return static_cast<std::uint32_t>(&n - first);
+    }
+
+    /// Bit 8 i + j becomes bit 8 j + i.
+    [[nodiscard]] static constexpr std::uint64_t transposed(std::uint64_t m) noexcept {
+        const auto swap = [&m](unsigned by, std::uint64_t which) {
+            const std::uint64_t changed = (m ^ m >> by) & which;
+            m ^= changed ^ changed << by;
+        };
+        swap(7, 0x00aa00aa00aa00aa);
+        swap(14, 0x0000cccc0000cccc);
+        swap(28, 0x00000000f0f0f0f0);
+        return m;
+    }
+
+    const wide_node* first_a_ = nullptr;
+    const wide_node* first_b_ = nullptr;
+    box_images to_a_;
+    box_images to_b_;
+    recently_made<eight_boxes, most_kept> in_a_;
+    recently_made<eight_boxes, most_kept> in_b_;
+    bool turned_ = false;
+};
+
+}  // namespace aabb

@@ -1,0 +1,34 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+export module aabb.local_detection:eight_boxes;
+
+import aabb.geometry;
+import aabb.simd;
+
+export namespace aabb {
+
+/// Up to eight boxes, coordinate by coordinate. In the places from `count` on, one of them is repeated.
+struct eight_boxes {
+    static constexpr std::size_t most = 8;
+    using row = std::array<float, most>;
+
+    alignas(32) std::array<row, 3> lower;
+    alignas(32) std::array<row, 3> upper;
+    std::uint32_t count;
+
+    /// The box of all.
+    [[nodiscard]] inline box merged() const noexcept {
+        box all;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto axis = static_cast<int>(k);
+            all.min[axis] = simd::least(simd::load_eight<simd::eight_floats>(lower[k].data()));
+            all.max[axis] = -simd::least(-simd::load_eight<simd::eight_floats>(upper[k].data()));
+        }
+        return all;
+    }
+};
+
+}  // namespace aabb
