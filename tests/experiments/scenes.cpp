@@ -294,6 +294,12 @@ TEST_CASE("a pair passes through itself") {
     }
 }
 
+TEST_CASE("a pair without way and turn stands still") {
+    const auto frames =
+        play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0"}, {"turn", "0"}}, {"icosphere"}, 1});
+    for (const auto& poses : frames) REQUIRE(poses == frames[0]);
+}
+
 TEST_CASE("scenes that cannot be made are refused") {
     REQUIRE(error_of({"browninan", {}, {}, 1}, false) == "unknown scene 'browninan'; did you mean 'brownian'?");
     REQUIRE(error_of({"mesh_swarm", {}, {}, 1}, false) == "mesh_swarm is a scene of meshes, not of boxes");

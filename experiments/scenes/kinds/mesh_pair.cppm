@@ -18,7 +18,8 @@ import :rotation;
 namespace aabblab {
 
 /// Two meshes: the first stands still with its centre at the origin; the second passes through it on a straight line,
-/// turning about its own centre. Line, axis and first rotation come from the seed.
+/// turning about its own centre. Line, axis and first rotation come from the seed. Without way and turn it stands
+/// still.
 class mesh_pair final : public aabb::mesh_scene {
 public:
     static constexpr std::string_view name = "mesh_pair";
@@ -37,8 +38,8 @@ public:
     static constexpr std::tuple parameters{
         aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"},
         aabb::number_parameter{"distance", &config::distance, 0.0, 1e6,
-                               "of the centres at both ends of the path, over the meshes' mean extent"},
-        aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh in a frame, in radians"},
+                               "of the centres at both ends of the path, over the meshes' mean extent", true},
+        aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh in a frame, in radians", true},
         aabb::choice_parameter{"normalise", &config::normalise, std::array<std::string_view, 2>{"yes", "no"},
                                "scale each mesh to a longest extent of 1"}};
 
@@ -53,6 +54,7 @@ public:
         centre_ = centre_of(second);
         random_source random(seed);
         rotation_ = random_rotation(random);
+        turns_ = c.turn > 0;
         turn_ = turn(random.direction(), c.turn);
         start_ = random.direction();
         const double distance = c.distance * (longest_extent(first) + longest_extent(second)) / 2;
@@ -63,7 +65,7 @@ public:
 
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames_) return false;
-        if (frame_ > 0) rotation_ = composed(turn_, rotation_);
+        if (frame_ > 0 && turns_) rotation_ = composed(turn_, rotation_);
         // From the start, through the origin, to its mirror image.
         const double left = frames_ > 1 ? 1 - 2 * static_cast<double>(frame_) / static_cast<double>(frames_ - 1) : 1;
         ++frame_;
@@ -78,6 +80,7 @@ private:
     aabb::vec3d centre_{};
     aabb::vec3d start_{};
     quaternion rotation_{};
+    bool turns_ = true;
     quaternion turn_{};
 };
 

@@ -1,0 +1,79 @@
+#pragma once
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace aabb::embree {
+
+struct release {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using scene_pointer = std::unique_ptr<RTCSceneTy, release>;
+using geometry_pointer = std::unique_ptr<RTCGeometryTy, release>;
+
+/// Embree's calls throw nothing: it is asked afterwards what failed first.
+inline void require_success(RTCDevice device) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree fails with its error " + std::to_string(error));
+}
+
+/// Where what Embree allocates and gives back is added up; null when nobody asks.
+inline thread_local std::ptrdiff_t* charged = nullptr;
+
+class charge_to {
+public:
+    explicit charge_to(std::ptrdiff_t& account) { charged = &account; }
+    charge_to(const charge_to&) = delete;
+    charge_to& operator=(const charge_to&) = delete;
+    ~charge_to() { charged = nullptr; }
+};
+
+/// The only device of the process, never given back. With the last one would go Embree's limit of one thread, and a
+/// second thread begin, which takes time from whoever is timed next.
+inline RTCDevice the_device() {
+    static const RTCDevice made = [] {
+        const RTCDevice device = rtcNewDevice("threads=1");
+        require_success(device);
+        const auto note = [](void*, std::ptrdiff_t bytes, bool) {
+            if (charged) *charged += bytes;
+            return true;
+        };
+        rtcSetDeviceMemoryMonitorFunction(device, note, nullptr);
+        return device;
+    }();
+    return made;
+}
+
+/// Embree builds with denormals taken for zero, and leaves out what reaches beyond 1.844e18. Moved to what it can work
+/// with, all coordinates keep their order, if not strictly: what overlaps still does.
+inline float workable(float x) {
+    constexpr float most = 1e18F;
+    return std::abs(x) < std::numeric_limits<float>::min() ? 0 : std::clamp(x, -most, most);
+}
+
+template <class Box>
+RTCBounds workable(const Box& b) {
+    RTCBounds made{};
+    made.lower_x = workable(b.min[0]);
+    made.lower_y = workable(b.min[1]);
+    made.lower_z = workable(b.min[2]);
+    made.upper_x = workable(b.max[0]);
+    made.upper_y = workable(b.max[1]);
+    made.upper_z = workable(b.max[2]);
+    return made;
+}
+
+}  // namespace aabb::embree
