@@ -57,6 +57,7 @@ private:
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = 32;
     static constexpr std::size_t most_missed = 4;
+    static constexpr int worth_a_slab = 6;  // pairs of triangles
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
 
@@ -194,12 +195,16 @@ private:
             const std::uint32_t leaf_a = from.a[p];
             const std::uint32_t leaf_b = from.b[p];
             const leaf_of_b& of_b = leaves_.moved(b, leaf_b, to_a);
-            const leaf_of_a* const of_a = leaves_.near(a, leaf_a, of_b);
+            leaf_of_a* const of_a = leaves_.near(a, leaf_a, of_b);
             if (of_a == nullptr) continue;
             counters_.add(work::box_tests, std::uint64_t{of_a->block.triangles} * of_b.block.triangles);
             std::uint64_t met = of_a->codes.planes.overlaps(of_a->codes.grid, of_b.boxes);
             if (what == extent::one_mesh && leaf_a == leaf_b) met &= not_twice & not_itself;
             if (met == 0) continue;
+            if (std::popcount(met) >= worth_a_slab) {
+                met &= rows(leaves_.slab_of(*of_a).reached_by(of_b.block, of_b.bounds));
+                if (met == 0) continue;
+            }
             counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
             waiting_.add(met, leaf_a, of_a->block, leaf_b, of_b.block);
             if (waiting_.is_full() && waiting_.decide(test, false, emit)) return true;
@@ -211,6 +216,12 @@ private:
     static constexpr std::uint64_t not_twice = 0xff7f3f1f0f070301;
     static constexpr std::uint64_t not_itself = 0x7fbfdfeff7fbfdfe;
 
+    /// All bits of row j for bit j.
+    [[nodiscard]] static constexpr std::uint64_t rows(std::uint64_t which) noexcept {
+        const std::uint64_t bit_of_row = which * 0x0101010101010101 & 0x8040201008040201;
+        constexpr std::uint64_t low_bits = 0x7f7f7f7f7f7f7f7f;
+        return ((((bit_of_row & low_bits) + low_bits) | bit_of_row) >> 7U & 0x0101010101010101) * 0xff;
+    }
     /// Bit 8 j for every row j of which a bit is set.
     [[nodiscard]] static constexpr std::uint64_t any_of_columns(std::uint64_t met) noexcept {
         met |= met >> 4U;

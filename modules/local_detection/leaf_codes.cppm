@@ -15,8 +15,8 @@ struct leaf_codes {
     code_grid grid;
     box_codes planes;
 
-    void encode(const eight_boxes& boxes) noexcept {
-        const box all = boxes.merged();
+    /// @param all the box of all
+    void encode(const eight_boxes& boxes, const box& all) noexcept {
         for (int k = 0; k < 3; ++k) {
             const auto axis = static_cast<std::size_t>(k);
             // Where the leaf is flat, its place alone has digits to tell apart.

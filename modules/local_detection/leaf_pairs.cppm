@@ -8,6 +8,7 @@ export module aabb.local_detection:leaf_pairs;
 import aabb.geometry;
 import :eight_boxes;
 import :leaf_codes;
+import :leaf_slab;
 import :model;
 import :recently_made;
 import :triangle_block;
@@ -20,6 +21,9 @@ export namespace aabb {
 struct leaf_of_a {
     triangle_block block;
     leaf_codes codes;
+    box bounds;
+    leaf_slab slab;
+    bool has_slab;  ///< not before it is asked for
 };
 
 /// Triangles of B in eights, in A's frame.
@@ -39,7 +43,7 @@ public:
     }
 
     /// @returns null where the leaves lie apart
-    [[nodiscard]] inline const leaf_of_a* near(const model<Tree>& a, std::uint32_t leaf, const leaf_of_b& of_b) {
+    [[nodiscard]] inline leaf_of_a* near(const model<Tree>& a, std::uint32_t leaf, const leaf_of_b& of_b) {
         // The box of triangles that were moved is smaller than that of a box that was. To look costs more than a leaf
         // that is there.
         if (!of_a_.has(leaf) && !a.tree().level(0)[leaf / width].meets(leaf % width, of_b.bounds)) return nullptr;
@@ -47,8 +51,17 @@ public:
             made.block.load(a.triangles(), a.tree(), leaf);
             eight_boxes boxes;
             made.block.bounds(boxes);
-            made.codes.encode(boxes);
+            const box bounds = boxes.merged();
+            made.codes.encode(boxes, bounds);
+            made.bounds = bounds;
+            made.has_slab = false;
         });
+    }
+
+    [[nodiscard]] static inline const leaf_slab& slab_of(leaf_of_a& leaf) noexcept {
+        if (!leaf.has_slab) leaf.slab.fit(leaf.block, leaf.bounds);
+        leaf.has_slab = true;
+        return leaf.slab;
     }
 
     [[nodiscard]] inline const leaf_of_b& moved(const model<Tree>& b, std::uint32_t leaf, const relative_pose& to_a) {

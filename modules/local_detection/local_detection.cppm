@@ -18,6 +18,7 @@ export import :depth_first_walk;
 export import :eight_boxes;
 export import :leaf_codes;
 export import :leaf_pairs;
+export import :leaf_slab;
 export import :leaf_test;
 export import :mesh_fit;
 export import :model;

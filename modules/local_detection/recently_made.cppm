@@ -31,7 +31,7 @@ public:
 
     /// @param make is called as `make(value)` where it is not there any more
     template <class Make>
-    [[nodiscard]] inline const Value& get(std::uint32_t number, const Make& make) {
+    [[nodiscard]] inline Value& get(std::uint32_t number, const Make& make) {
         const std::size_t place = number & (values_.size() - 1);
         if (made_[place] != number) {
             make(values_[place]);

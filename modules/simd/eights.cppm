@@ -106,6 +106,19 @@ template <class Number, class Vector>
     return lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6))[0];
 }
 
+[[nodiscard, gnu::always_inline]] inline float sum(eight_floats v) noexcept {
+    v += __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+    v += __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+    return v[0] + v[1];
+}
+
+/// Bit i for number i of a comparison.
+template <class Flags>
+[[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_eight(Flags flags) noexcept {
+    using bools = bool __attribute__((ext_vector_type(8)));
+    return __builtin_bit_cast(std::uint8_t, __builtin_convertvector(flags, bools));
+}
+
 /// Of each of eight numbers the whole part, no more than 254, and 0 where it is less or not a number.
 [[nodiscard, gnu::always_inline]] inline eight_bytes whole_bytes(eight_floats v) noexcept {
     using eight_ints = std::int32_t __attribute__((vector_size(32)));

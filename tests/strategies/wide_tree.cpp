@@ -106,7 +106,7 @@ eight_boxes in_eight(const std::vector<box>& boxes) {
 
 std::uint64_t met_by_codes(const std::vector<box>& a, const std::vector<box>& b) {
     leaf_codes codes{};
-    codes.encode(in_eight(a));
+    codes.encode(in_eight(a), all_of(a));
     return codes.planes.overlaps(codes.grid, in_eight(b));
 }
 
@@ -169,6 +169,76 @@ TEST_CASE("few boxes of a leaf are found that meet nothing, of every size and wh
             CHECK(apart > 10000);
             CHECK(found_apart * 100 < apart);
         }
+}
+
+TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shape and size") {
+    triangle_pairs::generator g{8};
+    std::size_t met = 0;
+    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+        for (const double size : {1e-42, 1e-30, 1e-14, 1.0, 1e12, 1e30, 1e37}) {
+            CAPTURE(triangle_pairs::patterns[pattern], size);
+            bool found_all = true;
+            for (int round = 0; round < 50; ++round) {
+                std::array<std::array<triangle3f, 8>, 2> sides;
+                std::array<triangle_block, 2> blocks{};
+                std::array<box, 2> bounds{empty_box(), empty_box()};
+                for (std::size_t i = 0; i < 8; ++i) {
+                    auto pair = triangle_pairs::patterned(g, pattern);
+                    for (std::size_t side = 0; side < 2; ++side) {
+                        for (auto& corner : pair[side])
+                            for (double& x : corner) x *= size;
+                        sides[side][i] = as_triangle(pair[side]);
+                        bounds[side] = merged(bounds[side], bounds_of(sides[side][i]));
+                        for (std::size_t row = 0; row < 9; ++row)
+                            blocks[side].corner[row / 3][row % 3][i] =
+                                sides[side][i][static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+                    }
+                }
+                if (!overlaps(bounds[0], bounds[1]) || !is_valid(bounds[0]) || !is_valid(bounds[1])) continue;
+                leaf_slab slab;
+                slab.fit(blocks[0], bounds[0]);
+                const std::uint32_t reached = slab.reached_by(blocks[1], bounds[1]);
+                for (std::size_t j = 0; j < 8; ++j)
+                    for (std::size_t i = 0; i < 8; ++i) {
+                        if (!exact_triangle::intersects(sides[0][i], sides[1][j])) continue;
+                        ++met;
+                        found_all &= (reached >> j & 1U) != 0;
+                    }
+            }
+            CHECK(found_all);
+        }
+    CHECK(met > 1000);
+}
+
+TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every size") {
+    // Long triangles along (1, 1, 1), side by side in a plane.
+    const auto sheet = [](float size, float height) {
+        triangle_block block{};
+        for (std::size_t i = 0; i < 8; ++i) {
+            const float at = 0.01F * static_cast<float>(i);
+            const float corners[3][3] = {
+                {at, -at, height}, {at + 1, 1 - at, height + 1}, {at + 0.51F, 0.49F - at, height + 0.5F}};
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t k = 0; k < 3; ++k) block.corner[c][k][i] = size * corners[c][k];
+        }
+        block.triangles = 8;
+        return block;
+    };
+    const auto bounds_of_block = [](const triangle_block& block) {
+        eight_boxes boxes{};
+        block.bounds(boxes);
+        return boxes.merged();
+    };
+    for (const float size : {1e-9F, 1.0F, 1e9F}) {
+        CAPTURE(size);
+        const triangle_block here = sheet(size, 0);
+        const triangle_block above = sheet(size, 0.001F);
+        REQUIRE(overlaps(bounds_of_block(here), bounds_of_block(above)));
+        leaf_slab slab;
+        slab.fit(here, bounds_of_block(here));
+        CHECK(slab.reached_by(here, bounds_of_block(here)) == 0xff);
+        CHECK(slab.reached_by(above, bounds_of_block(above)) == 0);
+    }
 }
 
 TEST_CASE("the filter decides as the exact test does, and leaves what rounding puts in doubt") {
