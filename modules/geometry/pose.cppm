@@ -188,7 +188,7 @@ public:
         return back;
     }
 
-    /// How much longer the box of a cube is in the other frame than the cube, on average of the axes: from 1 to √3.
+    /// How much longer the box of a cube is in the other frame than the cube, on average of the axes: from 1 to 5/3.
     [[nodiscard]] inline double growth() const noexcept {
         const lanes sum = absolute_turn_[0] + absolute_turn_[1] + absolute_turn_[2];
         return (sum[0] + sum[1] + sum[2]) / 3;

@@ -27,8 +27,8 @@ import :wide_tree_policy;
 export namespace aabb {
 
 /// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
-/// that no step waits for the one before, and few pairs are kept. Triangles are read and moved once for all the leaves
-/// that they meet one after the other, and tested in batches.
+/// that no step waits for the one before, and few pairs are kept; for the first pair one at a time, nearest first.
+/// Triangles are read and moved once for all the leaves that they meet one after the other, and tested in batches.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -85,7 +85,6 @@ private:
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
               walk_goal goal, Emit emit) {
         begin(a, b, to_a);
-        // For the first pair few at a time: what lies beyond it is not needed.
         const bool any_pair = goal == walk_goal::first_pair;
         const std::size_t at_once = any_pair ? 1 : most_at_once;
         const auto emit_pair = [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
@@ -161,8 +160,8 @@ private:
             const std::uint32_t node_b = from.b[i];
             const wide_node& of_a = nodes_a[node_a];
             const wide_node& of_b = nodes_b[node_b];
-            counters_.add(work::box_tests, std::uint64_t{of_a.children} * of_b.children);
-            std::uint64_t met = children_(of_a, of_b);
+            auto [met, box_tests] = children_(of_a, of_b);
+            counters_.add(work::box_tests, box_tests);
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
             if (!opens_a) met = any_of_columns(met);
             if (!opens_b) met = any_of_rows(met);
@@ -171,7 +170,7 @@ private:
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
             simd::store_places(places.data(), met);
             const auto count = static_cast<std::size_t>(std::popcount(met));
-            if (nearest_last && count > 1)
+            if (nearest_last && opens_a && opens_b && count > 1)
                 std::swap(places[nearest_pair(std::span(places).first(count), of_a, children_.in_a(of_b))],
                           places[count - 1]);
             for (std::size_t p = 0; p < count; p += children) {
@@ -196,7 +195,10 @@ private:
             const std::uint32_t leaf_b = from.b[p];
             const leaf_of_b& of_b = leaves_.moved(b, leaf_b, to_a);
             leaf_of_a* const of_a = leaves_.near(a, leaf_a, of_b);
-            if (of_a == nullptr) continue;
+            if (of_a == nullptr) {
+                counters_.add(work::box_tests);
+                continue;
+            }
             counters_.add(work::box_tests, std::uint64_t{of_a->block.triangles} * of_b.block.triangles);
             std::uint64_t met = of_a->codes.planes.overlaps(of_a->codes.grid, of_b.boxes);
             if (what == extent::one_mesh && leaf_a == leaf_b) met &= not_twice & not_itself;

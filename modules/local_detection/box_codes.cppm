@@ -8,10 +8,14 @@ export module aabb.local_detection:box_codes;
 import aabb.simd;
 import :eight_boxes;
 
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// The planes that codes stand for: along axis k, the code of x is the whole part of x * scale[k] - offset[k], as float
-/// computes it, but no more than 254, and 0 below 0. It never falls when x grows, however it is rounded.
+/// computes it, but no more than 254, and 0 below 0. It never falls when x grows, however it is rounded: if only it is
+/// rounded alike wherever codes are made and compared, so the pragma matters.
 struct code_grid {
     std::array<float, 3> scale;
     std::array<float, 3> offset;
@@ -23,7 +27,7 @@ struct box_codes {
 
     using row = std::array<std::uint8_t, eight_boxes::most>;
     std::array<row, 3> lower;
-    std::array<row, 3> upper;  ///< each less than 255 by the plane's code: so that one comparison serves both
+    std::array<row, 3> upper;  ///< 255 less the plane's code, so that one comparison serves both
 
     /// Sixty-four pairs at once: bit 8 j + i for box i of these and box j of `others`, if they may overlap.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {

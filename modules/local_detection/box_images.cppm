@@ -10,6 +10,9 @@ import aabb.simd;
 import :eight_boxes;
 import :wide_node;
 
+// Products may be fused into sums, which the bounds allow for; nothing else.
+#pragma clang fp reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Takes the boxes of a node's children into another frame: each holds the image of all that the child's does.
@@ -29,8 +32,8 @@ public:
     }
 
     /// In double, grown by the margin of the motion, and rounded to nearest, which is monotone, like vertices. Planes
-    /// lie further out than the vertices that the margin is for, by no more than a 60th of the node or `least`, which
-    /// adds less than is left of it.
+    /// lie further out than the vertices that the margin is for: by a 60th of the node, 2^-22 of the coordinate or the
+    /// least step. What rounding adds by that is within what is left of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
         std::array<std::array<simd::eight_doubles, 3>, 2> planes;

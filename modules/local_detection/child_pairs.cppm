@@ -19,7 +19,6 @@ export namespace aabb {
 template <WideTreePolicy Tree>
 class child_pairs {
 public:
-    /// @param to_a must outlive the query
     void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a) {
         first_a_ = a.level(0);
         first_b_ = b.level(0);
@@ -32,11 +31,16 @@ public:
     }
 
     /// Bit 8 j + i for child i of A's node and child j of B's. Pairs of children whose triangles meet are among them.
-    [[nodiscard]] inline std::uint64_t operator()(const wide_node& a, const wide_node& b) {
+    struct found {
+        std::uint64_t met;
+        std::uint32_t box_tests;
+    };
+    [[nodiscard]] inline found operator()(const wide_node& a, const wide_node& b) {
+        const std::uint32_t pairs = std::uint32_t{a.children} * b.children;
         const std::uint64_t met = a.planes.overlaps(a.grid(), in_a(b));
-        if (!turned_ || met == 0) return met;
-        return met & transposed(b.planes.overlaps(
-                         b.grid(), in_b_.get(number(a, first_a_), [&](eight_boxes& made) { to_b_.store(a, made); })));
+        if (!turned_ || met == 0) return {met, pairs};
+        const eight_boxes& boxes = in_b_.get(number(a, first_a_), [&](eight_boxes& made) { to_b_.store(a, made); });
+        return {met & transposed(b.planes.overlaps(b.grid(), boxes)), 2 * pairs};
     }
 
     /// The boxes of the children of B's node in A's frame.

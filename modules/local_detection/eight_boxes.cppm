@@ -10,7 +10,7 @@ import aabb.simd;
 
 export namespace aabb {
 
-/// Up to eight boxes, coordinate by coordinate. In the places from `count` on, one of them is repeated.
+/// Up to eight boxes, coordinate by coordinate. What stands in the places from `count` on is nobody's.
 struct eight_boxes {
     static constexpr std::size_t most = 8;
     using row = std::array<float, most>;
@@ -19,7 +19,7 @@ struct eight_boxes {
     alignas(32) std::array<row, 3> upper;
     std::uint32_t count;
 
-    /// The box of all.
+    /// The box of all; in the places from `count` on one of them must be repeated.
     [[nodiscard]] inline box merged() const noexcept {
         box all;
         for (std::size_t k = 0; k < 3; ++k) {

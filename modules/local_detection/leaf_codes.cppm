@@ -8,6 +8,9 @@ import aabb.geometry;
 import :box_codes;
 import :eight_boxes;
 
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// The boxes of a leaf's triangles on a grid of their own, made when they are needed.
@@ -15,6 +18,7 @@ struct leaf_codes {
     code_grid grid;
     box_codes planes;
 
+    /// @param boxes in the places from `count` on, one is repeated
     /// @param all the box of all
     void encode(const eight_boxes& boxes, const box& all) noexcept {
         for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,4 @@
 module;
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -44,8 +43,8 @@ public:
 
     /// @returns null where the leaves lie apart
     [[nodiscard]] inline leaf_of_a* near(const model<Tree>& a, std::uint32_t leaf, const leaf_of_b& of_b) {
-        // The box of triangles that were moved is smaller than that of a box that was. To look costs more than a leaf
-        // that is there.
+        // The box of triangles that were moved is smaller than that of a box that was. Looking costs more than using a
+        // leaf that is there.
         if (!of_a_.has(leaf) && !a.tree().level(0)[leaf / width].meets(leaf % width, of_b.bounds)) return nullptr;
         return &of_a_.get(leaf, [&](leaf_of_a& made) {
             made.block.load(a.triangles(), a.tree(), leaf);

@@ -10,6 +10,9 @@ import aabb.geometry;
 import aabb.simd;
 import :triangle_block;
 
+// Products may be fused into sums, which the bounds allow for; nothing else.
+#pragma clang fp reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// The space between two parallel planes that holds a leaf's triangles, across the mean of their normals: much thinner

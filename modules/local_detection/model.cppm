@@ -28,7 +28,7 @@ public:
     }
 
     /// After vertices of the mesh have moved.
-    /// @param boxes scratch, one box an internal node
+    /// @param boxes scratch, one box an internal node, or a triangle
     /// @throws input_error when the mesh is no longer valid or of as many triangles, and as `require_ieee_arithmetic`.
     void refit(std::vector<box>& boxes) {
         fit_.renew([&] {

@@ -18,7 +18,7 @@ class recently_made {
     static_assert(std::has_single_bit(MostPlaces));
 
 public:
-    /// Forgets all, and takes no more places than there will be numbers.
+    /// Forgets all, and takes few places where there will be few numbers.
     void begin(std::size_t numbers) {
         if (values_.size() < MostPlaces && values_.size() < numbers)
             values_.resize(std::min(MostPlaces, std::bit_ceil(numbers)));

@@ -68,13 +68,20 @@ private:
             leaf.below = bounds_of(mesh_.triangle(triangle));
     }
 
+    [[nodiscard]] bool has_box(const typename Tree::cursor& at) const {
+        if constexpr (requires { Tree::has_box(at); })
+            return Tree::has_box(at);
+        else
+            return Tree::has_leaf_boxes || !tree_.is_leaf(at);
+    }
+
     void close(const node& at) {
         result_.depth = std::max(result_.depth, open_.size() - 1);
         if (!result_.fault.empty()) return;
         const box below = at.below;
         const box bounds = tree_.bounds(at.cursor);
         if (!contains(bounds, below)) result_.fault = "a box does not hold the triangles below it";
-        if (Tree::has_leaf_boxes || !tree_.is_leaf(at.cursor)) {
+        if (has_box(at.cursor)) {
             result_.tight &= bounds == below;
             area_ += surface_area(bounds);
             smallest_ += surface_area(below);

@@ -8,6 +8,9 @@ export module aabb.local_detection:triangle_filter;
 
 import aabb.simd;
 
+// Products may be fused into sums, which the bounds allow for; nothing else.
+#pragma clang fp reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
 /// Bit i of either for pair i.

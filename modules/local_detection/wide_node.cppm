@@ -41,7 +41,7 @@ struct wide_node {
 
     [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
 
-    /// Products with its scale are exact, or beyond all codes, so no plane is rounded past a whole step.
+    /// Planes are exact on it, and rounding is monotone, so nothing is rounded past a plane.
     [[nodiscard]] inline code_grid grid() const noexcept {
         code_grid g;
         for (std::size_t k = 0; k < 3; ++k) {

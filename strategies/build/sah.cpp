@@ -2,7 +2,6 @@ module;
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -91,6 +90,8 @@ sah_split split_in_bins(std::span<const build_element> range, int axis, const bo
             least_missed = std::min(least_missed, missed);
         }
     }
+    // What a split elsewhere costs says nothing about this one.
+    if (wanted != any_number && least_missed > range.size() / 4) return {};
     return best;
 }
 
@@ -99,10 +100,8 @@ sah_split split_at(std::span<const build_element> range, int axis, std::size_t l
     std::array<const build_element*, most_sorted> sorted;
     const auto end = std::ranges::transform(range, sorted.begin(), [](const build_element& e) { return &e; }).out;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(left);
-    std::nth_element(sorted.begin(), middle, end, [axis](const build_element* p, const build_element* q) {
-        return p->centroid[axis] != q->centroid[axis] ? p->centroid[axis] < q->centroid[axis]
-                                                      : p->triangle < q->triangle;
-    });
+    std::nth_element(sorted.begin(), middle, end,
+                     [order = centroid_order{axis}](const auto* p, const auto* q) { return order(*p, *q); });
     const auto cost_between = [](auto from, auto to) {
         box all = empty_box();
         for (auto e = from; e != to; ++e) all = merged(all, (*e)->bounds);

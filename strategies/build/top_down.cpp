@@ -74,12 +74,7 @@ std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangeme
         const std::size_t left = wanted != any_number                     ? wanted
                                  : arrangement == leaf_arrangement::pairs ? paired(chosen.left, range.size())
                                                                           : chosen.left;
-        std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
-                                 [axis = chosen.axis](const build_element& p, const build_element& q) {
-                                     // Ties go by index, so that the tree does not depend on the library.
-                                     return p.centroid[axis] != q.centroid[axis] ? p.centroid[axis] < q.centroid[axis]
-                                                                                 : p.triangle < q.triangle;
-                                 });
+        std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left), centroid_order{chosen.axis});
         tasks.push_back({now.begin + left, now.end, here});
         tasks.push_back({now.begin, now.begin + left, no_parent});
     }

@@ -20,6 +20,15 @@ inline constexpr std::size_t any_number = 0;
 using split_rule =
     std::function<split_choice(std::span<const build_element> range, const box& bounds, std::size_t left)>;
 
+/// Along an axis; ties go by index, so that the tree does not depend on the library.
+struct centroid_order {
+    int axis;
+
+    [[nodiscard]] bool operator()(const build_element& p, const build_element& q) const noexcept {
+        return p.centroid[axis] != q.centroid[axis] ? p.centroid[axis] < q.centroid[axis] : p.triangle < q.triangle;
+    }
+};
+
 [[nodiscard]] std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement,
                                                      const split_rule& split);
 

@@ -19,15 +19,16 @@ export namespace aabb {
 
 /// A balanced tree without indices: every node has eight children, and where they stand follows from where it stands.
 /// Boxes are in 8 bits a plane (`wide_node`). Leaves are eight triangles, whose boxes are made when they are met, so
-/// that nodes take 1.15 bytes a triangle; which triangle stands where takes as many bits as there are digits in their
-/// number. Nodes are walked in batches (`batched_walk`). Seen as a binary tree, node (height, index) holds the
-/// triangles at places index * 2^height and up to 2^height - 1 beyond; below leaves, all have the leaf's box.
-/// When to use: for the fastest queries.
+/// that nodes take 1.14 bytes a triangle; which triangle stands where takes as many bits as the largest index has.
+/// Nodes are walked in batches (`batched_walk`). Seen as a binary tree, node (height, index) holds the triangles at
+/// places index * 2^height and up to 2^height - 1 beyond; below leaves, all have the leaf's box. When to use: for the
+/// fastest queries.
 class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";
     static constexpr std::string_view summary =
         "eight children a node in 64 bytes, no indices, no leaf boxes, walked in batches: fastest, smallest";
+    static constexpr std::string_view leaves_out = "no indices of nodes, and no boxes of single triangles";
     static constexpr bool has_leaf_boxes = true;
     static constexpr leaf_arrangement arrangement = leaf_arrangement::full_left;
 
@@ -69,6 +70,8 @@ public:
         return normal({static_cast<std::uint32_t>(std::bit_width(triangles_ - 1)), 0});
     }
     [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.height == 0; }
+    /// Whether the box is the node's own.
+    [[nodiscard]] static inline bool has_box(const cursor& at) noexcept { return at.height >= leaf_height; }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
         return {normal({at.height - 1, 2 * at.index}), normal({at.height - 1, 2 * at.index + 1})};
     }

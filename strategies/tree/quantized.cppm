@@ -30,7 +30,7 @@ struct quantized_config : leafless_config {
 /// Boxes are a little larger than `canonical`'s, and always hold what is below them. Nodes stand depth first in one run
 /// of bytes, so that of two children only the right one needs an index. One above two leaves is their triangles, 8
 /// bytes; every other is an index, the symbol and six codes, 5 + 6 bits / 8 bytes. With 8 bits that takes 9.5 bytes a
-/// triangle, where leaves come in pairs (`leaf_arrangement::pairs`). When to use: for the least memory.
+/// triangle, where leaves come in pairs (`leaf_arrangement::pairs`). When to use: where a binary tree must be small.
 class quantized_tree {
 public:
     static constexpr std::string_view name = "quantized";

@@ -8,6 +8,7 @@ import aabb.build.median;
 import aabb.tree.canonical;
 import aabb.tree.compressed;
 import aabb.tree.compressed_literal;
+import aabb.tree.implicit;
 import aabb.tree.leafless;
 import aabb.tree.quantized;
 import aabb.tree.shared_planes;
@@ -94,6 +95,20 @@ void print_images(const aabb::mesh& m) {
     std::printf("images: %s\n", images.text().c_str());
 }
 
+/// Triangles at one height, where they touch their neighbours, and nothing but rounding could tell them apart.
+void print_touching() {
+    for (const float z : {0.1F, 0.3F, 1.1F, 5.0F}) {
+        aabb::mesh m;
+        for (unsigned i = 0; i < 20; ++i)
+            for (unsigned j = 0; j < 20; ++j) m.vertices.push_back({static_cast<float>(i), static_cast<float>(j), z});
+        for (unsigned i = 0; i + 1 < 20; ++i)
+            for (unsigned j = 0; j + 1 < 20; ++j) m.triangles.push_back({20 * i + j, 20 * i + j + 1, 20 * i + j + 20});
+        const aabb::model<aabb::implicit_tree> model(m, aabb::median_build());
+        aabb::local_detection<aabb::implicit_tree, aabb::exact_triangle> detection;
+        std::printf("%llu touch\n", static_cast<unsigned long long>(detection.count_pairs(model, {}, model, {})));
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -103,12 +118,14 @@ int main() {
         print_answer<aabb::canonical_tree, aabb::exact_triangle>(m);
         print_answer<aabb::compressed_tree, aabb::exact_triangle>(m);
         print_answer<aabb::compressed_literal_tree, aabb::exact_triangle>(m);
+        print_answer<aabb::implicit_tree, aabb::exact_triangle>(m);
         print_answer<aabb::leafless_tree, aabb::exact_triangle>(m);
         print_answer<aabb::quantized_tree, aabb::exact_triangle>(m);
         print_answer<aabb::shared_planes_tree, aabb::exact_triangle>(m);
         print_answer<aabb::canonical_tree, aabb::devillers_guigue_triangle>(m);
         print_answer<aabb::canonical_tree, aabb::moller_triangle>(m);
         print_answer<aabb::canonical_tree, aabb::moller_double_triangle>(m);
+        print_touching();
     } catch (const aabb::input_error& error) {
         std::printf("%s\n", error.what());
         return 2;

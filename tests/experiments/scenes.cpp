@@ -294,7 +294,7 @@ TEST_CASE("a pair passes through itself") {
     }
 }
 
-TEST_CASE("a pair without way and turn stands still") {
+TEST_CASE("a pair with distance and turn 0 stands still") {
     const auto frames =
         play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0"}, {"turn", "0"}}, {"icosphere"}, 1});
     for (const auto& poses : frames) REQUIRE(poses == frames[0]);

@@ -18,8 +18,8 @@ import :rotation;
 namespace aabblab {
 
 /// Two meshes: the first stands still with its centre at the origin; the second passes through it on a straight line,
-/// turning about its own centre. Line, axis and first rotation come from the seed. Without way and turn it stands
-/// still.
+/// turning about its own centre. Line, axis and first rotation come from the seed. With distance and turn 0 it
+/// stands still.
 class mesh_pair final : public aabb::mesh_scene {
 public:
     static constexpr std::string_view name = "mesh_pair";

@@ -1,10 +1,12 @@
 module;
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "../embree/device.hpp"
@@ -25,11 +27,20 @@ namespace {
 
 using namespace embree;
 
-/// The boxes of triangles in a scene of good quality.
+/// The boxes of triangles in a scene of medium quality.
 class triangle_scene {
 public:
     /// @param held where what Embree allocates is added up; must outlive this
     explicit triangle_scene(std::ptrdiff_t& held) : held_(&held) {}
+    triangle_scene(triangle_scene&&) = default;
+    triangle_scene& operator=(triangle_scene&&) = delete;
+    triangle_scene(const triangle_scene&) = delete;
+    triangle_scene& operator=(const triangle_scene&) = delete;
+    ~triangle_scene() {
+        const charge_to here(*held_);
+        scene_.reset();
+        geometry_.reset();
+    }
 
     void build(std::span<const triangle3f> triangles) {
         bounds_.clear();
@@ -52,7 +63,7 @@ public:
         rtcCommitScene(scene_.get());
         require_success(the_device());
         // Needed while it builds only.
-        bounds_ = {};
+        aabb::release(bounds_);
     }
 
     [[nodiscard]] RTCScene get() const { return scene_.get(); }
@@ -78,7 +89,7 @@ public:
 
     void refit(std::uint32_t number) override {
         model& changed = models_[number];
-        forget_moved();
+        moved_.reset();
         changed.fit.renew([&] {
             require_ieee_arithmetic();
             require_still_valid(*changed.source, changed.triangles.size());
@@ -118,8 +129,6 @@ private:
         triangle_scene scene;
     };
     struct finding {
-        const std::vector<triangle3f>& a;
-        const std::vector<triangle3f>& b;
         std::vector<index_pair>& pairs;
         bool out_of_memory = false;
     };
@@ -138,35 +147,34 @@ private:
         models_[model_b].fit.require();
         if (!moved_ || moved_->model != model_b || moved_->pose_a != pose_a || moved_->pose_b != pose_b)
             move(model_b, pose_a, pose_b);
-        finding found{models_[model_a].triangles, moved_->triangles, pairs};
+        const auto known = static_cast<std::ptrdiff_t>(pairs.size());
+        finding found{pairs};
         rtcCollide(models_[model_a].scene.get(), moved_->scene.get(), collect, &found);
         require_success(the_device());
         if (found.out_of_memory) throw std::bad_alloc();
+        // Only now: while it searches, Embree may take denormals for zero.
+        const devillers_guigue_triangle test;
+        const auto apart = [&](index_pair p) {
+            return !test.intersects(models_[model_a].triangles[p.a], moved_->triangles[p.b]);
+        };
+        pairs.erase(std::remove_if(pairs.begin() + known, pairs.end(), apart), pairs.end());
     }
 
     void move(std::uint32_t number, const pose& pose_a, const pose& pose_b) {
         const model& b = models_[number];
         const relative_pose to_a(pose_a, pose_b, bounds_of(*b.source));
-        forget_moved();
+        moved_.reset();
         moved_model made{number, pose_a, pose_b, b.triangles, triangle_scene(*held_)};
         for (triangle3f& t : made.triangles) t = to_a(t);
         made.scene.build(made.triangles);
         moved_.emplace(std::move(made));
     }
 
-    void forget_moved() {
-        const charge_to here(*held_);
-        moved_.reset();
-    }
-
     /// No exception may pass through Embree.
     static void collect(void* to, RTCCollision* collisions, unsigned count) {
         finding& found = *static_cast<finding*>(to);
-        const devillers_guigue_triangle test;
         try {
-            for (const RTCCollision& c : std::span(collisions, count))
-                if (test.intersects(found.a[c.primID0], found.b[c.primID1]))
-                    found.pairs.push_back({c.primID0, c.primID1});
+            for (const RTCCollision& c : std::span(collisions, count)) found.pairs.push_back({c.primID0, c.primID1});
         } catch (const std::bad_alloc&) {
             found.out_of_memory = true;
         }
@@ -182,7 +190,7 @@ private:
 engine embree_meshes_engine() {
     return {.name = "embree_meshes",
             .summary =
-                "Embree's collision of two scenes of good quality, built anew for each new pose, with Devillers "
+                "Embree's collision of two scenes of medium quality, built anew for each new pose, with Devillers "
                 "and Guigue's test in double",
             .meshes = []() -> std::unique_ptr<local_stage> { return std::make_unique<embree_meshes>(); }};
 }
