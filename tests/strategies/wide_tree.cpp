@@ -379,6 +379,40 @@ TEST_CASE("children that meet are found, however one node is turned against the 
     CHECK(apart_in_b > 1000);
 }
 
+TEST_CASE("a box of A that holds no more than the image of a vertex holds the vertex when taken back") {
+    triangle_pairs::generator g{9};
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const box reach{{-1, -1, -1}, {1, 1, 1}};
+    const auto on_grid = [](float x) { return (std::bit_cast<std::uint32_t>(x) & 7U) == 0; };
+    for (const double far : {0.0, 1.0, 1e3, 1e6}) {
+        CAPTURE(far);
+        std::size_t held = 0;
+        std::size_t images = 0;
+        while (images < 50) {
+            const pose pose_b =
+                turned_by({1 + unit(g), unit(g), unit(g), unit(g)}, {far * unit(g), far * unit(g), far * unit(g)});
+            const relative_pose to_a({}, pose_b, reach);
+            const vec3f x{static_cast<float>(unit(g)), static_cast<float>(unit(g)), static_cast<float>(unit(g))};
+            const vec3f seen = to_a(x);
+            // Only there is no box drawn around it larger than it is.
+            if (!on_grid(seen[0]) || !on_grid(seen[1]) || !on_grid(seen[2])) continue;
+            ++images;
+            wide_node node{};
+            node.encode(std::array{bounds_of(seen)});
+            eight_boxes back{};
+            box_images(to_a.back_to_boxes(bounds_of(seen))).store(node, back);
+            bool holds = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto axis = static_cast<int>(k);
+                holds &= node.child(0).min[axis] == seen[axis] && node.child(0).max[axis] == seen[axis];
+                holds &= back.lower[k][0] <= x[axis] && x[axis] <= back.upper[k][0];
+            }
+            held += holds;
+        }
+        CHECK(held == images);
+    }
+}
+
 TEST_CASE("the triangles of a block are moved as they are one by one, and held in boxes") {
     REQUIRE(rc::check([] {
         std::array<double, 4> q{};
