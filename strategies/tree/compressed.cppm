@@ -19,8 +19,8 @@ export namespace aabb {
 /// The paper's compressed storage (section 3.2, table 1) without loss: no leaves, and two siblings share one record of
 /// six planes, 12 bytes a node. Where both children are leaves there is nothing to describe: such nodes stand behind
 /// the others, as two triangle indices without planes and without the symbol byte. That takes 20.5 bytes a triangle in
-/// place of table 1's 21. Leaves come in pairs (`leaf_arrangement::pairs`), since one beside an internal node would waste
-/// half a record. When to use: for the least memory with exact boxes.
+/// place of table 1's 21. Leaves come in pairs (`leaf_arrangement::pairs`), since one beside an internal node would
+/// waste half a record. When to use: for the least memory with exact boxes.
 class compressed_tree {
 public:
     static constexpr std::string_view name = "compressed";

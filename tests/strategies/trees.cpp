@@ -270,7 +270,9 @@ TEST_CASE("builds split where they say") {
     mesh points;
     for (const float x : {0.0F, 6.0F, 9.0F, 9.5F, 10.0F}) points.vertices.push_back({x, 0, 0});
     for (std::uint32_t i = 0; i < points.vertices.size(); ++i) points.triangles.push_back({i, i, i});
-    const auto left_end = [&](const auto& build) { return build.build(points, leaf_arrangement::any)[1].bounds.max[0]; };
+    const auto left_end = [&](const auto& build) {
+        return build.build(points, leaf_arrangement::any)[1].bounds.max[0];
+    };
     CHECK(left_end(midpoint_build()) == 0);
     CHECK(left_end(mean_build()) == 6);
     // Work that the heuristic is made for: two clusters of different sizes.
