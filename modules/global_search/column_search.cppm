@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -95,11 +96,11 @@ private:
         column_worker<Sort, Partition, Sweep, own_counters> own;
         std::vector<index_pair> pairs;
     };
-    /// Where the pairs of a group are.
+    /// Where the pairs of a group are that another worker than the first one took.
     struct pairs_of_group {
-        std::size_t worker;
-        std::size_t begin;
-        std::size_t end;
+        std::size_t worker = 0;
+        std::size_t begin = 0;
+        std::size_t end = 0;
     };
 
     void select(std::span<const box> boxes, const membership& objects) {
@@ -161,15 +162,38 @@ private:
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
+        // The first worker takes groups from the first one on, so that it leaves pairs where they belong; others take
+        // them from the last one on.
         for (worker& w : workers_) w.pairs.clear();
-        found_.resize(groups_.size());
-        threads_.for_each_index(groups_.size(), [&](std::size_t g, std::size_t number) {
-            worker& w = workers_[number];
-            const std::size_t begin = w.pairs.size();
-            search_group(static_cast<std::uint32_t>(g), w, w.pairs);
-            found_[g] = {number, begin, w.pairs.size()};
+        found_.assign(groups_.size(), {});
+        std::atomic<std::uint64_t> taken = 0;  // how many from the first one on, and 2^32 times how many from the last
+        threads_.for_each_index(threads_.count(), [&](std::size_t, std::size_t number) {
+            std::vector<index_pair>& to = number == 0 ? pairs : workers_[number].pairs;
+            const std::uint64_t one = number == 0 ? 1 : std::uint64_t{1} << 32U;
+            for (;;) {
+                const std::uint64_t before = taken.fetch_add(one, std::memory_order_relaxed);
+                const auto first = static_cast<std::uint32_t>(before);
+                const auto last = static_cast<std::uint32_t>(before >> 32U);
+                if (first + last >= groups_.size()) return;
+                const std::uint32_t g = number == 0 ? first : groups_.size() - 1 - last;
+                const std::size_t begin = to.size();
+                search_group(g, workers_[number], to);
+                if (number > 0) found_[g] = {number, begin, to.size()};
+            }
         });
         collect(pairs);
+    }
+
+    /// Those of the other workers, behind: in the order of the groups, whichever thread took them.
+    void collect(std::vector<index_pair>& pairs) {
+        std::size_t all = pairs.size();
+        for (const worker& w : workers_) all += w.pairs.size();
+        if (all > pairs.capacity()) pairs.reserve(std::max(all, 2 * pairs.capacity()));
+        for (const pairs_of_group& f : found_) {
+            const auto from = workers_[f.worker].pairs.begin();
+            pairs.insert(pairs.end(), from + static_cast<std::ptrdiff_t>(f.begin),
+                         from + static_cast<std::ptrdiff_t>(f.end));
+        }
     }
 
     void search_group(std::uint32_t g, worker& w, std::vector<index_pair>& pairs) {
@@ -182,18 +206,6 @@ private:
         static_cast<void>(w.own.fill(partition_, group, region, kept));
         w.own.sweep(partition_, group, region, kept, pairs);
         if (groups_.size() > 1 || kept.plan.columns() > 1) w.own.count(0, w.own.copies());
-    }
-
-    /// In the order of the groups, whichever thread took them.
-    void collect(std::vector<index_pair>& pairs) {
-        std::size_t all = pairs.size();
-        for (const worker& w : workers_) all += w.pairs.size();
-        if (all > pairs.capacity()) pairs.reserve(std::max(all, 2 * pairs.capacity()));
-        for (const pairs_of_group& f : found_) {
-            const auto from = workers_[f.worker].pairs.begin();
-            pairs.insert(pairs.end(), from + static_cast<std::ptrdiff_t>(f.begin),
-                         from + static_cast<std::ptrdiff_t>(f.end));
-        }
     }
 
     void add_up(Counters& counters) {
