@@ -7,19 +7,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "commands.hpp"
-#include "number.hpp"
 #include "output.hpp"
 
 // Import, so they come last.
 #include "composing.hpp"
 #include "hit_geometry.hpp"
+#include "poses.hpp"
 
 import aabb.base;
 import aabb.digest;
@@ -41,7 +41,8 @@ struct collide_request {
     std::optional<std::string> b;
     std::array<std::optional<std::string>, 2> poses;
     stage_options local{aabb::stage::local_detection};
-    std::optional<std::string> engine, out;
+    std::optional<std::string> engine, out, poses_of_b;
+    std::size_t repeats = 1;
     bool self = false;
     bool first = false;
     bool count = false;
@@ -57,14 +58,14 @@ struct detection_method {
 };
 
 struct detection_result {
-    std::vector<std::uint32_t> triangles;  ///< of each mesh
-    std::vector<aabb::index_pair> pairs;
-    std::uint64_t count = 0;                           ///< of pairs, of a mesh with itself those that share no vertex
+    std::vector<std::uint32_t> triangles;              ///< of each mesh
+    std::vector<aabb::index_pair> pairs;               ///< at the last pose
+    std::vector<std::uint64_t> counts;                 ///< by pose, of a mesh with itself those that share no vertex
     std::optional<std::uint64_t> neighbours;           ///< of a mesh with itself: pairs that share a vertex
     std::optional<aabb::triangle_intersection> first;  ///< of the one pair that --first found, with --geometry
     std::optional<std::string> digest;  ///< of all pairs, neighbours too; none where they are counted only
     double build_ms = 0;
-    double query_ms = 0;
+    std::vector<double> query_ms;  ///< by pose, and so again for each repeat
     std::vector<aabb::part_bytes> bytes;
     std::optional<double> bytes_per_triangle;  ///< of the trees; none for an engine that does not say
 };
@@ -86,70 +87,46 @@ detection_method method_of(const collide_request& request) {
     return method;
 }
 
-/// @param text the rows of [R t]
-aabb::pose parse_pose(const std::string& text) {
-    const std::vector<std::string> words = split_numbers(text);
-    if (words.size() != 12)
-        throw aabb::input_error(
-            fmt::format("a pose is 12 numbers, the rows of [R t] with commas between, not {}", words.size()));
-    aabb::pose pose;
-    for (std::size_t i = 0; i < 12; ++i) {
-        try {
-            const auto number = parse_number<double>(words[i]);
-            const std::size_t row = i / 4;
-            if (i % 4 == 3)
-                pose.translation[static_cast<int>(row)] = number;
-            else
-                pose.rotation[3 * row + i % 4] = number;
-        } catch (const aabb::input_error& error) {
-            throw aabb::input_error(fmt::format("number {} of 12: {}", i + 1, error.what()));
-        }
-    }
-    aabb::require_rigid(pose);
-    return pose;
-}
-
-aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
-    if (!text) return {};
-    try {
-        return parse_pose(*text);
-    } catch (const aabb::input_error& error) {
-        throw aabb::input_error(fmt::format("{}: {}", option, error.what()));
-    }
-}
-
-/// Meshes where they are told to be, each an object: a scene of one frame.
+/// Meshes where they are told to be, each an object; the second one, frame by frame, at each of its poses, as often as
+/// that is repeated.
 class posed_meshes final : public aabb::mesh_scene {
 public:
-    /// @param poses as many as meshes, or more
-    posed_meshes(std::vector<aabb::mesh> given, std::span<const aabb::pose> poses) {
+    /// @param of_b at least one, also where there is no second mesh
+    posed_meshes(std::vector<aabb::mesh> given, const aabb::pose& of_a, std::vector<aabb::pose> of_b,
+                 std::size_t repeats)
+        : of_a_(of_a), of_b_(std::move(of_b)), frames_(repeats * of_b_.size()) {
         meshes = std::move(given);
-        poses_.assign(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(meshes.size()));
         for (std::uint32_t object = 0; object < meshes.size(); ++object) mesh_of.push_back(object);
     }
 
-    [[nodiscard]] std::size_t frames() const override { return 1; }
+    [[nodiscard]] std::size_t frames() const override { return frames_; }
     bool next(std::vector<aabb::pose>& poses) override {
-        poses = poses_;
-        return !std::exchange(played_, true);
+        if (frame_ == frames_) return false;
+        poses = {of_a_, of_b_[frame_++ % of_b_.size()]};
+        poses.resize(meshes.size());
+        return true;
     }
 
 private:
-    std::vector<aabb::pose> poses_;
-    bool played_ = false;
+    aabb::pose of_a_;
+    std::vector<aabb::pose> of_b_;
+    std::size_t frames_;
+    std::size_t frame_ = 0;
 };
 
 /// Answers in place of `detect`, or by it.
-void query(player& who, const collide_request& request, detection_result& result) {
+/// @returns how many pairs there are, where those are not kept
+std::uint64_t query(player& who, const collide_request& request, std::vector<aabb::index_pair>& pairs) {
     if (request.self) {
-        who.find_self_pairs(0, result.pairs);
+        who.find_self_pairs(0, pairs);
     } else if (request.count) {
-        result.count = who.count_contacts();
+        return who.count_contacts();
     } else if (request.first) {
-        if (const auto c = who.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
+        if (const auto c = who.first_contact()) pairs.push_back({c->triangle_a, c->triangle_b});
     } else {
         who.detect();
     }
+    return 0;
 }
 
 /// How many corners of one triangle lie where a corner of the other does.
@@ -171,33 +148,18 @@ void set_bytes(detection_result& result, const player& who) {
     if (trees) result.bytes_per_triangle = static_cast<double>(*trees) / static_cast<double>(triangles);
 }
 
-/// Every two objects are candidates, since boxes in the world say nothing of meshes that were moved together, however
-/// far.
-/// @param table takes the pairs; null where they are not wanted.
-detection_result detect(const collide_request& request, detection_method& method, scene_play& scene,
-                        number_table* table) {
-    detection_result result;
-    std::optional<player> who;
-    result.build_ms = milliseconds_of([&] { who.emplace(stages{nullptr, std::move(method.stage)}, scene); });
-    scene.next();
-    who->update();
-    who->search();
-    try {
-        result.query_ms = milliseconds_of([&] { query(*who, request, result); });
-    } catch (const aabb::input_error& error) {
-        throw aabb::input_error(
-            fmt::format("{} against {}: {}", request.a, request.b.value_or("itself"), error.what()));
-    }
+/// Brings the pairs of one pose into their order, and says which they are.
+/// @param pose its place in the file of poses; none where there is none
+/// @param table takes the pairs; null where they are not wanted
+/// @returns how many there are, of a mesh with itself those that share no vertex
+std::uint64_t take_pairs(const collide_request& request, detection_method& method, const scene_play& scene,
+                         std::optional<std::uint32_t> pose, detection_result& result, number_table* table) {
     const std::vector<aabb::mesh>& meshes = scene.meshes()->meshes;
-    for (const aabb::mesh& m : meshes) result.triangles.push_back(m.triangle_count());
-    set_bytes(result, *who);
-    if (request.count && !request.self) return result;
-    for (const aabb::contact& c : who->sorted_contacts()) result.pairs.push_back({c.triangle_a, c.triangle_b});
     std::ranges::sort(result.pairs);
     require_each_once(result.pairs, method.name);
     if (method.geometry)
         method.geometry->take(meshes.front(), scene.poses().front(), meshes.back(), scene.poses().back());
-    aabb::digest digest;
+    std::uint64_t count = 0;
     for (const aabb::index_pair pair : result.pairs) {
         const std::uint32_t shared = request.self ? shared_vertices(meshes[0], pair) : 0;
         std::string cells;
@@ -206,19 +168,63 @@ detection_result detect(const collide_request& request, detection_method& method
             if (request.first) result.first = common;
             if (table) cells = to_cells(common);
         }
-        if (table) request.self ? table->add({pair.a, pair.b, shared}, cells) : table->add({pair.a, pair.b}, cells);
-        result.count += shared == 0;
+        if (table) {
+            if (request.self)
+                table->add({pair.a, pair.b, shared}, cells);
+            else if (pose)
+                table->add({*pose, pair.a, pair.b}, cells);
+            else
+                table->add({pair.a, pair.b}, cells);
+        }
+        count += shared == 0;
     }
-    digest.add(0, result.pairs);
-    if (request.self) result.neighbours = result.pairs.size() - result.count;
+    return count;
+}
+
+/// Every two objects are candidates, since boxes in the world say nothing of meshes that were moved together, however
+/// far. What is found again in a repeat is not told again.
+/// @param table takes the pairs; null where they are not wanted.
+detection_result detect(const collide_request& request, detection_method& method, scene_play& scene,
+                        number_table* table) {
+    detection_result result;
+    std::optional<player> who;
+    result.build_ms = milliseconds_of([&] { who.emplace(stages{nullptr, std::move(method.stage)}, scene); });
+    for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
+    const std::size_t poses = scene.frames() / request.repeats;
+    aabb::digest digest;
+    for (std::uint32_t frame = 0; scene.next(); ++frame) {
+        const auto pose = request.poses_of_b ? std::optional(frame) : std::nullopt;
+        std::vector<aabb::index_pair> pairs;
+        std::uint64_t count = 0;
+        try {
+            who->update();
+            who->search();
+            result.query_ms.push_back(milliseconds_of([&] { count = query(*who, request, pairs); }));
+        } catch (const aabb::input_error& error) {
+            throw aabb::input_error(fmt::format("{} against {}{}: {}", request.a, request.b.value_or("itself"),
+                                                pose ? fmt::format(" at pose {}", frame % poses) : "", error.what()));
+        }
+        if (frame >= poses) continue;
+        result.pairs = std::move(pairs);
+        if (!request.count || request.self) {
+            for (const aabb::contact& c : who->sorted_contacts()) result.pairs.push_back({c.triangle_a, c.triangle_b});
+            count = take_pairs(request, method, scene, pose, result, table);
+            digest.add(frame, result.pairs);
+        }
+        result.counts.push_back(count);
+    }
+    set_bytes(result, *who);
+    if (request.self) result.neighbours = result.pairs.size() - result.counts.front();
     if (!request.count) result.digest = digest.text();
     return result;
 }
 
-void print_json(const detection_method& method, const detection_result& result) {
+void print_json(const collide_request& request, const detection_method& method, const detection_result& result) {
     nlohmann::ordered_json summary = {
-        {"triangles", result.triangles}, {"pairs", result.count},       {"digest", nullptr},
+        {"triangles", result.triangles}, {"pairs", result.counts},      {"digest", nullptr},
         {"build_ms", result.build_ms},   {"query_ms", result.query_ms}, {"bytes_per_triangle", nullptr}};
+    if (!request.poses_of_b) summary["pairs"] = result.counts.front();
+    if (!request.poses_of_b && request.repeats == 1) summary["query_ms"] = result.query_ms.front();
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
@@ -240,15 +246,20 @@ void print_text(const collide_request& request, const detection_method& method, 
         "{} ({} triangles) against {}\n", visible(request.a), result.triangles[0],
         request.self ? "itself" : fmt::format("{} ({} triangles)", visible(*request.b), result.triangles[1])));
     const std::string digest = result.digest ? ", digest " + *result.digest : "";
-    if (request.first && !result.pairs.empty())
+    if (request.first && !request.poses_of_b && !result.pairs.empty())
         print(fmt::format("triangles {} and {} intersect{}\n", result.pairs[0].a, result.pairs[0].b,
                           result.first ? ": " + to_text(*result.first) : ""));
     else
-        print(fmt::format("{} intersecting pairs of triangles{}{}\n", result.count,
+        print(fmt::format("{}{} intersecting pairs of triangles{}{}\n",
+                          request.poses_of_b ? fmt::format("{} poses of it: ", result.counts.size()) : "",
+                          std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}),
                           request.self ? " that share no vertex" : "", digest));
     if (result.neighbours) print(fmt::format("{} more among triangles that share a vertex\n", *result.neighbours));
-    print(fmt::format("{}{}: built in {:.3f} ms, searched in {:.3f} ms", method.name, method.exact ? "" : " (inexact)",
-                      result.build_ms, result.query_ms));
+    std::vector<double> ms = result.query_ms;
+    std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
+    print(fmt::format("{}{}: built in {:.3f} ms, searched in {:.3f} ms{}", method.name,
+                      method.exact ? "" : " (inexact)", result.build_ms, ms[ms.size() / 2],
+                      ms.size() == 1 ? "" : fmt::format(" (median of {})", ms.size())));
     if (result.bytes_per_triangle) print(fmt::format(", {:.1f} bytes a triangle", *result.bytes_per_triangle));
     print("\nbytes:");
     const char* before = " ";
@@ -263,13 +274,16 @@ void print_text(const collide_request& request, const detection_method& method, 
 void require_sense(const collide_request& request) {
     if (request.self) {
         if (request.b) throw aabb::input_error("--self holds one mesh against itself, so give no second one");
-        if (request.poses[0] || request.poses[1])
+        if (request.poses[0] || request.poses[1] || request.poses_of_b)
             throw aabb::input_error("--self holds a mesh against itself, so poses change nothing; leave them away");
         if (request.first)
             throw aabb::input_error("--self finds every pair, so --first does not go with it; --count does");
     } else if (!request.b) {
         throw aabb::input_error("collide: expected B, the other mesh, or --self");
     }
+    if (request.poses[1] && request.poses_of_b)
+        throw aabb::input_error("--pose-b and --poses both say where B is; give one of them");
+    if (request.repeats == 0) throw aabb::input_error("--repeat is how often to search, so at least 1");
     if (request.first && request.count) throw aabb::input_error("--first and --count ask for different things");
     if (request.count && request.out) throw aabb::input_error("--count keeps no pairs, so there is nothing for --out");
     if (!request.geometry) return;
@@ -282,22 +296,23 @@ void require_sense(const collide_request& request) {
 void collide(const collide_request& request) {
     require_sense(request);
     detection_method method = method_of(request);
-    const std::array<aabb::pose, 2> poses = {pose_of(request.poses[0], "--pose-a"),
-                                             pose_of(request.poses[1], "--pose-b")};
+    const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
+    std::vector<aabb::pose> of_b{pose_of(request.poses[1], "--pose-b")};
+    if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);
     std::vector<std::string> names{request.a};
     if (request.b) names.push_back(*request.b);
     std::optional<number_table> table;
     if (request.out) {
         require_no_mesh(*request.out, names);
-        std::string columns = request.self ? "a,b,shared_vertices" : "a,b";
+        std::string columns = request.self ? "a,b,shared_vertices" : request.poses_of_b ? "pose,a,b" : "a,b";
         if (request.geometry) columns += "," + std::string(intersection_columns);
         table.emplace(*request.out, columns);
     }
-    scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), poses));
+    scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), of_a, std::move(of_b), request.repeats));
     const detection_result result = detect(request, method, scene, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)
-        print_json(method, result);
+        print_json(request, method, result);
     else
         print_text(request, method, result);
 }
@@ -317,6 +332,10 @@ void add_collide(CLI::App& program, int&) {
                      "Where A is: 12 numbers with commas between, the rows of [R t] (default: as it is)")
         ->type_name("M");
     command->add_option("--pose-b", request->poses[1], "Where B is")->type_name("M");
+    command
+        ->add_option("--poses", request->poses_of_b,
+                     "Search with B at each pose of this file, one a line; trees are built once")
+        ->type_name("FILE");
     request->local.add_to(*command);
     command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
         ->type_name("E");
@@ -324,8 +343,12 @@ void add_collide(CLI::App& program, int&) {
     command->add_flag("--first", request->first, "Stop at the first pair found");
     command->add_flag("--count", request->count, "Only count the pairs");
     command
-        ->add_option("--out", request->out,
-                     "Write the pairs, rows a,b (with --self a,b,shared_vertices), to this CSV file")
+        ->add_option("--repeat", request->repeats, "Search so often, at all poses in turn; each time is told (--json)")
+        ->type_name("N");
+    command
+        ->add_option(
+            "--out", request->out,
+            "Write the pairs, rows a,b (with --self a,b,shared_vertices, with --poses pose,a,b), to this CSV file")
         ->type_name("FILE");
     command->add_flag("--geometry", request->geometry,
                       "Add to each pair what its triangles have in common, in the world: kind, corners, error");

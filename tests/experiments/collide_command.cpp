@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -191,6 +192,7 @@ TEST_CASE("collide refuses questions that do not go together") {
         {{a}, "collide: expected B, the other mesh, or --self"},
         {{a, a, "--self"}, "--self holds one mesh against itself, so give no second one"},
         {{a, "--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "poses change nothing"},
+        {{a, "--self", "--poses", "poses.txt"}, "poses change nothing"},
         {{a, "--self", "--first"}, "--self finds every pair, so --first does not go with it"},
         {{a, a, "--first", "--count"}, "--first and --count ask for different things"},
         {{a, a, "--count", "--out", folder / "x.csv"}, "--count keeps no pairs"},
@@ -225,6 +227,86 @@ TEST_CASE("collide takes both poses") {
             std::string::npos);
 }
 
+TEST_CASE("collide takes many poses in one call, each as in a call of its own") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::string b = folder.write("b.off", pyramid);
+    const std::vector<std::string> poses{"1,0,0,0.4,0,1,0,0.2,0,0,1,-0.1", "1 0 0 9 0 1 0 0 0 0 1 0",
+                                         "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
+    const std::string file =
+        folder.write("poses.txt", "# of b\n" + poses[0] + "\n\n" + poses[1] + " # far away\r\n" + poses[2]);
+    const auto who = GENERATE(std::vector<std::string>{}, std::vector<std::string>{"--tree", "canonical"},
+                              std::vector<std::string>{"--engine", "cgal"});
+    const auto all = [&](const std::vector<std::string>& options) {
+        return nlohmann::json::parse(
+            run_program(joined(joined({"collide", a, b, "--json", "--poses", file}, who), options)).out);
+    };
+    std::string rows = "pose,a,b\n";
+    std::vector<std::size_t> counts;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const std::string out = folder / "one.csv";
+        const auto one = nlohmann::json::parse(
+            run_program(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who)).out);
+        counts.push_back(one["pairs"]);
+        std::istringstream lines(bytes_of_file(out));
+        std::string line;
+        for (std::getline(lines, line); std::getline(lines, line);) rows += std::to_string(i) + "," + line + "\n";
+    }
+    REQUIRE(counts[0] > 0);
+    REQUIRE(counts[1] == 0);
+    REQUIRE(counts[2] > 0);
+    const auto found = all({"--out", folder / "all.csv"});
+    CHECK(found["pairs"] == counts);
+    CHECK(found["query_ms"].size() == 3);
+    CHECK(bytes_of_file(folder / "all.csv") == rows);
+    // Again and again the same, told once.
+    const auto again = all({"--repeat", "4", "--out", folder / "again.csv"});
+    CHECK(again["pairs"] == counts);
+    CHECK(again["digest"] == found["digest"]);
+    CHECK(again["query_ms"].size() == 12);
+    CHECK(bytes_of_file(folder / "again.csv") == rows);
+    CHECK(all({"--count"})["pairs"] == counts);
+    CHECK(all({"--first"})["pairs"] == std::vector{1, 0, 1});
+}
+
+TEST_CASE("a line of a file of poses that is none is told") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const auto [text, said] = GENERATE(table<std::string, std::string>({
+        {"# nothing\n\n", "poses.txt: has no poses"},
+        {"# one\n1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,x,0,1,0,0,0,0,1,0\n",
+         "poses.txt:3: number 4 of 12: 'x' is not a number"},
+        {"0 0 1 0 0\n", "poses.txt:1: a pose is 12 numbers, the rows of [R t] with commas between, not 5"},
+        {"2,0,0,0,0,1,0,0,0,0,1,0", "poses.txt:1: the pose is not rigid"},
+        {"1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,1e39,0,1,0,0,0,0,1,0", "a.off at pose 1: seen from one mesh, the other lies"},
+    }));
+    const program_result result =
+        run_program({"collide", a, a, "--poses", folder.write("poses.txt", text), "--out", folder / "pairs.csv"});
+    INFO(result.err);
+    CHECK(result.status == 2);
+    CHECK(is_one_sentence(result.err));
+    CHECK(result.err.find(said) != std::string::npos);
+    CHECK(folder.files() == 2);
+}
+
+TEST_CASE("collide searches as often as it is asked to, and tells each time") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const auto hold_to_one = [&](const std::vector<std::string>& options) {
+        const auto once = nlohmann::json::parse(run_program(joined({"collide", a, "--json"}, options)).out);
+        const auto often =
+            nlohmann::json::parse(run_program(joined({"collide", a, "--json", "--repeat", "5"}, options)).out);
+        CHECK(once["query_ms"].is_number());
+        CHECK(often["query_ms"].size() == 5);
+        CHECK(often["pairs"] == once["pairs"]);
+        CHECK(often["digest"] == once["digest"]);
+    };
+    hold_to_one({a});
+    hold_to_one({"--self"});
+    const std::string text = run_program({"collide", a, a, "--repeat", "5"}).out;
+    CHECK(text.find(" ms (median of 5)") != std::string::npos);
+}
+
 TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
@@ -236,6 +318,9 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
         {{"--pose-b", "1,0,0,1e39,0,1,0,0,0,0,1,0"}, "a.off: seen from one mesh, the other lies beyond"},
         {{"--pose-b", "2,0,0,0,0,1,0,0,0,0,1,0"}, "--pose-b: the pose is not rigid"},
         {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
+        {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,0", "--poses", "nowhere.txt"}, "--pose-b and --poses both say where B is"},
+        {{"--poses", "nowhere.txt"}, "nowhere.txt"},
+        {{"--repeat", "0"}, "--repeat is how often to search, so at least 1"},
         {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
         {{"--engine", "cgl"}, "did you mean 'cgal'?"},
         {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --build, --tree and --triangle"},
