@@ -102,9 +102,16 @@ std::vector<composition> every_composition(const Rows& rows, stage of) {
         composition& c = all.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
+    // Those that stand apart, with the usual strategies and with the first ones.
     for (const strategy_kind kind : kinds_of(of, true))
-        for (const composed::entry& e : entries(kind))
-            if (e.info.name != info_of(kind).fallback) all.emplace_back()[kind] = {e.info.name, {}};
+        for (const composed::entry& e : entries(kind)) {
+            if (e.info.name == info_of(kind).fallback) continue;
+            composition c;
+            c[kind] = {e.info.name, {}};
+            all.push_back(c);
+            for (const strategy_kind other : kinds) c[other] = {entries(other).front().info.name, {}};
+            if (row_for(rows, c, of).make) all.push_back(c);
+        }
     return all;
 }
 

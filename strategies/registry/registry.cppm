@@ -75,7 +75,8 @@ private:
 /// Why the composition is refused in scenes of boxes, in the words of the strategy; empty where it plays them too.
 [[nodiscard]] std::string needs_meshes(const composition& c);
 
-/// Every combination of a stage that makes sense, with default parameters; what stands apart in turn, the rest usual.
+/// Every combination of a stage that makes sense, with default parameters; what stands apart in turn, with the usual
+/// strategies and with the first ones.
 [[nodiscard]] std::vector<composition> every_composition(stage of);
 
 /// @throws input_error on an unknown name or parameter, or a refused combination.

@@ -21,8 +21,8 @@ export namespace aabb {
 /// Boxes are in 8 bits a plane (`wide_node`). Leaves are eight triangles, whose boxes are made when they are met, so
 /// that nodes take 1.14 bytes a triangle; which triangle stands where takes as many bits as the largest index has.
 /// Nodes are walked in batches (`batched_walk`). Seen as a binary tree, node (height, index) holds the triangles at
-/// places index * 2^height and up to 2^height - 1 beyond; below leaves, all have the leaf's box. When to use: for the
-/// fastest queries.
+/// places index * 2^height and up to 2^height - 1 beyond; below leaves, all have the leaf's box. A build chooses axes,
+/// not how many triangles go to which side. When to use: for the fastest queries.
 class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";

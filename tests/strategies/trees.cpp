@@ -258,8 +258,12 @@ TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a 
 }
 
 TEST_CASE("builds split where they say") {
-    const auto survey = [](const char* build, const mesh& m) {
-        const auto stage = local_of(composed({{strategy_kind::build, build}}));
+    // With a tree that takes splits as they come; `implicit` prescribes them.
+    const auto split_by = [](const char* build) {
+        return composed({{strategy_kind::build, build}, {strategy_kind::tree, "canonical"}});
+    };
+    const auto survey = [&](const char* build, const mesh& m) {
+        const auto stage = local_of(split_by(build));
         stage->add_model(m);
         return *stage->survey(0);
     };
@@ -283,7 +287,7 @@ TEST_CASE("builds split where they say") {
         clusters.triangles.push_back({2 * i, 2 * i, 2 * i + 1});
     }
     const auto tests = [&](const char* build) {
-        const auto stage = local_of(composed({{strategy_kind::build, build}}), instrumentation::counters);
+        const auto stage = local_of(split_by(build), instrumentation::counters);
         const auto model = stage->add_model(clusters);
         pose aside;
         aside.translation = {50, 0, 0};
