@@ -21,7 +21,7 @@ struct filtered_pairs {
 
 /// Decides on as many pairs of triangles as a vector has lanes, in float, where rounding leaves no doubt; the others
 /// are left to an exact test. After Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488,
-/// 2002): the signs of eight orientations.
+/// 2002): the signs of eight orientations. Triangles with a corner in common are hits.
 ///
 /// A determinant of differences of coordinates that are at most X, Y and Z apart is 46 u XYZ from the real one, to
 /// first order, u = 2^-24: three differences and six products, with the sums of them, are rounded. What underflows adds
@@ -55,7 +55,11 @@ public:
         const simd::floats second = dot(cross(s[2] - s[0], t[2] - s[0]), between);
         const simd::flags beyond = most.above(first) | most.above(second);
         const simd::flags crossing = most.below(first) & most.below(second);
-        return {simd::bits(~apart & sure & crossing), simd::bits(~apart & ~(sure & (beyond | crossing)))};
+        const std::uint32_t hits = simd::bits(~apart & sure & crossing);
+        const std::uint32_t undecided = simd::bits(~apart & ~(sure & (beyond | crossing)));
+        if (undecided == 0) return {hits, 0};
+        const std::uint32_t touching = undecided & simd::bits(share_corner(s, t));
+        return {hits | touching, undecided & ~touching};
     }
 
 private:
@@ -114,6 +118,15 @@ private:
     [[nodiscard, gnu::always_inline]] static inline simd::floats dot(const point& p, const point& q) noexcept {
 #pragma clang fp contract(fast)
         return p.at[0] * q.at[0] + p.at[1] * q.at[1] + p.at[2] * q.at[2];
+    }
+
+    /// As neighbours in a mesh do: there is nothing more to decide.
+    [[nodiscard, gnu::always_inline]] static inline simd::flags share_corner(const corners& s,
+                                                                             const corners& t) noexcept {
+        simd::flags any{};
+        for (const point& p : s)
+            for (const point& q : t) any |= (p.at[0] == q.at[0]) & (p.at[1] == q.at[1]) & (p.at[2] == q.at[2]);
+        return any;
     }
 
     [[nodiscard, gnu::always_inline]] static inline simd::floats spread(const corners& s, const corners& t,

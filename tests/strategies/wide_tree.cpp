@@ -290,6 +290,22 @@ TEST_CASE("the filter leaves few of ordinary pairs undecided, of every size") {
     }
 }
 
+TEST_CASE("the filter decides on neighbours, whichever corner they share, of every size") {
+    triangle_pairs::generator g{7};
+    std::uniform_real_distribution<float> coordinate(-1, 1);
+    for (const float size : {1e-45F, 1e-30F, 1.0F, 1e30F, 3e38F})
+        for (std::size_t corner_a = 0; corner_a < 3; ++corner_a)
+            for (std::size_t corner_b = 0; corner_b < 3; ++corner_b) {
+                pairs_of_a_vector pairs;
+                for (auto* rows : {&pairs.a, &pairs.b})
+                    for (auto& row : *rows)
+                        for (float& x : row) x = size * coordinate(g);
+                for (std::size_t k = 0; k < 3; ++k) pairs.b[3 * corner_b + k] = pairs.a[3 * corner_a + k];
+                CAPTURE(size, corner_a, corner_b);
+                CHECK(pairs.filtered().hits == simd::every_lane);
+            }
+}
+
 TEST_CASE("a wide node holds the boxes that it takes, whatever their size and place") {
     REQUIRE(rc::check([] {
         const std::vector<box> boxes = any_boxes();
