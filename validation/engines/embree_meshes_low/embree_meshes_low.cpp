@@ -1,0 +1,20 @@
+module;
+#include <memory>
+
+module aabb.engines;
+
+import aabb.pipeline;
+import :engine;
+
+namespace aabb {
+
+// Defined in ../embree_meshes/meshes.cpp, which is in every build that has this file.
+std::unique_ptr<local_stage> make_embree_meshes(bool low);
+
+engine embree_meshes_low_engine() {
+    return {.name = "embree_meshes_low",
+            .summary = "the same with scenes of low quality, which are built faster",
+            .meshes = [] { return make_embree_meshes(true); }};
+}
+
+}  // namespace aabb
