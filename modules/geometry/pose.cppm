@@ -78,28 +78,23 @@ public:
                 rows_a_[k][i] = a.rotation[3 * k + i];
             }
         }
+        lanes world = magnitudes(between_);
+        for (int j = 0; j < 3; ++j)
+            world +=
+                magnitudes(columns_b_[j]) * std::max(std::abs(double{reach.min[j]}), std::abs(double{reach.max[j]}));
+        lanes magnitude{};
+        for (int k = 0; k < 3; ++k) {
+            magnitude += magnitudes(rows_a_[k]) * world[k];
+            shift_ += rows_a_[k] * between_[k];
+            for (int j = 0; j < 3; ++j) turn_[j] += rows_a_[k] * columns_b_[j][k];
+        }
+        for (int j = 0; j < 3; ++j) absolute_turn_[j] = magnitudes(turn_[j]);
         for (int i = 0; i < 3; ++i) {
-            double magnitude = 0;
-            for (int k = 0; k < 3; ++k) {
-                const double r = a.rotation[3 * k + i];
-                double row = std::abs(between_[k]);
-                for (int j = 0; j < 3; ++j)
-                    row += std::abs(b.rotation[3 * k + j]) *
-                           std::max(std::abs(double{reach.min[j]}), std::abs(double{reach.max[j]}));
-                magnitude += std::abs(r) * row;
-                shift_[i] += r * between_[k];
-            }
-            for (int j = 0; j < 3; ++j) {
-                double sum = 0;
-                for (int k = 0; k < 3; ++k) sum += a.rotation[3 * k + i] * b.rotation[3 * k + j];
-                turn_[j][i] = sum;
-                absolute_turn_[j][i] = std::abs(sum);
-            }
             // The vertex formula rounds at most 7 times on the way of any term, the box formula at most 10 times (3 in
             // the product matrix or shift, 5 to the centre or 6 to the radius with the margin in it, and their sum):
             // each within γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and
             // the growing.
-            margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude +
+            margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude[i] +
                          std::numeric_limits<double>::denorm_min();
         }
         if (!is_valid((*this)(reach)))
@@ -197,6 +192,7 @@ public:
 private:
     using lanes = double __attribute__((vector_size(32)));  // x, y, z and nothing
 
+    [[nodiscard]] static inline lanes magnitudes(const lanes& v) noexcept { return __builtin_elementwise_abs(v); }
     [[nodiscard]] static inline vec3f in_float(const lanes& v) noexcept {
         return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     }

@@ -55,7 +55,7 @@ public:
 private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
-    static constexpr std::size_t most_at_once = 32;
+    static constexpr std::size_t most_at_once = 64;
     static constexpr std::size_t most_missed = 4;
     static constexpr int worth_a_slab = 6;  // pairs of triangles
 
@@ -65,6 +65,8 @@ private:
     struct heights {
         std::size_t a;
         std::size_t b;
+
+        friend bool operator==(const heights&, const heights&) = default;
     };
 
     /// Node pairs of the same levels, still to be opened.
@@ -84,7 +86,7 @@ private:
     template <class Emit>
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
               walk_goal goal, Emit emit) {
-        begin(a, b, to_a);
+        begin(a, b, to_a, what, goal);
         const bool any_pair = goal == walk_goal::first_pair;
         const std::size_t at_once = any_pair ? 1 : most_at_once;
         const auto emit_pair = [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
@@ -120,14 +122,24 @@ private:
         static_cast<void>(waiting_.decide(test, true, emit_pair));
     }
 
-    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a) {
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, walk_goal goal) {
         require_ieee_arithmetic();
         a.require_fit();
         b.require_fit();
-        steps_.clear();
-        // The higher of two nodes is opened first, until both are leaves.
-        heights now{a.tree().levels(), b.tree().levels()};
-        steps_.push_back(now);
+        set_steps({a.tree().levels(), b.tree().levels()});
+        for (node_pairs& p : pairs_) p.size = 0;
+        pairs_[0].make_room();
+        pairs_[0].a[0] = pairs_[0].b[0] = 0;
+        pairs_[0].size = 1;
+        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), goal == walk_goal::every_pair);
+        leaves_.begin(a, b, what == extent::one_mesh);
+        waiting_.clear();
+    }
+
+    /// The higher of two nodes is opened first, until both are leaves.
+    void set_steps(heights now) {
+        if (!steps_.empty() && steps_.front() == now) return;
+        steps_.assign(1, now);
         while (now.a > 0 || now.b > 0) {
             const std::size_t higher = std::max(now.a, now.b);
             if (now.a == higher) --now.a;
@@ -135,13 +147,6 @@ private:
             steps_.push_back(now);
         }
         if (pairs_.size() < steps_.size()) pairs_.resize(steps_.size());
-        for (node_pairs& p : pairs_) p.size = 0;
-        pairs_[0].make_room();
-        pairs_[0].a[0] = pairs_[0].b[0] = 0;
-        pairs_[0].size = 1;
-        children_.begin(a.tree(), b.tree(), to_a, a.bounds());
-        leaves_.begin(a, b);
-        waiting_.clear();
     }
 
     /// Those pairs of children that may meet go to the next step, from which the last is taken first.
@@ -190,26 +195,38 @@ private:
                                    const relative_pose& to_a, extent what, std::size_t begin, std::size_t end,
                                    const Emit& emit) {
         const node_pairs& from = pairs_[steps_.size() - 1];
-        for (std::size_t p = begin; p < end; ++p) {
-            const std::uint32_t leaf_a = from.a[p];
-            const std::uint32_t leaf_b = from.b[p];
-            const leaf_of_b& of_b = leaves_.moved(b, leaf_b, to_a);
-            leaf_of_a* const of_a = leaves_.near(a, leaf_a, of_b);
-            if (of_a == nullptr) {
-                counters_.add(work::box_tests);
-                continue;
+        const std::span leaves_a = std::span(from.a).subspan(begin, end - begin);
+        const std::span leaves_b = std::span(from.b).subspan(begin, end - begin);
+        counters_.add(work::box_tests, most_children_of_pair * leaves_a.size());
+        return leaves_(
+            a, b, to_a, leaves_a, leaves_b,
+            [&](std::size_t p, leaf_of_a& of_a, const leaf_of_b& of_b, std::uint64_t met) {
+                if (what == extent::one_mesh) {
+                    if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
+                    if (emit_neighbours(of_a.corners.shared_with(of_b.corners), met, leaves_a[p], leaves_b[p], emit))
+                        return true;
+                }
+                if (std::popcount(met) >= worth_a_slab)
+                    met &= rows(leaves_.slab_of(of_a).reached_by(of_b.block, of_b.boxes.merged()));
+                if (met == 0) return false;
+                counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
+                waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
+                return waiting_.is_full() && waiting_.decide(test, false, emit);
+            });
+    }
+
+    /// An exact test would find that triangles with a corner in common meet there.
+    /// @param met loses those that are handed over
+    /// @returns whether to stop
+    template <class Emit>
+    [[nodiscard]] static bool emit_neighbours(std::uint64_t shared, std::uint64_t& met, std::uint32_t leaf_a,
+                                              std::uint32_t leaf_b, const Emit& emit) {
+        if constexpr (requires { requires Triangle::filtered; }) {
+            for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
+                const auto place = static_cast<std::uint32_t>(std::countr_zero(found));
+                if (emit(leaf_a, place & 7U, leaf_b, place >> 3U)) return true;
             }
-            counters_.add(work::box_tests, std::uint64_t{of_a->block.triangles} * of_b.block.triangles);
-            std::uint64_t met = of_a->codes.planes.overlaps(of_a->codes.grid, of_b.boxes);
-            if (what == extent::one_mesh && leaf_a == leaf_b) met &= not_twice & not_itself;
-            if (met == 0) continue;
-            if (std::popcount(met) >= worth_a_slab) {
-                met &= rows(leaves_.slab_of(*of_a).reached_by(of_b.block, of_b.bounds));
-                if (met == 0) continue;
-            }
-            counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
-            waiting_.add(met, leaf_a, of_a->block, leaf_b, of_b.block);
-            if (waiting_.is_full() && waiting_.decide(test, false, emit)) return true;
+            met &= ~shared;
         }
         return false;
     }

@@ -27,9 +27,7 @@ struct build_element {
 
 /// Where a layout wants leaves to be. `pairs`: a node of an even number of triangles has two children of even numbers;
 /// the split moves by one triangle where it must. For layouts in which a leaf beside an internal node wastes memory.
-/// `full_left`: the left child holds as many as the greatest power of two below the node's number. For layouts in which
-/// places follow from numbers.
-enum class leaf_arrangement : std::uint8_t { any, pairs, full_left };
+enum class leaf_arrangement : std::uint8_t { any, pairs };
 
 /// How a node's triangles are split: in the order of their centroids along an axis (and of their indices where those
 /// are equal), the first `left` go to the left.

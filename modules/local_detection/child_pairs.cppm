@@ -19,12 +19,13 @@ export namespace aabb {
 template <WideTreePolicy Tree>
 class child_pairs {
 public:
-    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a) {
+    /// @param in_both whether boxes may be held against each other in both frames; in A's alone each pair costs less
+    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, bool in_both) {
         first_a_ = a.level(0);
         first_b_ = b.level(0);
         to_a_ = box_images(to_a.to_boxes());
         in_a_.begin(nodes(b));
-        turned_ = to_a.growth() > least_growth;
+        turned_ = in_both && to_a.growth() > least_growth;
         if (!turned_) return;
         to_b_ = box_images(to_a.back_to_boxes(bounds_of_a));
         in_b_.begin(nodes(a));

@@ -10,7 +10,8 @@ import aabb.simd;
 
 export namespace aabb {
 
-/// Up to eight boxes, coordinate by coordinate. What stands in the places from `count` on is nobody's.
+/// Up to eight boxes, coordinate by coordinate: three rows of lower bounds, then three of upper
+/// ones. What stands in the places from `count` on is nobody's.
 struct eight_boxes {
     static constexpr std::size_t most = 8;
     using row = std::array<float, most>;
@@ -18,6 +19,13 @@ struct eight_boxes {
     alignas(32) std::array<row, 3> lower;
     alignas(32) std::array<row, 3> upper;
     std::uint32_t count;
+
+    /// Sixty-four pairs at once: bit 8 j + i for box i of these and box j of `others`, where they overlap.
+    [[nodiscard]] inline std::uint64_t overlaps(const eight_boxes& others) const noexcept {
+        const std::uint64_t columns = 0x0101010101010101 * (0xffU >> (most - count));
+        const std::uint64_t rows = ~std::uint64_t{0} >> (most * (most - others.count));
+        return simd::pairs_of_eight_that_overlap(lower[0].data(), others.lower[0].data()) & columns & rows;
+    }
 
     /// The box of all; in the places from `count` on one of them must be repeated.
     [[nodiscard]] inline box merged() const noexcept {

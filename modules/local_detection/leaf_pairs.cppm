@@ -1,88 +1,122 @@
 module;
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 export module aabb.local_detection:leaf_pairs;
 
 import aabb.geometry;
+import :corner_numbers;
 import :eight_boxes;
-import :leaf_codes;
 import :leaf_slab;
+import :leaf_store;
 import :model;
-import :recently_made;
 import :triangle_block;
 import :wide_node;
 import :wide_tree_policy;
 
 export namespace aabb {
 
-/// Triangles of A in eights, as they lie, with codes of their boxes.
+/// Triangles of a leaf of B, in A's frame.
+struct leaf_of_b {
+    triangle_block block;
+    eight_boxes boxes;
+    corner_numbers corners;  ///< of one mesh only
+};
+
 struct leaf_of_a {
     triangle_block block;
-    leaf_codes codes;
-    box bounds;
+    eight_boxes boxes;
+    corner_numbers corners;  ///< of one mesh only
     leaf_slab slab;
     bool has_slab;  ///< not before it is asked for
 };
 
-/// Triangles of B in eights, in A's frame.
-struct leaf_of_b {
-    triangle_block block;
-    eight_boxes boxes;
-    box bounds;
-};
-
-/// Reads the leaves of two trees, and moves those of B to A's frame. A leaf meets many, so that it is kept.
+/// Reads the leaves of two trees, those of B in A's frame. A leaf meets many, so that it is kept.
 template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
-    void begin(const model<Tree>& a, const model<Tree>& b) {
+    /// @param one_mesh whether both are the same, so that triangles may share corners
+    void begin(const model<Tree>& a, const model<Tree>& b, bool one_mesh) {
+        one_mesh_ = one_mesh;
         of_a_.begin(leaves(a));
         of_b_.begin(leaves(b));
     }
 
-    /// @returns null where the leaves lie apart
-    [[nodiscard]] inline leaf_of_a* near(const model<Tree>& a, std::uint32_t leaf, const leaf_of_b& of_b) {
-        // The box of triangles that were moved is smaller than that of a box that was. Looking costs more than using a
-        // leaf that is there.
-        if (!of_a_.has(leaf) && !a.tree().level(0)[leaf / width].meets(leaf % width, of_b.bounds)) return nullptr;
-        return &of_a_.get(leaf, [&](leaf_of_a& made) {
-            made.block.load(a.triangles(), a.tree(), leaf);
-            eight_boxes boxes;
-            made.block.bounds(boxes);
-            const box bounds = boxes.merged();
-            made.codes.encode(boxes, bounds);
-            made.bounds = bounds;
-            made.has_slab = false;
-        });
+    /// Those pairs of leaves whose triangles' boxes meet, one after the other, many at a time: none is decided on by
+    /// itself, so that the processor need not guess.
+    /// @param take called with the place of a pair, its leaves and, bit 8 j + i for triangle i of A's leaf and j of
+    /// B's, the pairs of triangles; returns whether to stop
+    template <class Take>
+    [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                  std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
+                                  const Take& take) {
+        for (std::size_t begin = 0; begin < leaves_a.size();) {
+            std::size_t end = begin;
+            of_a_.release_claims();
+            of_b_.release_claims();
+            while (end < leaves_a.size() && of_a_.claim(leaves_a[end]) && of_b_.claim(leaves_b[end])) ++end;
+            read(a, of_a_, [](leaf_of_a& leaf, const auto&... from) {
+                leaf.block.load(from...);
+                leaf.has_slab = false;
+            });
+            read(b, of_b_, [&](leaf_of_b& leaf, const auto&... from) { leaf.block.load(from..., to_a); });
+            std::size_t met = 0;
+            for (; begin < end; ++begin) {
+                const std::uint64_t which = of_a_[leaves_a[begin]].boxes.overlaps(of_b_[leaves_b[begin]].boxes);
+                meeting_[met] = {begin, which};
+                met += which != 0;
+            }
+            for (const found& f : std::span(meeting_).first(met))
+                if (take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which)) return true;
+        }
+        return false;
     }
 
     [[nodiscard]] static inline const leaf_slab& slab_of(leaf_of_a& leaf) noexcept {
-        if (!leaf.has_slab) leaf.slab.fit(leaf.block, leaf.bounds);
+        if (!leaf.has_slab) leaf.slab.fit(leaf.block, leaf.boxes.merged());
         leaf.has_slab = true;
         return leaf.slab;
-    }
-
-    [[nodiscard]] inline const leaf_of_b& moved(const model<Tree>& b, std::uint32_t leaf, const relative_pose& to_a) {
-        return of_b_.get(leaf, [&](leaf_of_b& made) {
-            made.block.load(b.triangles(), b.tree(), leaf);
-            made.block.move(to_a);
-            made.block.bounds(made.boxes);
-            made.bounds = made.boxes.merged();
-        });
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return of_a_.bytes() + of_b_.bytes(); }
 
 private:
     static constexpr std::size_t width = triangle_block::width;
+    static constexpr std::size_t most_at_once = leaf_store<leaf_of_a>::most_at_once;
 
     [[nodiscard]] static std::size_t leaves(const model<Tree>& m) noexcept {
         return (m.triangles().triangles.size() + width - 1) / width;
     }
 
-    recently_made<leaf_of_a, 128> of_a_;
-    recently_made<leaf_of_b, 32> of_b_;  // pairs come with those of a leaf of B together
+    /// Reads what is missing. Memory is told of all of it first, so that it is waited for once.
+    template <class Leaf, class Load>
+    inline void read(const model<Tree>& m, leaf_store<Leaf>& store, const Load& load) {
+        const std::span<const std::uint32_t> missing = store.take_missing();
+        for (const std::uint32_t number : missing) m.tree().fetch(number);
+        for (std::size_t i = 0; i < missing.size(); ++i) {
+            m.tree().read_vertices(missing[i], lists_[i]);
+            lists_[i].fetch(m.triangles());
+        }
+        for (std::size_t i = 0; i < missing.size(); ++i) {
+            Leaf& leaf = store[missing[i]];
+            load(leaf, m.triangles(), m.tree(), missing[i], lists_[i]);
+            leaf.block.bounds(leaf.boxes);
+            if (one_mesh_) leaf.corners.load(m.triangles(), m.tree(), missing[i]);
+        }
+    }
+
+    struct found {
+        std::size_t pair;
+        std::uint64_t which;
+    };
+
+    bool one_mesh_ = false;
+    leaf_store<leaf_of_a> of_a_;
+    leaf_store<leaf_of_b> of_b_;
+    std::array<found, most_at_once + 1> meeting_{};
+    std::array<vertex_list, most_at_once + 1> lists_{};
 };
 
 }  // namespace aabb

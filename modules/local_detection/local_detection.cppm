@@ -8,17 +8,19 @@ module;
 
 export module aabb.local_detection;
 
+export import :balanced_order;
 export import :batched_walk;
 export import :box_codes;
 export import :box_images;
 export import :build_node;
 export import :build_policy;
 export import :child_pairs;
+export import :corner_numbers;
 export import :depth_first_walk;
 export import :eight_boxes;
-export import :leaf_codes;
 export import :leaf_pairs;
 export import :leaf_slab;
+export import :leaf_store;
 export import :leaf_test;
 export import :mesh_fit;
 export import :model;
@@ -30,6 +32,7 @@ export import :triangle_batch;
 export import :triangle_block;
 export import :triangle_filter;
 export import :triangle_policy;
+export import :vertex_lists;
 export import :walk_goal;
 export import :wide_node;
 export import :wide_tree_policy;

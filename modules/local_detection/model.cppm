@@ -24,7 +24,11 @@ public:
         : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
         require_ieee_arithmetic();
         require_valid(m);
-        tree_.pack(builder.build(m, leaf_arrangement_of<Tree>));
+        if constexpr (BalancedTree<Tree>)
+            tree_.pack(m, builder.order(m));
+        else
+            tree_.pack(builder.build(m, leaf_arrangement_of<Tree>));
+        bounds_ = tree_.bounds(tree_.root(m));
     }
 
     /// After vertices of the mesh have moved.
@@ -35,6 +39,7 @@ public:
             require_ieee_arithmetic();
             require_still_valid(*mesh_, triangles_);
             tree_.refit(*mesh_, boxes);
+            bounds_ = tree_.bounds(tree_.root(*mesh_));
         });
     }
 
@@ -48,12 +53,18 @@ public:
     }
     /// @throws input_error when the last refit did not succeed.
     void require_fit() const { fit_.require(); }
-    [[nodiscard]] box bounds() const { return tree_.bounds(root()); }
+    /// Of the root.
+    /// @throws input_error when the last refit did not succeed.
+    [[nodiscard]] const box& bounds() const {
+        require_fit();
+        return bounds_;
+    }
 
 private:
     const mesh* mesh_;
     std::size_t triangles_;
     Tree tree_;
+    box bounds_{};
     mesh_fit fit_;
 };
 

@@ -10,6 +10,7 @@ export module aabb.local_detection:tree_policy;
 
 import aabb.geometry;
 import aabb.policy;
+import :balanced_order;
 import :build_node;
 import :leaf_test;
 
@@ -23,28 +24,30 @@ struct tree_bytes {
     [[nodiscard]] constexpr std::size_t all() const noexcept { return nodes + indices; }
 };
 
+/// Whether a layout packs an order of triangles, not nodes.
+template <class T>
+concept BalancedTree = requires(T tree, const mesh& m, const balanced_order& order) { tree.pack(m, order); };
+
 /// A bounding-volume tree over the triangles of a mesh, one triangle a leaf: a layout, which packs the nodes that a
 /// build made. One that wants leaves at certain places says `static constexpr leaf_arrangement arrangement`. A cursor
 /// stands at a node; what it carries is the layout's own business. `bounds(cursor)` is a box that holds the node's
 /// triangles; that of a leaf in a layout without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit`
 /// takes a mesh of the same triangles whose vertices have moved; it uses the boxes as scratch.
 template <class T>
-concept TreePolicy = Strategy<T> &&
-                     requires(T tree, const T built, std::span<const build_node> nodes, const mesh& m,
-                              const typename T::cursor at, std::vector<box>& boxes) {
-                         tree.pack(nodes);
-                         tree.refit(m, boxes);
-                         { built.root(m) } -> std::same_as<typename T::cursor>;
-                         { built.is_leaf(at) } -> std::same_as<bool>;
-                         { built.children(at, m) } -> std::same_as<std::array<typename T::cursor, 2>>;
-                         { built.bounds(at) } -> std::convertible_to<box>;
-                         { built.triangle(at) } -> std::same_as<std::uint32_t>;
-                         { built.bytes() } -> std::same_as<tree_bytes>;
-                         { T::has_leaf_boxes } -> std::convertible_to<bool>;
-                     } &&
-                     (T::has_leaf_boxes || requires(const T built) {
-                         { built.leaf_test() } -> std::same_as<leaf_test_choice>;
-                     });
+concept TreePolicy =
+    Strategy<T> && (BalancedTree<T> || requires(T tree, std::span<const build_node> nodes) { tree.pack(nodes); }) &&
+    requires(T tree, const T built, const mesh& m, const typename T::cursor at, std::vector<box>& boxes) {
+        tree.refit(m, boxes);
+        { built.root(m) } -> std::same_as<typename T::cursor>;
+        { built.is_leaf(at) } -> std::same_as<bool>;
+        { built.children(at, m) } -> std::same_as<std::array<typename T::cursor, 2>>;
+        { built.bounds(at) } -> std::convertible_to<box>;
+        { built.triangle(at) } -> std::same_as<std::uint32_t>;
+        { built.bytes() } -> std::same_as<tree_bytes>;
+        { T::has_leaf_boxes } -> std::convertible_to<bool>;
+    } && (T::has_leaf_boxes || requires(const T built) {
+        { built.leaf_test() } -> std::same_as<leaf_test_choice>;
+    });
 
 /// How the nodes of a tree are to be built for it.
 template <TreePolicy T>

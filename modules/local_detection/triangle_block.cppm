@@ -9,6 +9,7 @@ export module aabb.local_detection:triangle_block;
 import aabb.geometry;
 import aabb.simd;
 import :eight_boxes;
+import :vertex_lists;
 import :wide_tree_policy;
 
 export namespace aabb {
@@ -23,29 +24,23 @@ struct triangle_block {
 
     /// As they lie in the mesh.
     template <WideTreePolicy Tree>
-    void load(const mesh& m, const Tree& tree, std::uint32_t leaf) noexcept {
-        triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
-        const std::array<std::uint32_t, width> numbers = tree.triangles_of(leaf);
-        std::array<const std::uint32_t*, width> vertices;
-        for (std::uint32_t i = 0; i < width; ++i) vertices[i] = m.triangles[numbers[i]].data();
-        for (std::size_t c = 0; c < 3; ++c) {
-            std::array<const float*, width> points;
-            for (std::size_t i = 0; i < width; ++i) points[i] = m.vertices[vertices[i][c]].at;
-            simd::store_columns_of_eight_points(points.data(), corner[c][0].data());
-        }
+    void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list) noexcept {
+        load(m, tree, leaf, list, [](auto&) {});
     }
 
-    /// Takes them to A's frame.
-    void move(const relative_pose& to_a) noexcept {
-        for (auto& axes : corner) {
+    /// In A's frame.
+    template <WideTreePolicy Tree>
+    void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
+              const relative_pose& to_a) noexcept {
+        load(m, tree, leaf, list, [&](std::array<row, 3>& eight) {
             std::array<simd::eight_doubles, 3> x;
             for (std::size_t k = 0; k < 3; ++k)
                 x[k] =
-                    __builtin_convertvector(simd::load_eight<simd::eight_floats>(axes[k].data()), simd::eight_doubles);
+                    __builtin_convertvector(simd::load_eight<simd::eight_floats>(eight[k].data()), simd::eight_doubles);
             x = to_a.images(x);
             for (std::size_t k = 0; k < 3; ++k)
-                simd::store_eight(axes[k].data(), __builtin_convertvector(x[k], simd::eight_floats));
-        }
+                simd::store_eight(eight[k].data(), __builtin_convertvector(x[k], simd::eight_floats));
+        });
     }
 
     inline void bounds(eight_boxes& boxes) const noexcept {
@@ -57,6 +52,41 @@ struct triangle_block {
             simd::store_eight(boxes.upper[k].data(), greater(greater(at(0), at(1)), at(2)));
         }
         boxes.count = triangles;
+    }
+
+private:
+    /// @param change takes eight points, coordinate by coordinate
+    template <class Tree, class Change>
+    inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
+                     Change change) noexcept {
+        triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
+        if (list.count == 0) return load_from_mesh(m, tree, leaf, change);
+        // Two times eight points, side by side: [axis][eight].
+        alignas(64) std::array<std::array<row, 2>, 3> points;
+        for (std::size_t half = 0; half < 2; ++half) {
+            std::array<const float*, width> from;
+            for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[half * width + i]].at;
+            alignas(32) std::array<row, 3> eight;
+            simd::store_columns_of_eight_points(from.data(), eight[0].data());
+            change(eight);
+            for (std::size_t k = 0; k < 3; ++k) points[k][half] = eight[k];
+        }
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t k = 0; k < 3; ++k)
+                simd::store_eight(corner[c][k].data(), simd::taken_of_sixteen(points[k][0].data(), list.places[c]));
+    }
+
+    template <class Tree, class Change>
+    void load_from_mesh(const mesh& m, const Tree& tree, std::uint32_t leaf, Change change) noexcept {
+        std::array<const std::uint32_t*, width> vertices;
+        for (std::uint32_t i = 0; i < width; ++i)
+            vertices[i] = m.triangles[tree.triangle_at(width * leaf + std::min(i, triangles - 1))].data();
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::array<const float*, width> points;
+            for (std::size_t i = 0; i < width; ++i) points[i] = m.vertices[vertices[i][c]].at;
+            simd::store_columns_of_eight_points(points.data(), corner[c][0].data());
+            change(corner[c]);
+        }
     }
 };
 

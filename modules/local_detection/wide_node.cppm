@@ -51,20 +51,6 @@ struct wide_node {
         return g;
     }
 
-    /// Whether the child's box may overlap another.
-    [[nodiscard]] inline bool meets(std::size_t child, const box& other) const noexcept {
-        const code_grid g = grid();
-        bool met = true;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto axis = static_cast<int>(k);
-            met &= static_cast<float>(planes.lower[k][child]) <= other.max[axis] * g.scale[k] - g.offset[k];
-            met &=
-                static_cast<float>(planes.upper[k][child]) <= last_code - (other.min[axis] * g.scale[k] - g.offset[k]);
-        }
-        return met;
-    }
-
-    /// As encoded: no smaller than the box that was taken.
     [[nodiscard]] inline box child(std::size_t i) const noexcept {
         box b;
         for (int k = 0; k < 3; ++k) {

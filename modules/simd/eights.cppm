@@ -25,6 +25,75 @@ namespace aabb::simd::detail {
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi8(set, _mm512_loadu_si512(&all)));
 }
 #endif
+#if defined(__AVX512VBMI__)
+[[gnu::always_inline]] inline void spread_sixteen_numbers(void* to, const void* from, std::size_t bytes,
+                                                          std::uint32_t count) noexcept {
+    // Byte b of number i stands at bytes * i + b, where b is less than bytes.
+    static constexpr auto patterns = [] {
+        struct {
+            alignas(64) std::uint8_t at[5][64];
+            std::uint64_t present[5];
+        } made{};
+        for (unsigned n = 1; n < 5; ++n)
+            for (unsigned i = 0; i < 64; ++i) {
+                made.at[n][i] = static_cast<std::uint8_t>(i / 4 * n + i % 4);
+                made.present[n] |= std::uint64_t{i % 4 < n} << i;
+            }
+        return made;
+    }();
+    const __m512i numbers = _mm512_maskz_permutexvar_epi8(
+        patterns.present[bytes], _mm512_load_si512(patterns.at[bytes]), _mm512_loadu_si512(from));
+    const auto rest = static_cast<__mmask16>(~0U << count);
+    _mm512_storeu_si512(to, _mm512_mask_broadcastd_epi32(numbers, rest, _mm512_castsi512_si128(numbers)));
+}
+#endif
+#if defined(__AVX512F__)
+using eight_floats_taken = float __attribute__((vector_size(32)));
+[[nodiscard, gnu::always_inline]] inline eight_floats_taken take_of_sixteen(const float* from,
+                                                                            const void* places) noexcept {
+    const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(places)));
+    return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
+}
+#endif
+#if defined(__AVX512F__)
+/// Rows of `a` twice in a vector, against each number twice eight times of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_that_share(const void* a, const void* b) noexcept {
+    const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
+    const auto row = [](const void* of, int c) { return _mm256_loadu_si256(static_cast<const __m256i*>(of) + c); };
+    std::uint64_t shared = 0;
+    for (int two = 0; two < 4; ++two) {
+        const __m512i which = _mm512_add_epi32(first_two, _mm512_set1_epi32(2 * two));
+        __mmask16 any = 0;
+        for (int d = 0; d < 3; ++d) {
+            const __m512i of_b = _mm512_permutexvar_epi32(which, _mm512_castsi256_si512(row(b, d)));
+            for (int c = 0; c < 3; ++c) any |= _mm512_cmpeq_epi32_mask(_mm512_broadcast_i64x4(row(a, c)), of_b);
+        }
+        shared |= std::uint64_t{any} << 16 * two;
+    }
+    return shared;
+}
+/// Boxes of `a` twice in a vector, against each twice eight of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_that_overlap(const float* a, const float* b) noexcept {
+    const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
+    const auto twice = [](const float* row) {
+        return _mm512_castpd_ps(_mm512_broadcast_f64x4(_mm256_loadu_pd(reinterpret_cast<const double*>(row))));
+    };
+    __mmask16 met[4] = {0xffff, 0xffff, 0xffff, 0xffff};
+    for (int k = 0; k < 3; ++k) {
+        const __m512 lower = twice(a + 8 * k);
+        const __m512 upper = twice(a + 24 + 8 * k);
+        const __m512 lower_of_b = _mm512_castps256_ps512(_mm256_loadu_ps(b + 8 * k));
+        const __m512 upper_of_b = _mm512_castps256_ps512(_mm256_loadu_ps(b + 24 + 8 * k));
+        for (int two = 0; two < 4; ++two) {
+            const __m512i which = _mm512_add_epi32(first_two, _mm512_set1_epi32(2 * two));
+            met[two] = _mm512_mask_cmp_ps_mask(met[two], lower, _mm512_permutexvar_ps(which, upper_of_b), _CMP_LE_OQ);
+            met[two] = _mm512_mask_cmp_ps_mask(met[two], upper, _mm512_permutexvar_ps(which, lower_of_b), _CMP_GE_OQ);
+        }
+    }
+    return std::uint64_t{met[0]} | std::uint64_t{met[1]} << 16U | std::uint64_t{met[2]} << 32U |
+           std::uint64_t{met[3]} << 48U;
+}
+#endif
 #if defined(__AVX2__)
 [[gnu::always_inline]] inline void take_eight(const float* from, const void* places, void* to) noexcept {
     const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
@@ -99,6 +168,20 @@ template <class Number, class Vector>
     return v;
 }
 
+/// Of sixteen numbers those at eight places of 4 bits each.
+[[nodiscard, gnu::always_inline]] inline eight_floats taken_of_sixteen(const float* from,
+                                                                       std::uint32_t places) noexcept {
+    constexpr eight_words shift{0, 4, 8, 12, 16, 20, 24, 28};
+    const eight_words at = (eight_words{} + places) >> shift;
+#if defined(__AVX512F__)
+    return detail::take_of_sixteen(from, &at);
+#else
+    const eight_floats low = taken(from, at);
+    const eight_floats high = taken(from + 8, at);
+    return (at & 8U) != 0 ? high : low;
+#endif
+}
+
 [[nodiscard, gnu::always_inline]] inline float least(eight_floats v) noexcept {
     const auto lesser = [](eight_floats p, eight_floats q) { return p < q ? p : q; };
     v = lesser(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
@@ -117,6 +200,12 @@ template <class Flags>
 [[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_eight(Flags flags) noexcept {
     using bools = bool __attribute__((ext_vector_type(8)));
     return __builtin_bit_cast(std::uint8_t, __builtin_convertvector(flags, bools));
+}
+
+/// The other way round: number i is all ones where bit i is set.
+[[nodiscard, gnu::always_inline]] inline eight_words flags_of_eight(std::uint8_t bits) noexcept {
+    constexpr eight_words bit{1, 2, 4, 8, 16, 32, 64, 128};
+    return __builtin_bit_cast(eight_words, (bit & std::uint32_t{bits}) == bit);
 }
 
 /// Of each of eight numbers the whole part, no more than 254, and 0 where it is less or not a number.
@@ -142,6 +231,57 @@ template <class Flags>
                                                 5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7);
     const flags held = left <= right;
     return __builtin_bit_cast(std::uint64_t, __builtin_convertvector(held, bools));
+}
+
+/// Bit 8 j + i where one of the three numbers in column i of `a` is one of those in column j of `b`; both are three
+/// rows of eight.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_of_eight_that_share(const std::uint32_t* a,
+                                                                                   const std::uint32_t* b) noexcept {
+#if defined(__AVX512F__)
+    return detail::columns_that_share(a, b);
+#else
+    std::uint64_t shared = 0;
+    for (std::size_t j = 0; j < 8; ++j) {
+        auto any = load_eight<eight_words>(a) == b[j];
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t d = 0; d < 3; ++d) any |= load_eight<eight_words>(a + 8 * c) == b[8 * d + j];
+        shared |= std::uint64_t{bits_of_eight(any)} << 8 * j;
+    }
+    return shared;
+#endif
+}
+
+/// Numbers of 1 to 4 bytes, as many as `count`, from 1 to 16; the first one fills the rest. Reads 64 bytes.
+[[gnu::always_inline]] inline void load_sixteen_numbers(std::uint32_t* to, const std::byte* from, std::size_t bytes,
+                                                        std::uint32_t count) noexcept {
+#if defined(__AVX512VBMI__)
+    detail::spread_sixteen_numbers(to, from, bytes, count);
+#else
+    const std::uint32_t mask = 0xffffffff >> (32 - 8 * bytes);
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        std::memcpy(&to[i], from + bytes * (i < count ? i : 0), sizeof to[i]);
+        to[i] &= mask;
+    }
+#endif
+}
+
+/// Sixty-four pairs of boxes, each given as six rows of eight numbers, three of lower bounds and three of upper ones:
+/// bit 8 j + i for box i of `a` and j of `b` that overlap.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const float* a,
+                                                                                   const float* b) noexcept {
+#if defined(__AVX512F__)
+    return detail::pairs_that_overlap(a, b);
+#else
+    std::uint64_t met = 0;
+    for (std::size_t j = 0; j < 8; ++j) {
+        auto row = load_eight<eight_floats>(a) <= b[24 + j];
+        for (std::size_t k = 0; k < 3; ++k)
+            row &= (load_eight<eight_floats>(a + 8 * k) <= b[24 + 8 * k + j]) &
+                   (load_eight<eight_floats>(a + 24 + 8 * k) >= b[8 * k + j]);
+        met |= std::uint64_t{bits_of_eight(row)} << 8 * j;
+    }
+    return met;
+#endif
 }
 
 /// The places of the bits that are set, in order; whatever stands behind them, up to 64 bytes, is lost.

@@ -9,6 +9,7 @@ module aabb.build.mean;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.build.balanced;
 import aabb.build.top_down;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -18,7 +19,7 @@ namespace aabb {
 
 namespace {
 
-split_choice mean_split(std::span<const build_element> range, const box& bounds, std::size_t /*left*/) {
+split_choice mean_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     double sum = 0;
     for (const build_element& e : range) sum += e.centroid[axis];
@@ -30,8 +31,12 @@ split_choice mean_split(std::span<const build_element> range, const box& bounds,
 
 }  // namespace
 
-std::vector<build_node> mean_build::build(const mesh& m, leaf_arrangement arrangement) {
-    return build_top_down(m, arrangement, mean_split);
+std::vector<build_node> mean_build::build(const mesh& m, leaf_arrangement arrangement) const {
+    return build_top_down(m, arrangement, mean_split, threads);
+}
+
+balanced_order mean_build::order(const mesh& m) const {
+    return order_by_halves(m, axis_rule::longest, threads);
 }
 
 }  // namespace aabb

@@ -8,6 +8,7 @@ module aabb.build.midpoint;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.build.balanced;
 import aabb.build.top_down;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -17,7 +18,7 @@ namespace aabb {
 
 namespace {
 
-split_choice midpoint_split(std::span<const build_element> range, const box& bounds, std::size_t /*left*/) {
+split_choice midpoint_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     // In double, so that the sum cannot overflow.
     const double middle = (double{bounds.min[axis]} + double{bounds.max[axis]}) / 2;
@@ -28,8 +29,12 @@ split_choice midpoint_split(std::span<const build_element> range, const box& bou
 
 }  // namespace
 
-std::vector<build_node> midpoint_build::build(const mesh& m, leaf_arrangement arrangement) {
-    return build_top_down(m, arrangement, midpoint_split);
+std::vector<build_node> midpoint_build::build(const mesh& m, leaf_arrangement arrangement) const {
+    return build_top_down(m, arrangement, midpoint_split, threads);
+}
+
+balanced_order midpoint_build::order(const mesh& m) const {
+    return order_by_halves(m, axis_rule::longest, threads);
 }
 
 }  // namespace aabb

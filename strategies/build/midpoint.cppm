@@ -6,6 +6,7 @@ export module aabb.build.midpoint;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.build.threaded;
 
 export namespace aabb {
 
@@ -14,11 +15,14 @@ export namespace aabb {
 /// the median where a side would be empty. When to use: as what AABB trees were usually built by before the
 /// surface-area heuristic (claim C8). Triangles nested in one another may be peeled off one by one, which takes time
 /// quadratic in their number.
-struct midpoint_build {
+struct midpoint_build : threaded_build {
+    using threaded_build::threaded_build;
+
     static constexpr std::string_view name = "midpoint";
     static constexpr std::string_view summary = "in the middle of the longest axis of the node's box";
 
-    [[nodiscard]] static std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement);
+    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const;
+    [[nodiscard]] balanced_order order(const mesh& m) const;
 };
 
 static_assert(BuildPolicy<midpoint_build>);

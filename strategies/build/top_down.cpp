@@ -1,16 +1,19 @@
 module;
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 module aabb.build.top_down;
 
+import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.build.halving;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -45,40 +48,74 @@ std::size_t paired(std::size_t left, std::size_t all) {
 struct task {
     std::size_t begin;
     std::size_t end;
-    std::uint32_t parent;  ///< where this is the right child; else `no_parent`
+    std::uint32_t node;
+
+    [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
 };
-constexpr std::uint32_t no_parent = 0xffffffff;
+
+class top_down {
+public:
+    top_down(const mesh& m, leaf_arrangement arrangement, const split_rule& split)
+        : mesh_(m), arrangement_(arrangement), split_(split) {}
+
+    [[nodiscard]] std::vector<build_node> build(std::uint32_t threads) {
+        worker_threads workers(threads);
+        const std::size_t n = mesh_.triangles.size();
+        elements_.resize(n);
+        in_chunks(workers, n, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) elements_[t] = element_of(mesh_, static_cast<std::uint32_t>(t));
+        });
+        nodes_.resize(2 * n - 1);
+        halve(workers, task{0, n, 0}, [&](const task& t) { return halves_of(t); }, [&](const task& t) { finish(t); });
+        return std::move(nodes_);
+    }
+
+private:
+    [[nodiscard]] std::span<build_element> range_of(const task& t) noexcept {
+        return std::span(elements_).subspan(t.begin, t.size());
+    }
+
+    [[nodiscard]] std::array<task, 2> halves_of(const task& t) {
+        const std::span range = range_of(t);
+        const box bounds = bounds_of(range);
+        const split_choice chosen = split_(range, bounds);
+        const std::size_t left =
+            arrangement_ == leaf_arrangement::pairs ? paired(chosen.left, range.size()) : chosen.left;
+        std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left), centroid_order{chosen.axis});
+        // The left child has 2 left - 1 nodes.
+        const auto right = static_cast<std::uint32_t>(t.node + 2 * left);
+        nodes_[t.node] = {bounds, right, range[0].triangle};
+        return {task{t.begin, t.begin + left, t.node + 1}, task{t.begin + left, t.end, right}};
+    }
+
+    void finish(const task& whole) {
+        // Deep trees must not cost stack.
+        std::vector<task> tasks{whole};
+        while (!tasks.empty()) {
+            const task now = tasks.back();
+            tasks.pop_back();
+            if (now.size() == 1) {
+                nodes_[now.node] = {elements_[now.begin].bounds, 0, elements_[now.begin].triangle};
+            } else {
+                const auto [left, right] = halves_of(now);
+                tasks.push_back(right);
+                tasks.push_back(left);
+            }
+        }
+    }
+
+    const mesh& mesh_;
+    leaf_arrangement arrangement_;
+    const split_rule& split_;
+    std::vector<build_element> elements_;
+    std::vector<build_node> nodes_;
+};
 
 }  // namespace
 
-std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement, const split_rule& split) {
-    std::vector<build_element> elements;
-    elements.reserve(m.triangles.size());
-    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) elements.push_back(element_of(m, t));
-    std::vector<build_node> nodes;
-    nodes.reserve(2 * elements.size() - 1);
-    // Deep trees must not cost stack.
-    std::vector<task> tasks{{0, elements.size(), no_parent}};
-    while (!tasks.empty()) {
-        const task now = tasks.back();
-        tasks.pop_back();
-        const auto here = static_cast<std::uint32_t>(nodes.size());
-        const std::span range = std::span(elements).subspan(now.begin, now.end - now.begin);
-        const box bounds = bounds_of(range);
-        if (now.parent != no_parent) nodes[now.parent].right = here;
-        nodes.push_back({bounds, 0, range[0].triangle});
-        if (range.size() == 1) continue;
-        const std::size_t wanted =
-            arrangement == leaf_arrangement::full_left ? std::bit_ceil(range.size()) / 2 : any_number;
-        const split_choice chosen = split(range, bounds, wanted);
-        const std::size_t left = wanted != any_number                     ? wanted
-                                 : arrangement == leaf_arrangement::pairs ? paired(chosen.left, range.size())
-                                                                          : chosen.left;
-        std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left), centroid_order{chosen.axis});
-        tasks.push_back({now.begin + left, now.end, here});
-        tasks.push_back({now.begin, now.begin + left, no_parent});
-    }
-    return nodes;
+std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement, const split_rule& split,
+                                       std::uint32_t threads) {
+    return top_down(m, arrangement, split).build(threads);
 }
 
 }  // namespace aabb

@@ -1,5 +1,6 @@
 module;
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -12,13 +13,9 @@ import aabb.local_detection;
 
 export namespace aabb {
 
-/// Of triangles on the left: as many as the rule finds best.
-inline constexpr std::size_t any_number = 0;
-
-/// Takes the elements of a node, their box, and how many will be on the left, or `any_number`. Nodes come depth first,
-/// the left child before the right one. Asked by a call, so that the rest is compiled once, whatever the rule.
-using split_rule =
-    std::function<split_choice(std::span<const build_element> range, const box& bounds, std::size_t left)>;
+/// Takes the elements of a node and their box. Nodes come depth first, the left child before the right one. Asked by a
+/// call, so that the rest is compiled once, whatever the rule; by several threads at a time.
+using split_rule = std::function<split_choice(std::span<const build_element> range, const box& bounds)>;
 
 /// Along an axis; ties go by index, so that the tree does not depend on the library.
 struct centroid_order {
@@ -29,13 +26,13 @@ struct centroid_order {
     }
 };
 
+/// The same nodes whatever the number of threads.
 [[nodiscard]] std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement,
-                                                     const split_rule& split);
+                                                     const split_rule& split, std::uint32_t threads);
 
 /// In the middle of the centroids along the longest axis of the box: what every split falls back to where its own rule
 /// leaves a side empty.
-[[nodiscard]] inline split_choice median_split(std::span<const build_element> range, const box& bounds,
-                                               std::size_t /*left*/ = any_number) {
+[[nodiscard]] inline split_choice median_split(std::span<const build_element> range, const box& bounds) {
     return {longest_axis(bounds), range.size() / 2};
 }
 

@@ -97,6 +97,7 @@ struct fake_build {
     [[nodiscard]] static std::vector<aabb::build_node> build(const aabb::mesh& m, aabb::leaf_arrangement) {
         return std::vector<aabb::build_node>(2 * m.triangles.size() - 1, {bounds_of(m), 0, 0});
     }
+    [[nodiscard]] static aabb::balanced_order order(const aabb::mesh&) { return {}; }
 };
 static_assert(aabb::BuildPolicy<fake_build>);
 

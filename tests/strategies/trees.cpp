@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "../compositions.hpp"
@@ -38,6 +40,15 @@ mesh sheet(std::uint32_t n) {
     m.triangles.push_back(m.triangles[0]);
     m.triangles.push_back({0, 0, 1});
     return m;
+}
+
+void for_each_build(const auto& check) {
+    [&]<class... Builds>(type_list<Builds...>) { (check(Builds{}), ...); }(builds{});
+}
+
+/// What is in a node.
+auto told_of(const build_node& n) {
+    return std::tuple(n.bounds, n.right, n.is_leaf() ? n.triangle : 0);
 }
 
 mesh many_equal(std::uint32_t n) {
@@ -99,8 +110,9 @@ std::size_t tree_bytes_of(const local_stage& stage) {
     return all;
 }
 
-std::size_t bytes_of_tree(const char* tree, const mesh& m, const strategy_choice& build = {"median", {}}) {
-    composition c = composed({{strategy_kind::tree, tree}});
+std::size_t bytes_of_tree(const strategy_choice& tree, const mesh& m, const strategy_choice& build = {"median", {}}) {
+    composition c = composed({});
+    c[strategy_kind::tree] = tree;
     c[strategy_kind::build] = build;
     const auto stage = local_of(c);
     stage->add_model(m);
@@ -198,8 +210,7 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
 }
 
 TEST_CASE("the half-steps hold the canonical tree, box by box") {
-    const auto every_build = [&]<class... Builds>(type_list<Builds...>, auto check) { (check(Builds{}), ...); };
-    every_build(builds{}, [&](const auto& build) {
+    for_each_build([&](const auto& build) {
         for (const mesh& m : meshes()) {
             canonical_tree canonical;
             shared_planes_tree shared;
@@ -234,15 +245,15 @@ TEST_CASE("layouts take the bytes that the paper says, or less") {
     for (std::uint32_t n = 2; n <= 60; ++n) {
         const mesh m = strip(n);
         INFO(n << " triangles");
-        CHECK(bytes_of_tree("canonical", m) == 32 * (n - 1) + 28 * n);
-        CHECK(bytes_of_tree("leafless", m) == 32 * (n - 1));
-        CHECK(bytes_of_tree("shared_planes", m) == 37 * n - 33 + 24);
-        CHECK(bytes_of_tree("compressed_literal", m) == 21 * (n - 1) + 24);
+        CHECK(bytes_of_tree({"canonical", {}}, m) == 32 * (n - 1) + 28 * n);
+        CHECK(bytes_of_tree({"leafless", {}}, m) == 32 * (n - 1));
+        CHECK(bytes_of_tree({"shared_planes", {}}, m) == 37 * n - 33 + 24);
+        CHECK(bytes_of_tree({"compressed_literal", {}}, m) == 21 * (n - 1) + 24);
         for (const strategy_choice& build : all_choices(strategy_kind::build)) {
             // Even: half as many nodes hold two leaves, 8 bytes; the others 33. Odd: one leaf stands beside a node.
             const std::size_t pairs = n / 2;
-            CHECK(bytes_of_tree("compressed", m, build) == 8 * pairs + 33 * (n - 1 - pairs) + 24);
-            CHECK(bytes_of_tree("compressed", m, build) <= 21 * n + 64);
+            CHECK(bytes_of_tree({"compressed", {}}, m, build) == 8 * pairs + 33 * (n - 1 - pairs) + 24);
+            CHECK(bytes_of_tree({"compressed", {}}, m, build) <= 21 * n + 64);
         }
     }
 }
@@ -253,8 +264,59 @@ TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a 
         for (std::size_t below = (n + 7) / 8; nodes == 0 || below > 1;) nodes += below = (below + 7) / 8;
         const auto bits = static_cast<std::size_t>(std::bit_width(n - 1));
         INFO(n << " triangles");
-        CHECK(bytes_of_tree("implicit", strip(n)) == 64 * nodes + (n * bits + 7) / 8 + 8);
+        const strategy_choice fetched{"implicit", {{"vertices", "fetched"}}};
+        CHECK(bytes_of_tree(fetched, strip(n)) == 64 * nodes + (n * bits + 7) / 8 + 8);
     }
+    // Lists of vertices, of two bytes each, on a surface of ordinary shape.
+    const mesh m = sheet(100);
+    CHECK(bytes_of_tree({"implicit", {}}, m) < 8 * m.triangles.size());
+}
+
+TEST_CASE("in a balanced tree triangles are split where halves are full, across one axis, by any number of threads") {
+    const auto before = [](const mesh& m, std::uint32_t p, std::uint32_t q, int k) {
+        const auto centre = [&](std::uint32_t t) {
+            const box b = bounds_of(m.triangle(t));
+            return 0.5F * b.min[k] + 0.5F * b.max[k];
+        };
+        return centre(p) != centre(q) ? centre(p) < centre(q) : p < q;
+    };
+    const auto is_split = [&](auto self, const mesh& m, std::span<const std::uint32_t> order) -> bool {
+        if (order.size() <= 8) return true;
+        const auto left = order.first(std::bit_ceil(order.size()) / 2);
+        const auto right = order.subspan(left.size());
+        const auto is_across = [&](int k) {
+            const auto less = [&](std::uint32_t p, std::uint32_t q) { return before(m, p, q, k); };
+            return less(*std::ranges::max_element(left, less), *std::ranges::min_element(right, less));
+        };
+        return (is_across(0) || is_across(1) || is_across(2)) && self(self, m, left) && self(self, m, right);
+    };
+    std::vector<mesh> all = meshes();
+    all.push_back(sheet(80));
+    all.push_back(many_equal(3000));
+    for (const mesh& m : all)
+        for_each_build([&]<class Build>(Build) {
+            INFO(Build::name << ", " << m.triangles.size() << " triangles");
+            const balanced_order order = Build().order(m);
+            std::vector<std::uint32_t> sorted = order.triangles;
+            std::ranges::sort(sorted);
+            REQUIRE(sorted.size() == m.triangles.size());
+            for (std::uint32_t t = 0; t < sorted.size(); ++t) REQUIRE(sorted[t] == t);
+            CHECK(is_split(is_split, m, order.triangles));
+            REQUIRE(order.bounds.size() == (sorted.size() + 7) / 8);
+            for (std::size_t leaf = 0; leaf < order.bounds.size(); ++leaf) {
+                box around = empty_box();
+                for (std::size_t i = 8 * leaf; i < std::min(8 * leaf + 8, sorted.size()); ++i)
+                    around = merged(around, bounds_of(m.triangle(order.triangles[i])));
+                REQUIRE(order.bounds[leaf] == around);
+            }
+            for (const std::uint32_t threads : {2U, 5U}) {
+                const Build together({threads});
+                CHECK(together.order(m).triangles == order.triangles);
+                for (const auto arrangement : {leaf_arrangement::any, leaf_arrangement::pairs})
+                    CHECK(std::ranges::equal(together.build(m, arrangement), Build().build(m, arrangement), {}, told_of,
+                                             told_of));
+            }
+        });
 }
 
 TEST_CASE("builds split where they say") {

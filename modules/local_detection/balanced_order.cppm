@@ -1,0 +1,18 @@
+module;
+#include <cstdint>
+#include <vector>
+
+export module aabb.local_detection:balanced_order;
+
+import aabb.geometry;
+
+export namespace aabb {
+
+/// The triangles of a mesh in the order of the leaves of a balanced tree, eight a leaf: of more than eight, as many go
+/// to the left as the greatest power of two below their number. For layouts in which places follow from numbers.
+struct balanced_order {
+    std::vector<std::uint32_t> triangles;  ///< by place
+    std::vector<box> bounds;               ///< of the triangles of each leaf
+};
+
+}  // namespace aabb

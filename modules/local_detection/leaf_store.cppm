@@ -1,0 +1,68 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+export module aabb.local_detection:leaf_store;
+
+import aabb.base;
+
+export namespace aabb {
+
+/// Leaves that were read lately, found again by their number: each has one place, which it shares with others. First
+/// all that are needed at a time are claimed, then those that are missing are read, so that none waits for another.
+template <class Leaf>
+class leaf_store {
+public:
+    static constexpr std::size_t most_at_once = 64;  ///< claims
+
+    /// Forgets all, and takes few places where there will be few numbers.
+    void begin(std::size_t numbers) {
+        if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
+            leaves_.resize(std::min(most_places, std::bit_floor(numbers)));
+        held_.fill(nothing);
+    }
+
+    void release_claims() noexcept { ++claim_; }
+
+    /// @returns false where another one that is claimed has the place
+    [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
+        const std::size_t place = number & (leaves_.size() - 1);
+        const bool is_missing = held_[place] != number;
+        if (is_missing && claims_[place] == claim_) return false;
+        missing_[missing_count_] = number;
+        missing_count_ += is_missing;
+        held_[place] = number;
+        claims_[place] = claim_;
+        return true;
+    }
+
+    /// What was claimed and is not there, to be read before the next claim.
+    [[nodiscard]] inline std::span<const std::uint32_t> take_missing() noexcept {
+        return std::span(missing_).first(std::exchange(missing_count_, 0));
+    }
+
+    [[nodiscard]] inline Leaf& operator[](std::uint32_t number) noexcept {
+        return leaves_[number & (leaves_.size() - 1)];
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(leaves_); }
+
+private:
+    static constexpr std::size_t most_places = 128;
+    static constexpr std::uint32_t nothing = 0xffffffff;
+
+    std::array<std::uint32_t, most_places> held_{};
+    std::array<std::uint64_t, most_places> claims_{};
+    std::uint64_t claim_ = 1;
+    std::array<std::uint32_t, most_at_once + 1> missing_{};
+    std::size_t missing_count_ = 0;
+    std::vector<Leaf> leaves_;
+};
+
+}  // namespace aabb

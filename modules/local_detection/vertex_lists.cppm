@@ -1,0 +1,101 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+export module aabb.local_detection:vertex_lists;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.simd;
+
+export namespace aabb {
+
+/// The vertices of a leaf of eight triangles, each once.
+struct vertex_list {
+    static constexpr std::size_t most = 16;
+
+    alignas(64) std::array<std::uint32_t, most> vertices;  ///< the first one fills the rest
+    std::array<std::uint32_t, 3> places;  ///< by corner: 4 bits a triangle; the last one fills the rest
+    std::uint32_t count;                  ///< 0 where they have to be found in the mesh
+
+    /// Tells memory that they will be read.
+    inline void fetch(const mesh& m) const noexcept {
+        for (const std::uint32_t v : std::span(vertices).first(count)) __builtin_prefetch(&m.vertices[v]);
+    }
+};
+
+/// The vertices of leaves of eight triangles, each once: neighbours share most of their corners, so that some ten are
+/// read and moved in place of twenty-four, and the mesh's triangles are not read at all.
+///
+/// A list is a byte, how many vertices there are; for each corner, eight triangles' places in the list in 4 bits each;
+/// and the vertices' indices, in as many bytes as the largest one has. Few leaves, of triangles that lie apart, have
+/// more than sixteen vertices: they have a list of none, and are read from the mesh.
+class vertex_lists {
+public:
+    static constexpr std::size_t triangles = 8;
+
+    /// @param order the mesh's triangles, leaf by leaf
+    void build(const mesh& m, std::span<const std::uint32_t> order) {
+        width_ = 1;
+        while (m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
+        begins_.clear();
+        begins_.reserve((order.size() + triangles - 1) / triangles);
+        lists_.clear();
+        lists_.reserve(order.size() * (width_ * 5 / 4 + 2));  // about what surfaces need
+        for (std::size_t first = 0; first < order.size(); first += triangles)
+            add(m, order.subspan(first, std::min(triangles, order.size() - first)));
+        lists_.resize(lists_.size() + read_beyond);
+        lists_.shrink_to_fit();
+    }
+
+    [[nodiscard]] bool empty() const noexcept { return begins_.empty(); }
+
+    inline void fetch(std::uint32_t leaf) const noexcept { __builtin_prefetch(&lists_[begins_[leaf]]); }
+    inline void read(std::uint32_t leaf, vertex_list& to) const noexcept {
+        const std::byte* at = &lists_[begins_[leaf]];
+        to.count = static_cast<std::uint32_t>(*at);
+        if (to.count == 0) return;
+        std::memcpy(to.places.data(), at + 1, sizeof to.places);
+        simd::load_sixteen_numbers(to.vertices.data(), at + header, width_, to.count);
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(begins_) + bytes_of(lists_); }
+
+private:
+    static constexpr std::size_t header = 1 + sizeof vertex_list::places;
+    static constexpr std::size_t read_beyond = 64;
+
+    void add(const mesh& m, std::span<const std::uint32_t> of_leaf) {
+        if (lists_.size() > 0xffffffff)
+            throw input_error("the vertices of leaves take no more than 4 GiB; this mesh needs more");
+        begins_.push_back(static_cast<std::uint32_t>(lists_.size()));
+        vertex_list made{};
+        std::uint32_t& count = made.count;
+        for (std::size_t i = 0; i < triangles; ++i)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const std::uint32_t vertex = m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]][c];
+                std::uint32_t place = 0;
+                while (place < count && made.vertices[place] != vertex) ++place;
+                if (place == vertex_list::most) return lists_.push_back(std::byte{0});
+                if (place == count) made.vertices[count++] = vertex;
+                made.places[c] |= place << 4 * i;
+            }
+        const std::size_t begin = lists_.size();
+        lists_.resize(begin + header + width_ * count);
+        lists_[begin] = static_cast<std::byte>(count);
+        std::memcpy(&lists_[begin + 1], made.places.data(), sizeof made.places);
+        for (std::uint32_t i = 0; i < count; ++i)
+            std::memcpy(&lists_[begin + header + width_ * i], &made.vertices[i], width_);
+    }
+
+    std::vector<std::uint32_t> begins_;  // by leaf
+    std::vector<std::byte> lists_;
+    std::size_t width_ = 4;  // bytes of an index
+};
+
+}  // namespace aabb

@@ -1,0 +1,189 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+module aabb.build.balanced;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.build.balanced_item;
+import aabb.build.few_items;
+import aabb.build.halving;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+namespace aabb {
+
+namespace {
+
+constexpr std::size_t leaf_triangles = 8;
+constexpr std::size_t sampled = 32;  // of more than few
+constexpr std::size_t bins = 256;
+
+/// A range of places, and where its items are.
+struct part {
+    std::size_t begin;
+    std::size_t end;
+    box bounds;
+    bool in_second;  ///< of the two arrays
+
+    [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
+};
+
+class balancer {
+public:
+    balancer(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
+        const std::size_t n = m.triangles.size();
+        for (auto& items : items_) items.resize(n);
+        bin_.resize(n);
+        order_.triangles.resize(n);
+        order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);
+    }
+
+    [[nodiscard]] balanced_order order(std::uint32_t threads) {
+        worker_threads workers(threads);
+        const std::size_t n = mesh_.triangles.size();
+        std::vector<box> bounds((n + least_shared - 1) / least_shared);
+        in_chunks(workers, n, [&](std::size_t begin, std::size_t end) {
+            bounds[begin / least_shared] = read(begin, end).as_box();
+        });
+        box all = empty_box();
+        for (const box& b : bounds) all = merged(all, b);
+        halve(
+            workers, part{0, n, all, false}, [&](const part& p) { return split(p); },
+            [&](const part& p) { finish(p); });
+        return std::move(order_);
+    }
+
+private:
+    item_bounds read(std::size_t begin, std::size_t end) noexcept {
+        item_bounds all;
+        for (std::size_t t = begin; t < end; ++t) {
+            const box b = bounds_of(mesh_.triangle(static_cast<std::uint32_t>(t)));
+            balanced_item& made = items_[0][t];
+            for (int k = 0; k < 3; ++k) {
+                made.lower[static_cast<std::size_t>(k)] = b.min[k];
+                made.negated_upper[static_cast<std::size_t>(k)] = -b.max[k];
+            }
+            made.triangle = static_cast<std::uint32_t>(t);
+            made.unused = 0;
+            all.take(made);
+        }
+        return all;
+    }
+
+    /// Calls itself no deeper than a number has bits.
+    void finish(const part& p) noexcept {
+        if (p.size() > leaf_triangles) {
+            for (const part& half : split(p)) finish(half);
+            return;
+        }
+        for (std::size_t i = p.begin; i < p.end; ++i) order_.triangles[i] = items_[p.in_second][i].triangle;
+        order_.bounds[p.begin / leaf_triangles] = p.bounds;
+    }
+
+    [[nodiscard]] std::array<part, 2> split(const part& p) noexcept {
+        const std::size_t middle = p.begin + std::bit_ceil(p.size()) / 2;
+        const std::span from = std::span(items_[p.in_second]).subspan(p.begin, p.size());
+        const std::span to = std::span(items_[!p.in_second]).subspan(p.begin, p.size());
+        const auto bounds = p.size() <= few_items::most
+                                ? split_few(from, to, p.bounds, middle - p.begin)
+                                : split_many(from, to, p.bounds, middle - p.begin, &bin_[p.begin]);
+        return {part{p.begin, middle, bounds[0].as_box(), !p.in_second},
+                part{middle, p.end, bounds[1].as_box(), !p.in_second}};
+    }
+
+    [[nodiscard]] std::size_t axis_of(const few_items& items, const box& bounds, std::size_t left) const noexcept {
+        auto best = static_cast<std::size_t>(longest_axis(bounds));
+        if (rule_ == axis_rule::longest) return best;
+        double least = items.cost_of(items.first(best, left));
+        for (const std::size_t axis : {(best + 1) % 3, (best + 2) % 3})
+            if (const double cost = items.cost_of(items.first(axis, left)); cost < least) {
+                least = cost;
+                best = axis;
+            }
+        return best;
+    }
+
+    [[nodiscard]] std::array<item_bounds, 2> split_few(std::span<balanced_item> from, std::span<balanced_item> to,
+                                                       const box& bounds, std::size_t left) const noexcept {
+        const few_items items(from, 1);
+        const std::size_t axis = axis_of(items, bounds, left);
+        const std::uint64_t first = items.first(axis, left);
+        if (std::popcount(first) != static_cast<int>(left)) {
+            // Ties.
+            std::ranges::nth_element(from, from.begin() + static_cast<std::ptrdiff_t>(left), centre_order{axis});
+            std::ranges::copy(from, to.begin());
+            return {bounds_of(to.first(left)), bounds_of(to.subspan(left))};
+        }
+        std::array<std::size_t, 2> next{left, 0};
+        std::array<item_bounds, 2> halves;
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            const bool is_first = first >> i & 1;
+            to[next[is_first]++] = from[i];
+            halves[0].take_if(is_first, from[i]);
+            halves[1].take_if(!is_first, from[i]);
+        }
+        return halves;
+    }
+
+    /// By how many centres lie in each bin: only those of one bin have to be put in order.
+    [[nodiscard]] std::array<item_bounds, 2> split_many(std::span<balanced_item> from, std::span<balanced_item> to,
+                                                        const box& bounds, std::size_t left,
+                                                        std::uint8_t* bin) const noexcept {
+        const std::size_t step = (from.size() + sampled - 1) / sampled;
+        const std::size_t axis = rule_ == axis_rule::longest
+                                     ? static_cast<std::size_t>(longest_axis(bounds))
+                                     : axis_of(few_items(from, step), bounds, (left + step - 1) / step);
+        const float low = bounds.min[static_cast<int>(axis)];
+        const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
+        std::array<std::uint32_t, bins> count{};
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            // Not a number where all are equal.
+            const float place = (from[i].centre(axis) - low) * scale;
+            bin[i] = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
+            ++count[bin[i]];
+        }
+        std::size_t begin = 0;
+        std::size_t at = 0;
+        while (begin + count[at] <= left) begin += count[at++];
+        const std::size_t end = begin + count[at];
+
+        std::array<item_bounds, 2> halves;
+        std::array<std::size_t, 3> next{0, begin, end};
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            const std::size_t side = std::size_t{bin[i] >= at} + (bin[i] > at);
+            to[next[side]++] = from[i];
+            halves[0].take_if(side == 0, from[i]);
+            halves[1].take_if(side == 2, from[i]);
+        }
+        const std::span between = to.subspan(begin, end - begin);
+        std::ranges::nth_element(between, between.begin() + static_cast<std::ptrdiff_t>(left - begin),
+                                 centre_order{axis});
+        for (const balanced_item& one : between.first(left - begin)) halves[0].take(one);
+        for (const balanced_item& one : between.subspan(left - begin)) halves[1].take(one);
+        return halves;
+    }
+
+    const mesh& mesh_;
+    axis_rule rule_;
+    std::array<std::vector<balanced_item, large_pages<balanced_item>>, 2> items_;
+    std::vector<std::uint8_t, large_pages<std::uint8_t>> bin_;
+    balanced_order order_;
+};
+
+}  // namespace
+
+balanced_order order_by_halves(const mesh& m, axis_rule rule, std::uint32_t threads) {
+    return balancer(m, rule).order(threads);
+}
+
+}  // namespace aabb

@@ -1,0 +1,102 @@
+module;
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+/// How a few triangles are best split.
+export module aabb.build.few_items;
+
+import aabb.simd;
+import aabb.build.balanced_item;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Up to sixty-four items, coordinate by coordinate.
+class few_items {
+public:
+    static constexpr std::size_t most = 64;
+
+    /// Every so many of `items`.
+    few_items(std::span<const balanced_item> items, std::size_t step) noexcept {
+        for (std::size_t i = 0; i < items.size(); i += step) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                lower_[k][count_] = items[i].lower[k];
+                negated_upper_[k][count_] = items[i].negated_upper[k];
+            }
+            ++count_;
+        }
+        // The last one fills the last vector.
+        for (std::size_t i = count_; i < vectors() * width; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                lower_[k][i] = lower_[k][count_ - 1];
+                negated_upper_[k][i] = negated_upper_[k][count_ - 1];
+            }
+    }
+
+    [[nodiscard]] inline std::size_t count() const noexcept { return count_; }
+
+    /// Bit i for each item i before which, along the axis, there are less than `left`.
+    [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
+        std::array<eight_floats, most_vectors> centre;
+        std::array<eight_words, most_vectors> before{};
+        alignas(32) std::array<float, most> centres;
+        for (std::size_t v = 0; v < vectors(); ++v) {
+            centre[v] = 0.5F * load(lower_[axis], v) - 0.5F * load(negated_upper_[axis], v);
+            simd::store_eight(&centres[v * width], centre[v]);
+        }
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t v = 0; v < vectors(); ++v) before[v] -= std::bit_cast<eight_words>(centres[i] < centre[v]);
+        std::uint64_t which = 0;
+        for (std::size_t v = 0; v < vectors(); ++v)
+            which |= std::uint64_t{simd::bits_of_eight(before[v] < static_cast<std::uint32_t>(left))} << v * width;
+        return which & ~std::uint64_t{0} >> (most - count_);
+    }
+
+    /// The sum, for those in `which` and for the others, of their box's area times their number.
+    [[nodiscard]] inline double cost_of(std::uint64_t which) const noexcept {
+        std::array<std::array<eight_floats, 6>, 2> sides;
+        for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
+        for (std::size_t v = 0; v < vectors(); ++v) {
+            const auto present = static_cast<std::uint8_t>(which >> v * width);
+            const auto in_first = simd::flags_of_eight(present);
+            for (std::size_t row = 0; row < 6; ++row) {
+                const eight_floats x = row < 3 ? load(lower_[row], v) : load(negated_upper_[row - 3], v);
+                sides[0][row] = in_first ? lesser(x, sides[0][row]) : sides[0][row];
+                sides[1][row] = in_first ? sides[1][row] : lesser(x, sides[1][row]);
+            }
+        }
+        const auto in_first = static_cast<double>(std::popcount(which));
+        return half_area(sides[0]) * in_first + half_area(sides[1]) * (static_cast<double>(count_) - in_first);
+    }
+
+private:
+    using eight_floats = simd::eight_floats;
+    using eight_words = simd::eight_words;
+    static constexpr std::size_t width = 8;
+    static constexpr std::size_t most_vectors = most / width;
+    using row = std::array<float, most>;
+
+    [[nodiscard]] static inline eight_floats lesser(eight_floats p, eight_floats q) noexcept { return p < q ? p : q; }
+    [[nodiscard]] inline std::size_t vectors() const noexcept { return (count_ + width - 1) / width; }
+    [[nodiscard]] static inline eight_floats load(const row& of, std::size_t vector) noexcept {
+        return simd::load_eight<eight_floats>(&of[vector * width]);
+    }
+    [[nodiscard]] static inline double half_area(const std::array<eight_floats, 6>& least) noexcept {
+        std::array<double, 3> length;
+        for (std::size_t k = 0; k < 3; ++k)
+            length[k] = -double{simd::least(least[k])} - double{simd::least(least[k + 3])};
+        return length[0] * length[1] + length[1] * length[2] + length[2] * length[0];
+    }
+
+    alignas(32) std::array<row, 3> lower_;
+    alignas(32) std::array<row, 3> negated_upper_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace aabb
