@@ -15,6 +15,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.simd;
 import :child_pairs;
+import :corner_numbers;
 import :leaf_pairs;
 import :model;
 import :nearest_pair;
@@ -139,6 +140,10 @@ private:
     /// The higher of two nodes is opened first, until both are leaves.
     void set_steps(heights now) {
         if (!steps_.empty() && steps_.front() == now) return;
+        // All memory first: what is there when it runs out must be whole.
+        const std::size_t steps = std::max(now.a, now.b) + 1;
+        if (pairs_.size() < steps) pairs_.resize(steps);
+        steps_.reserve(steps);
         steps_.assign(1, now);
         while (now.a > 0 || now.b > 0) {
             const std::size_t higher = std::max(now.a, now.b);
@@ -146,7 +151,6 @@ private:
             if (now.b == higher) --now.b;
             steps_.push_back(now);
         }
-        if (pairs_.size() < steps_.size()) pairs_.resize(steps_.size());
     }
 
     /// Those pairs of children that may meet go to the next step, from which the last is taken first.
@@ -197,31 +201,38 @@ private:
         const node_pairs& from = pairs_[steps_.size() - 1];
         const std::span leaves_a = std::span(from.a).subspan(begin, end - begin);
         const std::span leaves_b = std::span(from.b).subspan(begin, end - begin);
-        counters_.add(work::box_tests, most_children_of_pair * leaves_a.size());
-        return leaves_(
-            a, b, to_a, leaves_a, leaves_b,
-            [&](std::size_t p, leaf_of_a& of_a, const leaf_of_b& of_b, std::uint64_t met) {
-                if (what == extent::one_mesh) {
-                    if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
-                    if (emit_neighbours(of_a.corners.shared_with(of_b.corners), met, leaves_a[p], leaves_b[p], emit))
-                        return true;
-                }
-                if (std::popcount(met) >= worth_a_slab)
-                    met &= rows(leaves_.slab_of(of_a).reached_by(of_b.block, of_b.boxes.merged()));
-                if (met == 0) return false;
-                counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
-                waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
-                return waiting_.is_full() && waiting_.decide(test, false, emit);
-            });
+        if constexpr (Counters::enabled)
+            for (std::size_t p = 0; p < leaves_a.size(); ++p)
+                counters_.add(work::box_tests, triangles_in(a, leaves_a[p]) * triangles_in(b, leaves_b[p]));
+        return leaves_(a, b, to_a, leaves_a, leaves_b,
+                       [&](std::size_t p, leaf_of_a& of_a, const leaf_of_b& of_b, std::uint64_t met) {
+                           if (what == extent::one_mesh) {
+                               if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
+                               if (emit_neighbours(of_a.corners, of_b.corners, met, leaves_a[p], leaves_b[p], emit))
+                                   return true;
+                           }
+                           if (std::popcount(met) >= worth_a_slab)
+                               met &= rows(leaves_.slab_of(of_a).reached_by(of_b.block, of_b.boxes.merged()));
+                           if (met == 0) return false;
+                           counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
+                           waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
+                           return waiting_.is_full() && waiting_.decide(test, false, emit);
+                       });
+    }
+
+    [[nodiscard]] static std::uint64_t triangles_in(const model<Tree>& m, std::uint32_t leaf) noexcept {
+        return std::min(children, m.triangles().triangles.size() - children * leaf);
     }
 
     /// An exact test would find that triangles with a corner in common meet there.
     /// @param met loses those that are handed over
     /// @returns whether to stop
     template <class Emit>
-    [[nodiscard]] static bool emit_neighbours(std::uint64_t shared, std::uint64_t& met, std::uint32_t leaf_a,
-                                              std::uint32_t leaf_b, const Emit& emit) {
+    [[nodiscard]] static bool emit_neighbours(const corner_numbers& of_a, const corner_numbers& of_b,
+                                              std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
+                                              const Emit& emit) {
         if constexpr (requires { requires Triangle::filtered; }) {
+            const std::uint64_t shared = of_a.shared_with(of_b);
             for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
                 const auto place = static_cast<std::uint32_t>(std::countr_zero(found));
                 if (emit(leaf_a, place & 7U, leaf_b, place >> 3U)) return true;

@@ -13,7 +13,7 @@ import :wide_tree_policy;
 
 export namespace aabb {
 
-/// Which vertices of the mesh are the corners of a leaf's triangles. Where there are less than eight, the last one
+/// Which vertices of the mesh are the corners of a leaf's triangles. Where there are fewer than eight, the last one
 /// fills the rest.
 struct corner_numbers {
     static constexpr std::size_t width = eight_boxes::most;

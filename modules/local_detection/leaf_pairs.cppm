@@ -13,7 +13,6 @@ import :leaf_slab;
 import :leaf_store;
 import :model;
 import :triangle_block;
-import :wide_node;
 import :wide_tree_policy;
 
 export namespace aabb {
@@ -44,8 +43,8 @@ public:
         of_b_.begin(leaves(b));
     }
 
-    /// Those pairs of leaves whose triangles' boxes meet, one after the other, many at a time: none is decided on by
-    /// itself, so that the processor need not guess.
+    /// Hands over, in order, those pairs of leaves whose triangles' boxes meet. Many are looked at before one is handed
+    /// over, so that the processor need not guess.
     /// @param take called with the place of a pair, its leaves and, bit 8 j + i for triangle i of A's leaf and j of
     /// B's, the pairs of triangles; returns whether to stop
     template <class Take>
@@ -56,7 +55,9 @@ public:
             std::size_t end = begin;
             of_a_.release_claims();
             of_b_.release_claims();
-            while (end < leaves_a.size() && of_a_.claim(leaves_a[end]) && of_b_.claim(leaves_b[end])) ++end;
+            while (end < leaves_a.size() && end - begin < most_at_once && of_a_.claim(leaves_a[end]) &&
+                   of_b_.claim(leaves_b[end]))
+                ++end;
             read(a, of_a_, [](leaf_of_a& leaf, const auto&... from) {
                 leaf.block.load(from...);
                 leaf.has_slab = false;

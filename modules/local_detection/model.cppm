@@ -18,7 +18,7 @@ template <TreePolicy Tree>
 class model {
 public:
     /// @throws input_error on a mesh that `require_valid` refuses, and as `require_ieee_arithmetic`.
-    /// @param builder of the nodes that the tree packs
+    /// @param builder of what the tree packs
     template <TreeBuilder Builder>
     model(const mesh& m, const Builder& builder, Tree tree = {})
         : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {

@@ -28,11 +28,12 @@ struct tree_bytes {
 template <class T>
 concept BalancedTree = requires(T tree, const mesh& m, const balanced_order& order) { tree.pack(m, order); };
 
-/// A bounding-volume tree over the triangles of a mesh, one triangle a leaf: a layout, which packs the nodes that a
-/// build made. One that wants leaves at certain places says `static constexpr leaf_arrangement arrangement`. A cursor
-/// stands at a node; what it carries is the layout's own business. `bounds(cursor)` is a box that holds the node's
-/// triangles; that of a leaf in a layout without leaf boxes is its parent's, or what `leaf_test()` asks for. `refit`
-/// takes a mesh of the same triangles whose vertices have moved; it uses the boxes as scratch.
+/// A bounding-volume tree over the triangles of a mesh, one triangle a leaf: a layout, which packs the nodes or
+/// the order that a build made. One that wants leaves at certain places says `static constexpr leaf_arrangement
+/// arrangement`. A cursor stands at a node; what it carries is the layout's own business. `bounds(cursor)` is a box
+/// that holds the node's triangles; that of a leaf in a layout without leaf boxes is its parent's, or what
+/// `leaf_test()` asks for. `refit` takes a mesh of the same triangles whose vertices have moved; it uses the boxes as
+/// scratch.
 template <class T>
 concept TreePolicy =
     Strategy<T> && (BalancedTree<T> || requires(T tree, std::span<const build_node> nodes) { tree.pack(nodes); }) &&

@@ -14,7 +14,7 @@ import :wide_tree_policy;
 
 export namespace aabb {
 
-/// The triangles of a leaf, coordinate by coordinate. Where there are less than eight, the last one fills the rest.
+/// The triangles of a leaf, coordinate by coordinate. Where there are fewer than eight, the last one fills the rest.
 struct triangle_block {
     static constexpr std::size_t width = eight_boxes::most;
     using row = std::array<float, width>;

@@ -30,7 +30,7 @@ struct vertex_list {
 };
 
 /// The vertices of leaves of eight triangles, each once: neighbours share most of their corners, so that some ten are
-/// read and moved in place of twenty-four, and the mesh's triangles are not read at all.
+/// read in place of twenty-four, sixteen moved, and the mesh's triangles not read at all.
 ///
 /// A list is a byte, how many vertices there are; for each corner, eight triangles' places in the list in 4 bits each;
 /// and the vertices' indices, in as many bytes as the largest one has. Few leaves, of triangles that lie apart, have
@@ -42,11 +42,12 @@ public:
     /// @param order the mesh's triangles, leaf by leaf
     void build(const mesh& m, std::span<const std::uint32_t> order) {
         width_ = 1;
-        while (m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
+        while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
         begins_.clear();
         begins_.reserve((order.size() + triangles - 1) / triangles);
         lists_.clear();
-        lists_.reserve(order.size() * (width_ * 5 / 4 + 2));  // about what surfaces need
+        // About what surfaces need.
+        lists_.reserve(std::min<std::size_t>(order.size() * (width_ * 5 / 4 + 2), most_bytes));
         for (std::size_t first = 0; first < order.size(); first += triangles)
             add(m, order.subspan(first, std::min(triangles, order.size() - first)));
         lists_.resize(lists_.size() + read_beyond);
@@ -64,15 +65,29 @@ public:
         simd::load_sixteen_numbers(to.vertices.data(), at + header, width_, to.count);
     }
 
+    /// Whether these are still the corners of the leaf's triangles.
+    [[nodiscard]] bool matches(const mesh& m, std::uint32_t leaf,
+                               std::span<const std::uint32_t> of_leaf) const noexcept {
+        vertex_list list;
+        read(leaf, list);
+        bool same = true;
+        if (list.count == 0) return same;
+        for (std::size_t i = 0; i < of_leaf.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                same &= list.vertices[list.places[c] >> 4 * i & 15U] == m.triangles[of_leaf[i]][c];
+        return same;
+    }
+
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(begins_) + bytes_of(lists_); }
 
 private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::places;
     static constexpr std::size_t read_beyond = 64;
+    static constexpr std::size_t most_bytes = 0xffffffff;
 
     void add(const mesh& m, std::span<const std::uint32_t> of_leaf) {
-        if (lists_.size() > 0xffffffff)
-            throw input_error("the vertices of leaves take no more than 4 GiB; this mesh needs more");
+        if (lists_.size() > most_bytes)
+            throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
         begins_.push_back(static_cast<std::uint32_t>(lists_.size()));
         vertex_list made{};
         std::uint32_t& count = made.count;

@@ -30,7 +30,7 @@ struct alignas(32) balanced_item {
     }
 };
 
-/// In the order of centres along an axis; ties go by triangle, so that the order does not depend on how it was found.
+/// In the order of centres along an axis; ties go by triangle, so that it is clear who goes to which side.
 struct centre_order {
     std::size_t axis;
 

@@ -39,9 +39,7 @@ public:
             }
     }
 
-    [[nodiscard]] inline std::size_t count() const noexcept { return count_; }
-
-    /// Bit i for each item i before which, along the axis, there are less than `left`.
+    /// Bit i for each item i before which, along the axis, there are fewer than `left`.
     [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
         std::array<eight_floats, most_vectors> centre;
         std::array<eight_words, most_vectors> before{};
@@ -60,10 +58,12 @@ public:
 
     /// The sum, for those in `which` and for the others, of their box's area times their number.
     [[nodiscard]] inline double cost_of(std::uint64_t which) const noexcept {
+        // What fills the last vector goes where the last item goes.
+        const std::uint64_t fill = count_ < most && (which >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
         std::array<std::array<eight_floats, 6>, 2> sides;
         for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
         for (std::size_t v = 0; v < vectors(); ++v) {
-            const auto present = static_cast<std::uint8_t>(which >> v * width);
+            const auto present = static_cast<std::uint8_t>((which | fill) >> v * width);
             const auto in_first = simd::flags_of_eight(present);
             for (std::size_t row = 0; row < 6; ++row) {
                 const eight_floats x = row < 3 ? load(lower_[row], v) : load(negated_upper_[row - 3], v);
@@ -71,8 +71,11 @@ public:
                 sides[1][row] = in_first ? sides[1][row] : lesser(x, sides[1][row]);
             }
         }
-        const auto in_first = static_cast<double>(std::popcount(which));
-        return half_area(sides[0]) * in_first + half_area(sides[1]) * (static_cast<double>(count_) - in_first);
+        const auto in_first = static_cast<std::size_t>(std::popcount(which));
+        const auto cost = [](const auto& side, std::size_t count) {
+            return count == 0 ? 0 : half_area(side) * static_cast<double>(count);
+        };
+        return cost(sides[0], in_first) + cost(sides[1], count_ - in_first);
     }
 
 private:

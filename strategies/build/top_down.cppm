@@ -13,8 +13,8 @@ import aabb.local_detection;
 
 export namespace aabb {
 
-/// Takes the elements of a node and their box. Nodes come depth first, the left child before the right one. Asked by a
-/// call, so that the rest is compiled once, whatever the rule; by several threads at a time.
+/// Takes the elements of a node and their box. Asked by a call, so that the rest is compiled once, whatever the rule;
+/// by several threads at a time.
 using split_rule = std::function<split_choice(std::span<const build_element> range, const box& bounds)>;
 
 /// Along an axis; ties go by index, so that the tree does not depend on the library.

@@ -123,6 +123,37 @@ TEST_CASE("places of set bits come in order") {
     }
 }
 
+TEST_CASE("sixteen numbers of one to four bytes are read, the first one in place of those that are not there") {
+    for (std::size_t bytes = 1; bytes <= 4; ++bytes)
+        for (std::uint32_t count = 1; count <= 16; ++count) {
+            std::array<std::byte, 64 + 64> from{};
+            for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<std::byte>(7 * i + 129);
+            std::array<std::uint32_t, 16> to{};
+            simd::load_sixteen_numbers(to.data(), from.data(), bytes, count);
+            for (std::uint32_t i = 0; i < 16; ++i) {
+                std::uint32_t expected = 0;
+                for (std::size_t b = 0; b < bytes; ++b)
+                    expected |= std::to_integer<std::uint32_t>(from[bytes * (i < count ? i : 0) + b]) << 8 * b;
+                REQUIRE(to[i] == expected);
+            }
+        }
+}
+
+TEST_CASE("columns that share a number are found") {
+    const std::array<std::uint32_t, 24> a{1,  2,  3,  4,  5,  6,  7,  8,  11, 12, 13, 14,
+                                          15, 16, 17, 18, 21, 22, 23, 24, 25, 26, 27, 28};
+    const std::array<std::uint32_t, 24> b{90, 2,  90, 24, 15, 90, 90, 8, 21, 90, 90, 90,
+                                          90, 90, 13, 90, 90, 90, 90, 4, 90, 6,  90, 90};
+    const std::uint64_t shared = simd::columns_of_eight_that_share(a.data(), b.data());
+    for (std::size_t j = 0; j < 8; ++j)
+        for (std::size_t i = 0; i < 8; ++i) {
+            bool expected = false;
+            for (std::size_t c = 0; c < 24; c += 8)
+                for (std::size_t d = 0; d < 24; d += 8) expected |= a[c + i] == b[d + j];
+            REQUIRE((shared >> (8 * j + i) & 1U) == std::uint64_t{expected});
+        }
+}
+
 TEST_CASE("eight points become three columns") {
     std::array<std::array<float, 3>, 8> points{};
     std::array<const float*, 8> from{};

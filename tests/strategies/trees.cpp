@@ -258,6 +258,36 @@ TEST_CASE("layouts take the bytes that the paper says, or less") {
     }
 }
 
+TEST_CASE("a balanced tree by surface area is split across the axis that makes boxes small, not the longest") {
+    mesh bars;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        const auto y = static_cast<float>(37 * i % 64);
+        bars.vertices.insert(bars.vertices.end(), {{-100, y, 0}, {100, y, 0}, {0, y, 0.5F}});
+        bars.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    for (const box& leaf : sah_build().order(bars).bounds) CHECK(leaf.max[1] - leaf.min[1] == 7);
+    for (const box& leaf : median_build().order(bars).bounds) CHECK(leaf.max[1] - leaf.min[1] > 7);
+}
+
+TEST_CASE("trees are refitted to meshes whose vertices were numbered anew") {
+    for (const composition& tree : all_trees()) {
+        if (!is_exact_locally(tree)) continue;
+        INFO(text_of_local(tree));
+        mesh m = sheet(12);
+        const auto stage = local_of(tree);
+        stage->add_model(m);
+        pose aside;
+        aside.translation = {0.3, 0.2, 0.1};
+        const std::uint64_t before = stage->count_pairs(0, {}, 0, aside);
+        std::ranges::reverse(m.vertices);
+        for (auto& corners : m.triangles)
+            for (std::uint32_t& v : corners) v = static_cast<std::uint32_t>(m.vertices.size()) - 1 - v;
+        stage->refit(0);
+        CHECK(before > 0);
+        CHECK(stage->count_pairs(0, {}, 0, aside) == before);
+    }
+}
+
 TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a triangle the bits of their number") {
     for (const std::uint32_t n : {1U, 8U, 9U, 64U, 65U, 1000U}) {
         std::size_t nodes = 0;
@@ -312,6 +342,7 @@ TEST_CASE("in a balanced tree triangles are split where halves are full, across 
             for (const std::uint32_t threads : {2U, 5U}) {
                 const Build together({threads});
                 CHECK(together.order(m).triangles == order.triangles);
+                CHECK(together.order(m).bounds == order.bounds);
                 for (const auto arrangement : {leaf_arrangement::any, leaf_arrangement::pairs})
                     CHECK(std::ranges::equal(together.build(m, arrangement), Build().build(m, arrangement), {}, told_of,
                                              told_of));

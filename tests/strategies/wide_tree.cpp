@@ -104,13 +104,17 @@ eight_boxes in_eight(const std::vector<box>& boxes) {
     return made;
 }
 
-/// Triangles that share corners, or have three each, in a mesh of so many vertices.
-mesh any_mesh(std::uint32_t triangles, std::uint32_t vertices, float size) {
+/// Triangles with so many of the last of all vertices for corners.
+mesh any_mesh(std::uint32_t triangles, std::uint32_t vertices, std::uint32_t used, float size) {
     mesh m;
-    for (std::uint32_t v = 0; v < vertices; ++v)
-        m.vertices.push_back({size * static_cast<float>(uniform(-1, 1)), size * static_cast<float>(uniform(-1, 1)),
-                              size * static_cast<float>(uniform(-1, 1))});
-    const auto any_vertex = [&] { return *rc::gen::inRange<std::uint32_t>(0, vertices); };
+    m.vertices.resize(vertices);
+    used = std::min(used, vertices);
+    const auto any_number = [&] { return size * static_cast<float>(uniform(-1, 1)); };
+    for (std::uint32_t v = vertices - used; v < vertices; ++v)
+        m.vertices[v] = {any_number(), any_number(), any_number()};
+    const auto any_vertex = [&] {
+        return vertices - 1 - std::min(used - 1, static_cast<std::uint32_t>(uniform(0, 1) * used));
+    };
     for (std::uint32_t t = 0; t < triangles; ++t) m.triangles.push_back({any_vertex(), any_vertex(), any_vertex()});
     return m;
 }
@@ -407,10 +411,10 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
         q[0] += 1.01;
         const pose pose_a = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
         const float size = *rc::gen::element(1e-30F, 1.0F, 1e30F);
-        // Few vertices are shared by many triangles, and more than sixteen are not listed. Of so many, their indices
-        // take one byte, two or three.
+        // More than sixteen are not listed. Of so many vertices, their indices take one byte, two or three.
         const mesh m = any_mesh(*rc::gen::inRange<std::uint32_t>(1, 20),
-                                *rc::gen::element<std::uint32_t>(1, 3, 9, 256, 257, 65536, 65537), size);
+                                *rc::gen::element<std::uint32_t>(1, 3, 9, 256, 257, 65536, 100000),
+                                *rc::gen::element<std::uint32_t>(12, 40), size);
         const relative_pose to_a(pose_a, {}, bounds_of(m));
         for (const auto vertices : {implicit_tree::vertex_choice::listed, implicit_tree::vertex_choice::fetched}) {
             const model<aabb::implicit_tree> built(m, aabb::median_build(), implicit_tree({vertices}));

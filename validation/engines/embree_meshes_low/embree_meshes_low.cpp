@@ -13,7 +13,7 @@ std::unique_ptr<local_stage> make_embree_meshes(bool low);
 
 engine embree_meshes_low_engine() {
     return {.name = "embree_meshes_low",
-            .summary = "the same with scenes of low quality, which are built faster",
+            .summary = "as embree_meshes, with scenes of low quality, which are built faster",
             .meshes = [] { return make_embree_meshes(true); }};
 }
 
