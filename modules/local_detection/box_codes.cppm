@@ -38,14 +38,6 @@ struct box_codes {
         return met;
     }
 
-    void encode(const code_grid& grid, const eight_boxes& boxes) noexcept {
-        for (std::size_t k = 0; k < 3; ++k) {
-            simd::store_eight(lower[k].data(), from_below(grid, k, boxes.lower[k]));
-            simd::store_eight(upper[k].data(), from_above(grid, k, boxes.upper[k]));
-        }
-        keep_first(boxes.count);
-    }
-
     /// Empties the places from `count` on.
     inline void keep_first(std::size_t count) noexcept {
         for (std::size_t i = count; i < eight_boxes::most; ++i)
