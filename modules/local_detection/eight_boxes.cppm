@@ -22,7 +22,7 @@ struct eight_boxes {
 
     /// Sixty-four pairs at once: bit 8 j + i for box i of these and box j of `others`, where they overlap.
     [[nodiscard]] inline std::uint64_t overlaps(const eight_boxes& others) const noexcept {
-        const std::uint64_t columns = 0x0101010101010101 * (0xffU >> (most - count));
+        const std::uint64_t columns = std::uint64_t{0x0101010101010101} * (0xffU >> (most - count));
         const std::uint64_t rows = ~std::uint64_t{0} >> (most * (most - others.count));
         return simd::pairs_of_eight_that_overlap(lower[0].data(), others.lower[0].data()) & columns & rows;
     }
