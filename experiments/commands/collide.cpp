@@ -43,7 +43,7 @@ struct collide_request {
     stage_options local{aabb::stage::local_detection};
     std::optional<std::string> engine, out, poses_of_b;
     std::size_t repeats = 1;
-    bool self = false;
+    std::string self;  ///< what becomes of pairs that share a vertex: `together`, `apart`; empty without --self
     bool first = false;
     bool count = false;
     bool geometry = false;
@@ -117,7 +117,7 @@ private:
 /// Answers in place of `detect`, or by it.
 /// @returns how many pairs there are, where those are not kept
 std::uint64_t query(player& who, const collide_request& request, std::vector<aabb::index_pair>& pairs) {
-    if (request.self) {
+    if (!request.self.empty()) {
         who.find_self_pairs(0, pairs);
     } else if (request.count) {
         return who.count_contacts();
@@ -157,11 +157,14 @@ std::uint64_t take_pairs(const collide_request& request, detection_method& metho
     const std::vector<aabb::mesh>& meshes = scene.meshes()->meshes;
     std::ranges::sort(result.pairs);
     require_each_once(result.pairs, method.name);
+    std::uint64_t neighbours = 0;
+    if (request.self == "apart")
+        neighbours = std::erase_if(result.pairs, [&](auto pair) { return shared_vertices(meshes[0], pair) > 0; });
     if (method.geometry)
         method.geometry->take(meshes.front(), scene.poses().front(), meshes.back(), scene.poses().back());
     std::uint64_t count = 0;
     for (const aabb::index_pair pair : result.pairs) {
-        const std::uint32_t shared = request.self ? shared_vertices(meshes[0], pair) : 0;
+        const std::uint32_t shared = request.self == "together" ? shared_vertices(meshes[0], pair) : 0;
         std::string cells;
         if (method.geometry) {
             const aabb::triangle_intersection common = (*method.geometry)(pair);
@@ -169,7 +172,7 @@ std::uint64_t take_pairs(const collide_request& request, detection_method& metho
             if (table) cells = to_cells(common);
         }
         if (table) {
-            if (request.self)
+            if (request.self == "together")
                 table->add({pair.a, pair.b, shared}, cells);
             else if (pose)
                 table->add({*pose, pair.a, pair.b}, cells);
@@ -177,7 +180,9 @@ std::uint64_t take_pairs(const collide_request& request, detection_method& metho
                 table->add({pair.a, pair.b}, cells);
         }
         count += shared == 0;
+        neighbours += shared > 0;
     }
+    if (!request.self.empty()) result.neighbours = neighbours;
     return count;
 }
 
@@ -206,7 +211,7 @@ detection_result detect(const collide_request& request, detection_method& method
         }
         if (frame >= poses) continue;
         result.pairs = std::move(pairs);
-        if (!request.count || request.self) {
+        if (!request.count || !request.self.empty()) {
             for (const aabb::contact& c : who->sorted_contacts()) result.pairs.push_back({c.triangle_a, c.triangle_b});
             count = take_pairs(request, method, scene, pose, result, table);
             digest.add(frame, result.pairs);
@@ -214,7 +219,6 @@ detection_result detect(const collide_request& request, detection_method& method
         result.counts.push_back(count);
     }
     set_bytes(result, *who);
-    if (request.self) result.neighbours = result.pairs.size() - result.counts.front();
     if (!request.count) result.digest = digest.text();
     return result;
 }
@@ -244,7 +248,7 @@ void print_json(const collide_request& request, const detection_method& method, 
 void print_text(const collide_request& request, const detection_method& method, const detection_result& result) {
     print(fmt::format(
         "{} ({} triangles) against {}\n", visible(request.a), result.triangles[0],
-        request.self ? "itself" : fmt::format("{} ({} triangles)", visible(*request.b), result.triangles[1])));
+        !request.self.empty() ? "itself" : fmt::format("{} ({} triangles)", visible(*request.b), result.triangles[1])));
     const std::string digest = result.digest ? ", digest " + *result.digest : "";
     if (request.first && !request.poses_of_b && !result.pairs.empty())
         print(fmt::format("triangles {} and {} intersect{}\n", result.pairs[0].a, result.pairs[0].b,
@@ -253,7 +257,7 @@ void print_text(const collide_request& request, const detection_method& method, 
         print(fmt::format("{}{} intersecting pairs of triangles{}{}\n",
                           request.poses_of_b ? fmt::format("{} poses of it: ", result.counts.size()) : "",
                           std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}),
-                          request.self ? " that share no vertex" : "", digest));
+                          !request.self.empty() ? " that share no vertex" : "", digest));
     if (result.neighbours) print(fmt::format("{} more among triangles that share a vertex\n", *result.neighbours));
     std::vector<double> ms = result.query_ms;
     std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
@@ -272,7 +276,10 @@ void print_text(const collide_request& request, const detection_method& method, 
 
 /// What does not go together.
 void require_sense(const collide_request& request) {
-    if (request.self) {
+    if (!request.self.empty()) {
+        const std::vector<std::string> choices{"together", "apart"};
+        if (std::ranges::find(choices, request.self) == choices.end())
+            throw aabb::input_error(aabb::unknown_name("value of --self", request.self, choices));
         if (request.b) throw aabb::input_error("--self holds one mesh against itself, so give no second one");
         if (request.poses[0] || request.poses[1] || request.poses_of_b)
             throw aabb::input_error("--self holds a mesh against itself, so poses change nothing; leave them away");
@@ -304,7 +311,9 @@ void collide(const collide_request& request) {
     std::optional<number_table> table;
     if (request.out) {
         require_no_mesh(*request.out, names);
-        std::string columns = request.self ? "a,b,shared_vertices" : request.poses_of_b ? "pose,a,b" : "a,b";
+        std::string columns = request.self == "together" ? "a,b,shared_vertices"
+                              : request.poses_of_b       ? "pose,a,b"
+                                                         : "a,b";
         if (request.geometry) columns += "," + std::string(intersection_columns);
         table.emplace(*request.out, columns);
     }
@@ -339,7 +348,9 @@ void add_collide(CLI::App& program, int&) {
     request->local.add_to(*command);
     command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
         ->type_name("E");
-    command->add_flag("--self", request->self, "Hold A against itself; pairs that share a vertex are counted apart");
+    command->add_flag("--self{together}", request->self,
+                      "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left "
+                      "out of the pairs");
     command->add_flag("--first", request->first, "Stop at the first pair found");
     command->add_flag("--count", request->count, "Only count the pairs");
     command

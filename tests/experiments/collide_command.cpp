@@ -92,6 +92,18 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     REQUIRE(counted["pairs"] == summary["pairs"]);
     REQUIRE(counted["neighbours"] == summary["neighbours"]);
     REQUIRE(counted["digest"].is_null());
+    // Neighbours left out: only the rest are pairs, and they are still counted.
+    const auto apart = nlohmann::json::parse(
+        run_program({"collide", mesh, "--self=apart", "--json", "--tree", tree, "--out", folder / "apart.csv"}).out);
+    REQUIRE(apart["pairs"] == summary["pairs"]);
+    REQUIRE(apart["neighbours"] == summary["neighbours"]);
+    REQUIRE(apart["digest"] != summary["digest"]);
+    std::string without = "a,b\n";
+    for (std::size_t begin = rows.find('\n') + 1; begin < rows.size(); begin = rows.find('\n', begin) + 1)
+        if (const std::string row = rows.substr(begin, rows.find('\n', begin) - begin); row.ends_with(",0"))
+            without += row.substr(0, row.size() - 2) + "\n";
+    REQUIRE(bytes_of_file(folder / "apart.csv") == without);
+    REQUIRE(run_program({"collide", mesh, "--self=appart"}).err.find("did you mean 'apart'?") != std::string::npos);
     REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 more among triangles that share a vertex") !=
             std::string::npos);
 }
