@@ -69,6 +69,9 @@ TEST_CASE("engines find every pair of overlapping boxes once") {
         for (box& b : boxes) b.max = b.min;
         require_found_by_all(boxes);
     }
+    SECTION("a few that are all one point") {
+        for (std::size_t n = 2; n <= 9; ++n) require_found_by_all(std::vector<box>(n, {{1, 2, 3}, {1, 2, 3}}));
+    }
     SECTION("none, one and two") {
         require_found_by_all({});
         require_found_by_all({{{0, 0, 0}, {1, 1, 1}}});

@@ -36,12 +36,14 @@ TEST_CASE("the engines are listed with what they can do") {
         REQUIRE(is_exact_engine(info.name) == info.exact);
     }
     REQUIRE(names == declared_names());
-    for (const char* always : {"brute_force", "cgal"}) REQUIRE(std::ranges::find(names, always) != names.end());
+    for (const char* always : {"brute_force", "cgal", "cgal_tree"})
+        REQUIRE(std::ranges::find(names, always) != names.end());
 }
 
 TEST_CASE("an engine is in the build or left out, and not both") {
-    for (const char* name : {"fcl", "libccd", "embree", "embree_refit", "embree_meshes", "embree_meshes_low",
-                             "boost_rtree", "bullet_dbvt", "bullet_sap", "ode_hash", "ode_sap"}) {
+    for (const char* name :
+         {"fcl", "fcl_aabb", "libccd", "embree", "embree_refit", "embree_meshes", "embree_meshes_low",
+          "embree_meshes_refit", "boost_rtree", "bullet_dbvt", "bullet_sap", "ode_hash", "ode_sap"}) {
         const auto there = std::ranges::count(engines(), name, &engine_info::name);
         const auto left_out = std::ranges::count(left_out_engines(), name, &left_out_engine::name);
         REQUIRE(there + left_out == 1);

@@ -10,6 +10,14 @@ import :mesh_engine;
 
 namespace aabb {
 
+std::vector<vec3f> moved_vertices(const pose& pose_a, const pose& pose_b, const mesh& b, const box& bounds) {
+    const relative_pose to_a(pose_a, pose_b, bounds);
+    std::vector<vec3f> moved = b.vertices;
+    for (vec3f& v : moved)
+        if (contains(bounds, bounds_of(v))) v = to_a(v);
+    return moved;
+}
+
 void mesh_engine::all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                             std::vector<index_pair>& pairs) {
     append_whole(pairs, [&] { find(model_a, pose_a, model_b, pose_b, pairs); });

@@ -13,6 +13,11 @@ import aabb.pipeline;
 
 namespace aabb {
 
+/// The vertices of B seen from A, by number. Those outside B's box, which no triangle uses, stay as they are.
+/// @param bounds of B, in its own frame
+[[nodiscard]] std::vector<vec3f> moved_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
+                                                const box& bounds);
+
 /// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.
 class mesh_engine : public local_stage {
 public:

@@ -31,6 +31,9 @@ public:
     }
 
 private:
+    /// There is nothing to gain, and Embree fails an assertion where so few boxes are all one point.
+    static constexpr std::size_t few = 4;
+
     /// What a search has found so far: numbers of boxes, not yet ids.
     struct finding {
         std::vector<index_pair>& pairs;
@@ -45,7 +48,7 @@ private:
             boxes_.push_back(boxes[id]);
             bounds_.push_back(workable(boxes[id]));
         }
-        if (ids_.size() < 2) return;
+        if (ids_.size() <= few) return;
         const charge_to here(held_);
         if (!scene_) begin();
         rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(bounds_.size()));
@@ -72,7 +75,7 @@ private:
     }
 
     void find(std::vector<index_pair>& pairs) override {
-        if (ids_.size() < 2) return;
+        if (ids_.size() <= few) return find_among_few(pairs);
         const auto known = static_cast<std::ptrdiff_t>(pairs.size());
         finding found{pairs};
         rtcCollide(scene_.get(), scene_.get(), collect, &found);
@@ -82,6 +85,12 @@ private:
         const auto apart = [&](index_pair p) { return !overlaps(boxes_[p.a], boxes_[p.b]); };
         pairs.erase(std::remove_if(pairs.begin() + known, pairs.end(), apart), pairs.end());
         for (auto p = pairs.begin() + known; p != pairs.end(); ++p) *p = {ids_[p->a], ids_[p->b]};
+    }
+
+    void find_among_few(std::vector<index_pair>& pairs) const {
+        for (std::size_t j = 1; j < ids_.size(); ++j)
+            for (std::size_t i = 0; i < j; ++i)
+                if (overlaps(boxes_[i], boxes_[j])) pairs.push_back({ids_[i], ids_[j]});
     }
 
     /// Embree reports all pairs in the leaves that overlap, each from both sides. No exception may pass through it.

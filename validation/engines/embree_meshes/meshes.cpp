@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -26,11 +27,11 @@ namespace {
 
 using namespace embree;
 
-/// The boxes of triangles in a scene.
+/// Triangles, and their boxes in a scene.
 class triangle_scene {
 public:
     /// @param held where what Embree allocates is added up; must outlive this
-    triangle_scene(RTCBuildQuality quality, std::ptrdiff_t& held) : quality_(quality), held_(&held) {}
+    explicit triangle_scene(std::ptrdiff_t& held) : held_(&held) {}
     triangle_scene(triangle_scene&&) = default;
     triangle_scene& operator=(triangle_scene&&) = delete;
     triangle_scene(const triangle_scene&) = delete;
@@ -41,41 +42,58 @@ public:
         geometry_.reset();
     }
 
-    void build(std::span<const triangle3f> triangles) {
-        bounds_.clear();
-        for (const triangle3f& t : triangles) bounds_.push_back(workable(bounds_of(t)));
+    /// Anew; or refitted, where the quality is that and was before.
+    /// @param m always the same mesh
+    void build(RTCBuildQuality quality, const mesh& m, std::span<const vec3f> vertices) {
+        triangles_.clear();
+        triangles_.reserve(m.triangles.size());
+        for (const auto& t : m.triangles) triangles_.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
+        // For so few there is nothing to gain, and of low quality Embree fails an assertion where all are one point.
+        if (triangles_.size() <= 4) quality = RTC_BUILD_QUALITY_MEDIUM;
         const charge_to here(*held_);
-        scene_.reset();
-        geometry_.reset(rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_USER));
-        require_success(the_device());
-        rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(bounds_.size()));
-        rtcSetGeometryUserData(geometry_.get(), bounds_.data());
-        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* asked) {
-            *asked->bounds_o = static_cast<const RTCBounds*>(asked->geometryUserPtr)[asked->primID];
-        };
-        rtcSetGeometryBoundsFunction(geometry_.get(), bounds_of_one, nullptr);
+        if (quality != RTC_BUILD_QUALITY_REFIT || built_ != quality) begin(quality);
+        built_.reset();  // what a failure leaves half-made is not refitted
+        rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(triangles_.size()));
+        rtcSetGeometryUserData(geometry_.get(), triangles_.data());
         rtcCommitGeometry(geometry_.get());
-        scene_.reset(rtcNewScene(the_device()));
-        require_success(the_device());
-        rtcSetSceneBuildQuality(scene_.get(), quality_);
-        rtcAttachGeometry(scene_.get(), geometry_.get());
         rtcCommitScene(scene_.get());
         require_success(the_device());
-        // Needed while it builds only.
-        aabb::release(bounds_);
+        built_ = quality;
     }
 
+    [[nodiscard]] std::span<const triangle3f> triangles() const { return triangles_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(triangles_); }
     [[nodiscard]] RTCScene get() const { return scene_.get(); }
 
 private:
-    RTCBuildQuality quality_;
+    void begin(RTCBuildQuality quality) {
+        scene_.reset();
+        geometry_.reset(rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_USER));
+        require_success(the_device());
+        rtcSetGeometryBuildQuality(geometry_.get(), quality);
+        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* asked) {
+            const auto* triangles = static_cast<const triangle3f*>(asked->geometryUserPtr);
+            *asked->bounds_o = workable(bounds_of(triangles[asked->primID]));
+        };
+        rtcSetGeometryBoundsFunction(geometry_.get(), bounds_of_one, nullptr);
+        scene_.reset(rtcNewScene(the_device()));
+        require_success(the_device());
+        // Embree heeds the quality of a geometry in scenes of low quality only, and can refit it in dynamic ones.
+        const bool refits = quality == RTC_BUILD_QUALITY_REFIT;
+        rtcSetSceneBuildQuality(scene_.get(), refits ? RTC_BUILD_QUALITY_LOW : quality);
+        if (refits) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
+        rtcAttachGeometry(scene_.get(), geometry_.get());
+    }
+
     std::ptrdiff_t* held_;
-    std::vector<RTCBounds> bounds_;
+    std::optional<RTCBuildQuality> built_;
+    std::vector<triangle3f> triangles_;
     geometry_pointer geometry_;
     scene_pointer scene_;
 };
 
-/// Embree knows no poses: the second mesh is moved and built anew for every new one, and kept while that stays.
+/// Embree knows no poses: the second mesh is moved, and its scene built or refitted, for every new one, and kept while
+/// that stays.
 class embree_meshes final : public mesh_engine {
 public:
     explicit embree_meshes(RTCBuildQuality quality) : quality_(quality) {}
@@ -83,20 +101,22 @@ public:
     std::uint32_t add_model(const mesh& m) override {
         require_ieee_arithmetic();
         require_valid(m);
-        model made{&m, triangles_of(m), triangle_scene(quality_, *held_), {}};
-        made.scene.build(made.triangles);
+        model made{&m, bounds_of(m), triangle_scene(*held_), {}, triangle_scene(*held_), {}};
+        // Most meshes never deform, so only what is moved begins as one that refits.
+        const bool refits = quality_ == RTC_BUILD_QUALITY_REFIT;
+        made.still.build(refits ? RTC_BUILD_QUALITY_MEDIUM : quality_, m, m.vertices);
         models_.push_back(std::move(made));
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
     void refit(std::uint32_t number) override {
         model& changed = models_[number];
-        moved_.reset();
+        changed.poses.reset();
         changed.fit.renew([&] {
             require_ieee_arithmetic();
-            require_still_valid(*changed.source, changed.triangles.size());
-            changed.triangles = triangles_of(*changed.source);
-            changed.scene.build(changed.triangles);
+            require_still_valid(*changed.source, changed.still.triangles().size());
+            changed.bounds = bounds_of(*changed.source);
+            changed.still.build(quality_, *changed.source, changed.source->vertices);
         });
     }
 
@@ -110,66 +130,45 @@ public:
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t all = static_cast<std::size_t>(*held_);
-        for (const model& m : models_) all += bytes_of(m.triangles);
-        if (moved_) all += bytes_of(moved_->triangles);
+        for (const model& m : models_) all += bytes_of(m.still) + bytes_of(m.moved);
         return {{"engine", all}};
     }
 
 private:
     struct model {
         const mesh* source;
-        std::vector<triangle3f> triangles;
-        triangle_scene scene;
+        box bounds;
+        triangle_scene still;
         mesh_fit fit;
-    };
-    /// B in A's frame.
-    struct moved_model {
-        std::uint32_t model;
-        pose pose_a;
-        pose pose_b;
-        std::vector<triangle3f> triangles;
-        triangle_scene scene;
+        triangle_scene moved;                      // in the frame of another model
+        std::optional<std::array<pose, 2>> poses;  // of that model and this one there; none where nothing is built
     };
     struct finding {
         std::vector<index_pair>& pairs;
         bool out_of_memory = false;
     };
 
-    [[nodiscard]] static std::vector<triangle3f> triangles_of(const mesh& m) {
-        std::vector<triangle3f> all;
-        all.reserve(m.triangles.size());
-        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) all.push_back(m.triangle(t));
-        return all;
-    }
-
     void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
               std::vector<index_pair>& pairs) override {
         require_ieee_arithmetic();
+        const triangle_scene& a = models_[model_a].still;
+        model& b = models_[model_b];
         models_[model_a].fit.require();
-        models_[model_b].fit.require();
-        if (!moved_ || moved_->model != model_b || moved_->pose_a != pose_a || moved_->pose_b != pose_b)
-            move(model_b, pose_a, pose_b);
+        b.fit.require();
+        if (const std::array poses{pose_a, pose_b}; b.poses != poses) {
+            b.poses.reset();
+            b.moved.build(quality_, *b.source, moved_vertices(pose_a, pose_b, *b.source, b.bounds));
+            b.poses = poses;
+        }
         const auto known = static_cast<std::ptrdiff_t>(pairs.size());
         finding found{pairs};
-        rtcCollide(models_[model_a].scene.get(), moved_->scene.get(), collect, &found);
+        rtcCollide(a.get(), b.moved.get(), collect, &found);
         require_success(the_device());
         if (found.out_of_memory) throw std::bad_alloc();
         // Only now: while it searches, Embree may take denormals for zero.
         const devillers_guigue_triangle test;
-        const auto apart = [&](index_pair p) {
-            return !test.intersects(models_[model_a].triangles[p.a], moved_->triangles[p.b]);
-        };
+        const auto apart = [&](index_pair p) { return !test.intersects(a.triangles()[p.a], b.moved.triangles()[p.b]); };
         pairs.erase(std::remove_if(pairs.begin() + known, pairs.end(), apart), pairs.end());
-    }
-
-    void move(std::uint32_t number, const pose& pose_a, const pose& pose_b) {
-        const model& b = models_[number];
-        const relative_pose to_a(pose_a, pose_b, bounds_of(*b.source));
-        moved_.reset();
-        moved_model made{number, pose_a, pose_b, b.triangles, triangle_scene(quality_, *held_)};
-        for (triangle3f& t : made.triangles) t = to_a(t);
-        made.scene.build(made.triangles);
-        moved_.emplace(std::move(made));
     }
 
     /// No exception may pass through Embree.
@@ -185,13 +184,20 @@ private:
     RTCBuildQuality quality_;
     std::unique_ptr<std::ptrdiff_t> held_ = std::make_unique<std::ptrdiff_t>(0);  // bytes that Embree holds
     std::vector<model> models_;
-    std::optional<moved_model> moved_;
 };
 
 }  // namespace
 
-std::unique_ptr<local_stage> make_embree_meshes(bool low) {
-    return std::make_unique<embree_meshes>(low ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+std::unique_ptr<local_stage> make_embree_meshes() {
+    return std::make_unique<embree_meshes>(RTC_BUILD_QUALITY_MEDIUM);
+}
+
+std::unique_ptr<local_stage> make_embree_meshes_low() {
+    return std::make_unique<embree_meshes>(RTC_BUILD_QUALITY_LOW);
+}
+
+std::unique_ptr<local_stage> make_embree_meshes_refit() {
+    return std::make_unique<embree_meshes>(RTC_BUILD_QUALITY_REFIT);
 }
 
 }  // namespace aabb

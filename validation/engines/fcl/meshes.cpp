@@ -1,14 +1,17 @@
 module;
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
+#include <fcl/narrowphase/detail/traversal/collision_node.h>
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,77 +28,138 @@ namespace aabb {
 
 namespace {
 
-using fcl_tree = fcl::BVHModel<fcl::OBBRSSd>;
-
-/// FCL's trees of oriented boxes in double. It takes the raw poses, so that no vertex is rounded to float.
-class fcl_meshes final : public mesh_engine {
+/// A mesh in FCL's tree of bounding volumes.
+template <class Volume>
+class fcl_tree {
 public:
-    std::uint32_t add_model(const mesh& m) override {
-        models_.push_back({&m, tree_of(m), {}});
-        return static_cast<std::uint32_t>(models_.size() - 1);
+    /// Refitted where there is one already.
+    /// @param m always the same mesh
+    void build(const mesh& m, std::span<const vec3f> vertices) {
+        // Gone meanwhile: a tree whose refit broke off FCL would take for one in the midst of it, and write beyond its
+        // vertices.
+        std::unique_ptr<tree> made = std::move(tree_);
+        if (made) {
+            made->beginReplaceModel();
+            for (const vec3f& v : vertices) made->replaceVertex(in_double(v));
+            made->endReplaceModel(true, true);
+        } else {
+            std::vector<fcl::Vector3d> at;
+            for (const vec3f& v : vertices) at.push_back(in_double(v));
+            std::vector<fcl::Triangle> triangles;
+            for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+            made = std::make_unique<tree>();
+            require_done(made->beginModel(static_cast<int>(triangles.size()), static_cast<int>(at.size())));
+            require_done(made->addSubModel(at, triangles));
+            require_done(made->endModel());
+        }
+        tree_ = std::move(made);
     }
 
-    void refit(std::uint32_t model) override {
-        auto& [triangles, tree, fit] = models_[model];
-        fit.renew([&] {
-            require_ieee_arithmetic();
-            require_valid(*triangles);
-            const std::vector<fcl::Vector3d> vertices = vertices_of(*triangles);
-            // A tree whose refit broke off FCL would take for one in the midst of it, and write beyond its vertices.
-            std::unique_ptr<fcl_tree> refitted = tree ? std::move(tree) : tree_of(*triangles);
-            refitted->beginReplaceModel();
-            refitted->replaceSubModel(vertices);
-            refitted->endReplaceModel(true, true);
-            tree = std::move(refitted);
-        });
-    }
+    [[nodiscard]] fcl::BVHModel<Volume>& get() const { return *tree_; }
 
-    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                                       const pose& pose_b) override {
-        const fcl::CollisionResultd result = collide(model_a, pose_a, model_b, pose_b, 1);
-        if (!result.isCollision()) return std::nullopt;
-        return pair_of(result.getContact(0));
-    }
-
-    [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t all = 0;
-        for (const model& m : models_)
-            if (m.tree)
-                all += static_cast<std::size_t>(m.tree->getNumBVs()) * sizeof(fcl::BVNode<fcl::OBBRSSd>) +
-                       static_cast<std::size_t>(m.tree->num_tris) * sizeof(fcl::Triangle) +
-                       static_cast<std::size_t>(m.tree->num_vertices) * sizeof(fcl::Vector3d);
-        return {{"engine", all}};
+    [[nodiscard]] std::size_t bytes() const {
+        if (!tree_) return 0;
+        return static_cast<std::size_t>(tree_->getNumBVs()) * sizeof(fcl::BVNode<Volume>) +
+               static_cast<std::size_t>(tree_->num_tris) * sizeof(fcl::Triangle) +
+               static_cast<std::size_t>(tree_->num_vertices) * sizeof(fcl::Vector3d);
     }
 
 private:
-    struct model {
-        const mesh* triangles;
-        std::unique_ptr<fcl_tree> tree;  // none after a refit that broke off
-        mesh_fit fit;
-    };
+    using tree = fcl::BVHModel<Volume>;
 
-    [[nodiscard]] static std::vector<fcl::Vector3d> vertices_of(const mesh& m) {
-        std::vector<fcl::Vector3d> vertices;
-        for (const vec3f& v : m.vertices) vertices.emplace_back(v[0], v[1], v[2]);
-        return vertices;
-    }
-
-    [[nodiscard]] static std::unique_ptr<fcl_tree> tree_of(const mesh& m) {
-        require_ieee_arithmetic();
-        require_valid(m);
-        const std::vector<fcl::Vector3d> vertices = vertices_of(m);
-        std::vector<fcl::Triangle> triangles;
-        for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-        auto tree = std::make_unique<fcl_tree>();
-        require_done(tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())));
-        require_done(tree->addSubModel(vertices, triangles));
-        require_done(tree->endModel());
-        return tree;
-    }
+    [[nodiscard]] static fcl::Vector3d in_double(const vec3f& v) { return {v[0], v[1], v[2]}; }
 
     /// FCL says by a number that memory ran out, and would go on with half a tree.
     static void require_done(int code) {
         if (code != fcl::BVH_OK) throw std::bad_alloc();
+    }
+
+    std::unique_ptr<tree> tree_;  // none after a build that broke off
+};
+
+/// What the engines do alike.
+template <class Volume>
+class fcl_meshes : public mesh_engine {
+public:
+    std::uint32_t add_model(const mesh& m) final {
+        model made{&m, {}, {}, {}, {}};
+        fit(made);
+        models_.push_back(std::move(made));
+        return static_cast<std::uint32_t>(models_.size() - 1);
+    }
+
+    void refit(std::uint32_t number) final {
+        model& changed = models_[number];
+        changed.poses.reset();
+        changed.fit.renew([&] { fit(changed); });
+    }
+
+    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                                       const pose& pose_b) final {
+        const fcl::CollisionResultd result = collision(model_a, pose_a, model_b, pose_b, 1);
+        if (!result.isCollision()) return std::nullopt;
+        return pair_of(result.getContact(0));
+    }
+
+    [[nodiscard]] std::vector<part_bytes> bytes() const final {
+        std::size_t all = 0;
+        for (const model& m : models_) all += bytes_of(m.still) + bytes_of(m.moved);
+        return {{"engine", all}};
+    }
+
+protected:
+    struct model {
+        const mesh* triangles;
+        fcl_tree<Volume> still;
+        mesh_fit fit;
+        fcl_tree<Volume> moved;                    // in the frame of another model, where FCL takes no poses
+        std::optional<std::array<pose, 2>> poses;  // of that model and this one there; none where nothing is built
+    };
+
+    /// Adds what intersects to the result.
+    virtual void collide(const model& a, const pose& pose_a, model& b, const pose& pose_b,
+                         const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) = 0;
+
+private:
+    static void fit(model& m) {
+        require_ieee_arithmetic();
+        require_valid(*m.triangles);
+        m.still.build(*m.triangles, m.triangles->vertices);
+    }
+
+    [[nodiscard]] static index_pair pair_of(const fcl::Contactd& contact) {
+        return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
+    }
+
+    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+              std::vector<index_pair>& pairs) final {
+        const fcl::CollisionResultd result =
+            collision(model_a, pose_a, model_b, pose_b, std::numeric_limits<std::size_t>::max());
+        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
+    }
+
+    /// Without contact points each pair of triangles is reported once.
+    [[nodiscard]] fcl::CollisionResultd collision(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                                  const pose& pose_b, std::size_t most) {
+        require_ieee_arithmetic();
+        models_[model_a].fit.require();
+        models_[model_b].fit.require();
+        fcl::CollisionRequestd request;
+        request.num_max_contacts = most;
+        request.enable_contact = false;
+        fcl::CollisionResultd result;
+        collide(models_[model_a], pose_a, models_[model_b], pose_b, request, result);
+        return result;
+    }
+
+    std::vector<model> models_;
+};
+
+/// Oriented boxes. FCL takes the raw poses, so that no vertex is rounded to float.
+class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
+    void collide(const model& a, const pose& pose_a, model& b, const pose& pose_b,
+                 const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
+        fcl::collide(&a.still.get(), transform(pose_a), &b.still.get(), transform(pose_b), request, result);
     }
 
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
@@ -106,40 +170,33 @@ private:
         }
         return all;
     }
+};
 
-    [[nodiscard]] static index_pair pair_of(const fcl::Contactd& contact) {
-        return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
+/// Axis-aligned boxes, which want both trees in one frame. For these FCL's own call copies and builds them anew in
+/// every query, so its parts are called one by one: B's tree is refitted for each new pose, and kept while that stays.
+class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
+    void collide(const model& a, const pose& pose_a, model& b, const pose& pose_b,
+                 const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
+        if (const std::array poses{pose_a, pose_b}; b.poses != poses) {
+            b.poses.reset();
+            b.moved.build(*b.triangles, moved_vertices(pose_a, pose_b, *b.triangles, bounds_of(*b.triangles)));
+            b.poses = poses;
+        }
+        fcl::Transform3d still = fcl::Transform3d::Identity();
+        fcl::detail::MeshCollisionTraversalNode<fcl::AABBd> node;
+        fcl::detail::initialize(node, a.still.get(), still, b.moved.get(), still, request, result);
+        fcl::detail::collide(&node);
     }
-
-    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-              std::vector<index_pair>& pairs) override {
-        const fcl::CollisionResultd result =
-            collide(model_a, pose_a, model_b, pose_b, std::numeric_limits<std::size_t>::max());
-        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
-    }
-
-    /// Without contact points each pair of triangles is reported once.
-    [[nodiscard]] fcl::CollisionResultd collide(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                                const pose& pose_b, std::size_t most) const {
-        require_ieee_arithmetic();
-        models_[model_a].fit.require();
-        models_[model_b].fit.require();
-        fcl::CollisionRequestd request;
-        request.num_max_contacts = most;
-        request.enable_contact = false;
-        fcl::CollisionResultd result;
-        fcl::collide(models_[model_a].tree.get(), transform(pose_a), models_[model_b].tree.get(), transform(pose_b),
-                     request, result);
-        return result;
-    }
-
-    std::vector<model> models_;
 };
 
 }  // namespace
 
 std::unique_ptr<local_stage> make_fcl_meshes() {
-    return std::make_unique<fcl_meshes>();
+    return std::make_unique<fcl_oriented>();
+}
+
+std::unique_ptr<local_stage> make_fcl_aabb_meshes() {
+    return std::make_unique<fcl_axis_aligned>();
 }
 
 }  // namespace aabb
