@@ -82,6 +82,7 @@ int main_of(int argc, char** argv) {
         add_collide(program, status);
         add_contacts(program, status);
         add_classify(program, status);
+        add_order(program, status);
         add_scene(program, status);
         // Set last: commands added before do not inherit it.
         program.footer(

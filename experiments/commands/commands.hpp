@@ -15,6 +15,7 @@ void add_contacts(CLI::App& program, int& status);
 void add_errors(CLI::App& program, int& status);
 void add_explain(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
+void add_order(CLI::App& program, int& status);
 void add_pairs(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_run(CLI::App& program, int& status);

@@ -17,6 +17,7 @@ module aabblab.scenes;
 import aabb.base;
 import aabb.geometry;
 import aabb.policy;
+import aabb.registry;
 import aabblab.files;
 import :icosphere;
 import :kind;
@@ -74,6 +75,31 @@ std::vector<std::string> known_names() {
     return names;
 }
 
+/// "NAME:order=BUILD", or "SHAPE:parameter=value,order=BUILD".
+struct ordered_name {
+    std::string_view name;
+    std::string_view build;  ///< empty where triangles stay as they stand
+};
+
+ordered_name taken_apart(std::string_view name) {
+    constexpr std::string_view key = "order=";
+    const std::size_t at = name.rfind(key);
+    if (at == std::string_view::npos || at == 0 || (name[at - 1] != ':' && name[at - 1] != ',')) return {name, {}};
+    return {name.substr(0, at - 1), name.substr(at + key.size())};
+}
+
+loaded_mesh make_mesh_as_it_stands(std::string_view name, const std::filesystem::path& folder) {
+    std::error_code ignored;
+    for (const std::filesystem::path& file : places(name, folder))
+        if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
+    if (is_shape(name.substr(0, name.find(':')))) return {make_shape(shape_types{}, aabb::parse_strategy(name)), {}};
+    if (std::filesystem::status(name, ignored).type() != std::filesystem::file_type::not_found)
+        return read_mesh(name);  // says what it is instead of a file
+    throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here" +
+                            (folder.empty() ? "" : ", in " + folder.string()) + " or in " + data_folder().string() +
+                            ", or a shape)");
+}
+
 }  // namespace
 
 std::span<const shape_info> shapes() {
@@ -96,6 +122,7 @@ std::filesystem::path found_file(const std::filesystem::path& name, const std::f
 }
 
 bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
+    name = taken_apart(name).name;
     std::error_code ignored;
     return is_shape(name.substr(0, name.find(':'))) || std::ranges::any_of(places(name, folder), [&](const auto& p) {
                return std::filesystem::exists(p, ignored);
@@ -103,15 +130,10 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
 }
 
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
-    std::error_code ignored;
-    for (const std::filesystem::path& file : places(name, folder))
-        if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
-    if (is_shape(name.substr(0, name.find(':')))) return {make_shape(shape_types{}, aabb::parse_strategy(name)), {}};
-    if (std::filesystem::status(name, ignored).type() != std::filesystem::file_type::not_found)
-        return read_mesh(name);  // says what it is instead of a file
-    throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here" +
-                            (folder.empty() ? "" : ", in " + folder.string()) + " or in " + data_folder().string() +
-                            ", or a shape)");
+    const auto [itself, build] = taken_apart(name);
+    loaded_mesh made = make_mesh_as_it_stands(itself, folder);
+    if (itself != name) made.mesh = aabb::in_leaf_order(made.mesh, aabb::parse_strategy(build));
+    return made;
 }
 
 std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names, std::size_t most) {

@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 
@@ -23,6 +24,13 @@ public:
         const auto call = [](void* made, std::size_t i, std::size_t worker) { (*static_cast<Work*>(made))(i, worker); };
         if (count_ > 1 && n > 1) return share_out(n, call, &work);
         for (std::size_t i = 0; i < n; ++i) work(i, std::size_t{0});
+    }
+
+    /// Calls `work(begin, end)` for ranges of `size` numbers below `n`, the last one shorter, like `for_each_index`.
+    template <class Work>
+    void for_each_range(std::size_t n, std::size_t size, Work work) {
+        for_each_index((n + size - 1) / size,
+                       [&](std::size_t r, std::size_t) { work(r * size, std::min(n, (r + 1) * size)); });
     }
 
 private:

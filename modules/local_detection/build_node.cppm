@@ -30,8 +30,10 @@ struct build_element {
 enum class leaf_arrangement : std::uint8_t { any, pairs };
 
 /// How a node's triangles are split: in the order of their centroids along an axis (and of their indices where those
-/// are equal), the first `left` go to the left.
+/// are equal), or as they stand, the first `left` go to the left.
 struct split_choice {
+    static constexpr int as_they_stand = -1;
+
     int axis;
     std::size_t left;
 };

@@ -40,18 +40,34 @@ public:
     static constexpr std::size_t triangles = 8;
 
     /// @param order the mesh's triangles, leaf by leaf
-    void build(const mesh& m, std::span<const std::uint32_t> order) {
+    void build(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
         width_ = 1;
         while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
-        begins_.clear();
-        begins_.reserve((order.size() + triangles - 1) / triangles);
-        lists_.clear();
-        // About what surfaces need.
-        lists_.reserve(std::min<std::size_t>(order.size() * (width_ * 5 / 4 + 2), most_bytes));
-        for (std::size_t first = 0; first < order.size(); first += triangles)
-            add(m, order.subspan(first, std::min(triangles, order.size() - first)));
-        lists_.resize(lists_.size() + read_beyond);
+        begins_.resize((order.size() + triangles - 1) / triangles);
+        std::vector<std::vector<std::byte>> parts((begins_.size() + shared - 1) / shared);
+        workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
+            // About what surfaces need.
+            parts[p].reserve(shared * triangles * (width_ * 5 / 4 + 2));
+            for (std::size_t l = p * shared; l < std::min(begins_.size(), (p + 1) * shared); ++l) {
+                begins_[l] = static_cast<std::uint32_t>(parts[p].size());
+                add(m, order.subspan(l * triangles, std::min(triangles, order.size() - l * triangles)), parts[p]);
+            }
+        });
+        std::vector<std::size_t> offsets;
+        std::size_t all = 0;
+        for (const auto& part : parts) {
+            offsets.push_back(all);
+            all += part.size();
+        }
+        if (all > most_bytes)
+            throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
+        lists_.resize(all + read_beyond);
         lists_.shrink_to_fit();
+        workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
+            std::ranges::copy(parts[p], lists_.begin() + static_cast<std::ptrdiff_t>(offsets[p]));
+            for (std::size_t l = p * shared; l < std::min(begins_.size(), (p + 1) * shared); ++l)
+                begins_[l] += static_cast<std::uint32_t>(offsets[p]);
+        });
     }
 
     [[nodiscard]] bool empty() const noexcept { return begins_.empty(); }
@@ -84,11 +100,9 @@ private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::places;
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
+    static constexpr std::size_t shared = 1024;  // leaves that are worth another thread
 
-    void add(const mesh& m, std::span<const std::uint32_t> of_leaf) {
-        if (lists_.size() > most_bytes)
-            throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
-        begins_.push_back(static_cast<std::uint32_t>(lists_.size()));
+    void add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::vector<std::byte>& to) const {
         vertex_list made{};
         std::uint32_t& count = made.count;
         for (std::size_t i = 0; i < triangles; ++i)
@@ -96,16 +110,16 @@ private:
                 const std::uint32_t vertex = m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]][c];
                 std::uint32_t place = 0;
                 while (place < count && made.vertices[place] != vertex) ++place;
-                if (place == vertex_list::most) return lists_.push_back(std::byte{0});
+                if (place == vertex_list::most) return to.push_back(std::byte{0});
                 if (place == count) made.vertices[count++] = vertex;
                 made.places[c] |= place << 4 * i;
             }
-        const std::size_t begin = lists_.size();
-        lists_.resize(begin + header + width_ * count);
-        lists_[begin] = static_cast<std::byte>(count);
-        std::memcpy(&lists_[begin + 1], made.places.data(), sizeof made.places);
+        const std::size_t begin = to.size();
+        to.resize(begin + header + width_ * count);
+        to[begin] = static_cast<std::byte>(count);
+        std::memcpy(&to[begin + 1], made.places.data(), sizeof made.places);
         for (std::uint32_t i = 0; i < count; ++i)
-            std::memcpy(&lists_[begin + header + width_ * i], &made.vertices[i], width_);
+            std::memcpy(&to[begin + header + width_ * i], &made.vertices[i], width_);
     }
 
     std::vector<std::uint32_t> begins_;  // by leaf

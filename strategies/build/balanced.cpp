@@ -52,14 +52,17 @@ public:
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
         std::vector<box> bounds((n + least_shared - 1) / least_shared);
-        in_chunks(workers, n, [&](std::size_t begin, std::size_t end) {
+        workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
             bounds[begin / least_shared] = read(begin, end).as_box();
         });
         box all = empty_box();
         for (const box& b : bounds) all = merged(all, b);
         halve(
-            workers, part{0, n, all, false}, [&](const part& p) { return split(p); },
+            workers, part{0, n, all, false},
+            // Where there are fewer parts than threads, these share one.
+            [&](const part& p) { return split(p, p.size() > n / workers.count() ? workers : alone_); },
             [&](const part& p) { finish(p); });
+        order_.threads = threads;
         return std::move(order_);
     }
 
@@ -81,22 +84,22 @@ private:
     }
 
     /// Calls itself no deeper than a number has bits.
-    void finish(const part& p) noexcept {
+    void finish(const part& p) {
         if (p.size() > leaf_triangles) {
-            for (const part& half : split(p)) finish(half);
+            for (const part& half : split(p, alone_)) finish(half);
             return;
         }
         for (std::size_t i = p.begin; i < p.end; ++i) order_.triangles[i] = items_[p.in_second][i].triangle;
         order_.bounds[p.begin / leaf_triangles] = p.bounds;
     }
 
-    [[nodiscard]] std::array<part, 2> split(const part& p) noexcept {
+    [[nodiscard]] std::array<part, 2> split(const part& p, worker_threads& workers) {
         const std::size_t middle = p.begin + std::bit_ceil(p.size()) / 2;
         const std::span from = std::span(items_[p.in_second]).subspan(p.begin, p.size());
         const std::span to = std::span(items_[!p.in_second]).subspan(p.begin, p.size());
         const auto bounds = p.size() <= few_items::most
                                 ? split_few(from, to, p.bounds, middle - p.begin)
-                                : split_many(from, to, p.bounds, middle - p.begin, &bin_[p.begin]);
+                                : split_many(from, to, p.bounds, middle - p.begin, &bin_[p.begin], workers);
         return {part{p.begin, middle, bounds[0].as_box(), !p.in_second},
                 part{middle, p.end, bounds[1].as_box(), !p.in_second}};
     }
@@ -135,36 +138,78 @@ private:
         return halves;
     }
 
+    /// What falls to one thread of a range that is split.
+    struct share {
+        std::size_t begin;
+        std::size_t end;
+        std::array<std::uint32_t, bins> count{};
+        std::array<std::size_t, 3> next{};  // places for what lies below, in and above the bin that is split
+        std::array<item_bounds, 2> halves{};
+    };
+
     /// By how many centres lie in each bin: only those of one bin have to be put in order.
     [[nodiscard]] std::array<item_bounds, 2> split_many(std::span<balanced_item> from, std::span<balanced_item> to,
-                                                        const box& bounds, std::size_t left,
-                                                        std::uint8_t* bin) const noexcept {
+                                                        const box& bounds, std::size_t left, std::uint8_t* bin,
+                                                        worker_threads& workers) const {
+        if (workers.count() == 1) {
+            share whole{0, from.size()};
+            return split_shared(from, to, bounds, left, bin, workers, std::span(&whole, 1));
+        }
+        std::vector<share> shares;
+        for (std::size_t begin = 0; begin < from.size(); begin += least_shared)
+            shares.push_back({begin, std::min(from.size(), begin + least_shared)});
+        return split_shared(from, to, bounds, left, bin, workers, shares);
+    }
+
+    [[nodiscard]] std::array<item_bounds, 2> split_shared(std::span<balanced_item> from, std::span<balanced_item> to,
+                                                          const box& bounds, std::size_t left, std::uint8_t* bin,
+                                                          worker_threads& workers, std::span<share> shares) const {
         const std::size_t step = (from.size() + sampled - 1) / sampled;
         const std::size_t axis = rule_ == axis_rule::longest
                                      ? static_cast<std::size_t>(longest_axis(bounds))
                                      : axis_of(few_items(from, step), bounds, (left + step - 1) / step);
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
+        workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
+            share& mine = shares[s];
+            for (std::size_t i = mine.begin; i < mine.end; ++i) {
+                // Not a number where all are equal.
+                const float place = (from[i].centre(axis) - low) * scale;
+                bin[i] = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
+                ++mine.count[bin[i]];
+            }
+        });
         std::array<std::uint32_t, bins> count{};
-        for (std::size_t i = 0; i < from.size(); ++i) {
-            // Not a number where all are equal.
-            const float place = (from[i].centre(axis) - low) * scale;
-            bin[i] = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
-            ++count[bin[i]];
-        }
+        for (const share& s : shares)
+            for (std::size_t b = 0; b < bins; ++b) count[b] += s.count[b];
         std::size_t begin = 0;
         std::size_t at = 0;
         while (begin + count[at] <= left) begin += count[at++];
         const std::size_t end = begin + count[at];
 
-        std::array<item_bounds, 2> halves;
         std::array<std::size_t, 3> next{0, begin, end};
-        for (std::size_t i = 0; i < from.size(); ++i) {
-            const std::size_t side = std::size_t{bin[i] >= at} + (bin[i] > at);
-            to[next[side]++] = from[i];
-            halves[0].take_if(side == 0, from[i]);
-            halves[1].take_if(side == 2, from[i]);
+        for (share& s : shares) {
+            s.next = next;
+            std::size_t below = 0;
+            for (std::size_t b = 0; b < at; ++b) below += s.count[b];
+            next[0] += below;
+            next[1] += s.count[at];
+            next[2] += s.end - s.begin - below - s.count[at];
         }
+        workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
+            std::array<std::size_t, 3> place = shares[s].next;
+            std::array<item_bounds, 2> halves;
+            for (std::size_t i = shares[s].begin; i < shares[s].end; ++i) {
+                const std::size_t side = std::size_t{bin[i] >= at} + (bin[i] > at);
+                to[place[side]++] = from[i];
+                halves[0].take_if(side == 0, from[i]);
+                halves[1].take_if(side == 2, from[i]);
+            }
+            shares[s].halves = halves;
+        });
+        std::array<item_bounds, 2> halves;
+        for (const share& s : shares)
+            for (std::size_t h = 0; h < 2; ++h) halves[h].take(s.halves[h]);
         const std::span between = to.subspan(begin, end - begin);
         std::ranges::nth_element(between, between.begin() + static_cast<std::ptrdiff_t>(left - begin),
                                  centre_order{axis});
@@ -178,6 +223,7 @@ private:
     std::array<std::vector<balanced_item, large_pages<balanced_item>>, 2> items_;
     std::vector<std::uint8_t, large_pages<std::uint8_t>> bin_;
     balanced_order order_;
+    worker_threads alone_{1};
 };
 
 }  // namespace

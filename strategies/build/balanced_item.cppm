@@ -45,6 +45,7 @@ struct centre_order {
 class item_bounds {
 public:
     inline void take(const balanced_item& one) noexcept { at_ = lesser(one); }
+    inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
     /// Without a branch.
     inline void take_if(bool wanted, const balanced_item& one) noexcept {
         const simd::eight_words every = simd::eight_words{} - std::uint32_t{wanted};

@@ -39,12 +39,4 @@ void halve(worker_threads& workers, const Part& whole, Split split, Finish finis
     workers.for_each_index(parts.size(), [&](std::size_t i, std::size_t) { finish(parts[i]); });
 }
 
-/// Calls `work(begin, end)` for chunks of the numbers below `n`.
-template <class Work>
-void in_chunks(worker_threads& workers, std::size_t n, Work work) {
-    const std::size_t chunks = (n + least_shared - 1) / least_shared;
-    workers.for_each_index(
-        chunks, [&](std::size_t c, std::size_t) { work(c * least_shared, std::min(n, (c + 1) * least_shared)); });
-}
-
 }  // namespace aabb

@@ -62,7 +62,7 @@ public:
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
         elements_.resize(n);
-        in_chunks(workers, n, [&](std::size_t begin, std::size_t end) {
+        workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) elements_[t] = element_of(mesh_, static_cast<std::uint32_t>(t));
         });
         nodes_.resize(2 * n - 1);
@@ -81,7 +81,9 @@ private:
         const split_choice chosen = split_(range, bounds);
         const std::size_t left =
             arrangement_ == leaf_arrangement::pairs ? paired(chosen.left, range.size()) : chosen.left;
-        std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left), centroid_order{chosen.axis});
+        if (chosen.axis != split_choice::as_they_stand)
+            std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
+                                     centroid_order{chosen.axis});
         // The left child has 2 left - 1 nodes.
         const auto right = static_cast<std::uint32_t>(t.node + 2 * left);
         nodes_[t.node] = {bounds, right, range[0].triangle};

@@ -13,6 +13,7 @@ module;
 module aabb.registry;
 
 import aabb.base;
+import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
 import aabb.policy;
@@ -242,6 +243,12 @@ std::unique_ptr<local_stage> compose_local_detection(const composition& c, instr
 std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice) {
     require_known(strategy_kind::triangle, choice);
     return registry::triangle_test_named(choice);
+}
+
+mesh in_leaf_order(const mesh& m, const strategy_choice& build) {
+    require_known(strategy_kind::build, build);
+    require_valid(m);
+    return in_leaf_order(m, registry::builder_named(build)->order(m));
 }
 
 }  // namespace aabb

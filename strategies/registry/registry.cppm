@@ -86,4 +86,9 @@ private:
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice);
 
+/// The mesh in the order of the leaves that this build gives `implicit`: triangle by triangle, and its vertices in the
+/// order in which these come upon them.
+/// @throws input_error on an unknown name or parameter, and as `require_valid`.
+[[nodiscard]] mesh in_leaf_order(const mesh& m, const strategy_choice& build);
+
 }  // namespace aabb

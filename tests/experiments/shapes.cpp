@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "temporary_folder.hpp"
 
@@ -99,6 +100,28 @@ TEST_CASE("shapes are the same everywhere") {
     CHECK(digest_of("torus_knot:triangles=1000") == "ffebf8a1a850ed68");
 }
 
+TEST_CASE("a mesh in the order of a build has the same triangles, and takes no place in a tree for which is where") {
+    const auto sorted = [](const aabb::mesh& m) {
+        std::vector<aabb::triangle3f> all;
+        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) all.push_back(m.triangle(t));
+        const auto told = [](const aabb::triangle3f& t) {
+            std::array<float, 9> numbers;
+            for (int i = 0; i < 9; ++i) numbers[static_cast<std::size_t>(i)] = t[i / 3][i % 3];
+            return numbers;
+        };
+        std::ranges::sort(all, {}, told);
+        std::vector<std::array<float, 9>> numbers;
+        for (const aabb::triangle3f& t : all) numbers.push_back(told(t));
+        return numbers;
+    };
+    const aabb::mesh plain = aabblab::make_mesh("torus_knot:triangles=2000").mesh;
+    for (const char* build : {"median", "sah"}) {
+        const aabb::mesh ordered = aabblab::make_mesh(std::string("torus_knot:triangles=2000,order=") + build).mesh;
+        CHECK(sorted(ordered) == sorted(plain));
+        CHECK(ordered.triangles != plain.triangles);
+    }
+}
+
 TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
     const temporary_folder folder;
     const data_folder_at here(folder.path());
@@ -116,5 +139,11 @@ TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
     REQUIRE(error_of("icosphere:triangle=7") == "unknown parameter of icosphere 'triangle'; did you mean 'triangles'?");
     REQUIRE(error_of("icosphere:triangles=1e9") ==
             "icosphere: triangles must be a whole number from 20 to 100000000, not '1e9'");
+    REQUIRE(aabblab::is_mesh("elephant.off:order=sah", {}));
+    REQUIRE_FALSE(aabblab::is_mesh("elefant.off:order=sah", {}));
+    REQUIRE(aabblab::make_mesh("elephant.off:order=sah").mesh.triangle_count() == 2);
+    REQUIRE(aabblab::make_mesh("elephant.off:order=sah").report.polygons == 1);
+    REQUIRE(error_of("elephant.off:order=sag") == "unknown build 'sag'; did you mean 'sah'?");
+    REQUIRE(error_of("icosphere:order=").starts_with("unknown build ''"));
     REQUIRE(error_of("torus_knot:5000") == "'5000' after 'torus_knot:' is not of the form name=value");
 }

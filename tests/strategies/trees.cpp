@@ -3,6 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -295,11 +296,52 @@ TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a 
         const auto bits = static_cast<std::size_t>(std::bit_width(n - 1));
         INFO(n << " triangles");
         const strategy_choice fetched{"implicit", {{"vertices", "fetched"}}};
-        CHECK(bytes_of_tree(fetched, strip(n)) == 64 * nodes + (n * bits + 7) / 8 + 8);
+        mesh m = strip(n);
+        std::ranges::reverse(m.triangles);
+        CHECK(bytes_of_tree(fetched, m) == 64 * nodes + (n <= 8 ? 0 : (n * bits + 7) / 8 + 8));
     }
     // Lists of vertices, of two bytes each, on a surface of ordinary shape.
     const mesh m = sheet(100);
     CHECK(bytes_of_tree({"implicit", {}}, m) < 8 * m.triangles.size());
+}
+
+TEST_CASE("a mesh in the order of leaves is the same mesh, and its tree the same without a word on which is where") {
+    std::vector<mesh> all = meshes();
+    all.push_back(sheet(70));
+    all.back().vertices.insert(all.back().vertices.begin(), {5, 5, 5});  // of no triangle
+    for (auto& t : all.back().triangles)
+        for (std::uint32_t& v : t) ++v;
+    for (const mesh& m : all)
+        for_each_build([&]<class Build>(Build build) {
+            INFO(Build::name << ", " << m.triangles.size() << " triangles");
+            const balanced_order order = build.order(m);
+            const mesh ordered = in_leaf_order(m, order);
+            REQUIRE(ordered.triangles.size() == m.triangles.size());
+            std::uint32_t next = 0;
+            for (std::uint32_t t = 0; t < m.triangle_count(); ++t) {
+                for (int c = 0; c < 3; ++c) REQUIRE(ordered.triangle(t)[c] == m.triangle(order.triangles[t])[c]);
+                for (const std::uint32_t v : ordered.triangles[t]) {
+                    REQUIRE(v <= next);
+                    next = std::max(next, v + 1);
+                }
+            }
+            const auto sorted = [](mesh of) {
+                const auto told = [](const vec3f& p) { return std::tuple(p[0], p[1], p[2]); };
+                std::ranges::sort(of.vertices, {}, told);
+                return of.vertices;
+            };
+            REQUIRE(sorted(ordered) == sorted(m));
+
+            const implicit_tree fetched({implicit_tree::vertex_choice::fetched});
+            const model<implicit_tree> before(m, built_by<Build>(), fetched);
+            const model<implicit_tree> after(ordered, built_by<file_order_build>(), fetched);
+            CHECK(after.tree().bytes().indices == 0);
+            CHECK(after.tree().bytes().nodes == before.tree().bytes().nodes);
+            for (std::uint32_t place = 0; place < m.triangle_count(); ++place) {
+                REQUIRE(before.tree().triangle_at(place) == order.triangles[place]);
+                REQUIRE(after.tree().triangle_at(place) == place);
+            }
+        });
 }
 
 TEST_CASE("in a balanced tree triangles are split where halves are full, across one axis, by any number of threads") {
@@ -331,7 +373,10 @@ TEST_CASE("in a balanced tree triangles are split where halves are full, across 
             std::ranges::sort(sorted);
             REQUIRE(sorted.size() == m.triangles.size());
             for (std::uint32_t t = 0; t < sorted.size(); ++t) REQUIRE(sorted[t] == t);
-            CHECK(is_split(is_split, m, order.triangles));
+            if constexpr (std::same_as<Build, file_order_build>)
+                CHECK(std::ranges::is_sorted(order.triangles));
+            else
+                CHECK(is_split(is_split, m, order.triangles));
             REQUIRE(order.bounds.size() == (sorted.size() + 7) / 8);
             for (std::size_t leaf = 0; leaf < order.bounds.size(); ++leaf) {
                 box around = empty_box();

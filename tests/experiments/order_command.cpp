@@ -1,0 +1,42 @@
+#include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "mesh_bytes.hpp"
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+TEST_CASE("order writes a mesh whose tree need not say which triangle stands where") {
+    const temporary_folder folder;
+    const std::string mesh = "torus_knot:triangles=2000";
+    const std::string written = folder / "ordered.off";
+    const program_result result = run_program({"order", mesh, "--out", written});
+    REQUIRE(result.status == 0);
+    REQUIRE(result.out == "wrote " + written + ": 2,000 triangles\n");
+
+    const auto collided = [](const std::string& of, const std::string& build) {
+        return nlohmann::json::parse(
+            run_program({"collide", of, "--self", "--json", "--build", build, "--tree", "implicit:vertices=fetched"})
+                .out);
+    };
+    const auto before = collided(mesh, "sah");
+    const auto after = collided(written, "file_order");
+    REQUIRE(after["pairs"] == before["pairs"]);
+    REQUIRE(after["neighbours"] == before["neighbours"]);
+    REQUIRE(after["bytes_per_triangle"] < 1.3);
+    REQUIRE(after["bytes"]["indices"] == 0);
+    REQUIRE(before["bytes"]["indices"] > 0);
+    // By name, without a file.
+    REQUIRE(collided(mesh + ",order=sah", "file_order")["digest"] == after["digest"]);
+}
+
+TEST_CASE("order refuses what it does not know, and to write over the mesh that it reads") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const program_result build = run_program({"order", mesh, "--build", "sha", "--out", folder / "b.off"});
+    REQUIRE(build.status == 2);
+    REQUIRE(build.err.find("unknown build 'sha'; did you mean 'sah'?") != std::string::npos);
+    REQUIRE(run_program({"order", mesh, "--out", mesh}).status == 2);
+    REQUIRE(bytes_of_file(mesh) == tetrahedron);
+    REQUIRE(run_program({"order", mesh}).status == 2);
+}
