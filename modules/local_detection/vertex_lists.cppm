@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -103,17 +104,24 @@ private:
     static constexpr std::size_t shared = 1024;  // leaves that are worth another thread
 
     void add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::vector<std::byte>& to) const {
+        constexpr simd::eight_words place_of_lane{0, 1, 2, 3, 4, 5, 6, 7};
         vertex_list made{};
         std::uint32_t& count = made.count;
+        std::array<simd::eight_words, 2> seen{};
         for (std::size_t i = 0; i < triangles; ++i)
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::uint32_t vertex = m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]][c];
-                std::uint32_t place = 0;
-                while (place < count && made.vertices[place] != vertex) ++place;
+                const std::uint32_t same =
+                    simd::bits_of_eight(seen[0] == vertex) | simd::bits_of_eight(seen[1] == vertex) << 8U;
+                // One bit more, for a vertex that is new.
+                const auto place = static_cast<std::uint32_t>(std::countr_zero(same | 1U << count));
                 if (place == vertex_list::most) return to.push_back(std::byte{0});
-                if (place == count) made.vertices[count++] = vertex;
+                seen[0] = place_of_lane == place ? simd::eight_words{} + vertex : seen[0];
+                seen[1] = place_of_lane + 8 == place ? simd::eight_words{} + vertex : seen[1];
+                count += place == count;
                 made.places[c] |= place << 4 * i;
             }
+        std::memcpy(made.vertices.data(), seen.data(), sizeof seen);
         const std::size_t begin = to.size();
         to.resize(begin + header + width_ * count);
         to[begin] = static_cast<std::byte>(count);

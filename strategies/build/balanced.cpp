@@ -104,29 +104,31 @@ private:
                 part{middle, p.end, bounds[1].as_box(), !p.in_second}};
     }
 
-    [[nodiscard]] std::size_t axis_of(const few_items& items, const box& bounds, std::size_t left) const noexcept {
-        auto best = static_cast<std::size_t>(longest_axis(bounds));
+    /// An axis, and which items have fewer than half of the others before them along it: ties may be too many.
+    struct few_split {
+        std::size_t axis;
+        std::uint64_t first;
+    };
+
+    [[nodiscard]] few_split best_split(const few_items& items, const box& bounds, std::size_t left) const noexcept {
+        const auto longest = static_cast<std::size_t>(longest_axis(bounds));
+        few_split best{longest, items.first(longest, left)};
         if (rule_ == axis_rule::longest) return best;
-        double least = items.cost_of(items.first(best, left));
-        for (const std::size_t axis : {(best + 1) % 3, (best + 2) % 3})
-            if (const double cost = items.cost_of(items.first(axis, left)); cost < least) {
+        double least = items.cost_of(best.first);
+        for (const std::size_t axis : {(longest + 1) % 3, (longest + 2) % 3}) {
+            const std::uint64_t first = items.first(axis, left);
+            if (const double cost = items.cost_of(first); cost < least) {
                 least = cost;
-                best = axis;
+                best = {axis, first};
             }
+        }
         return best;
     }
 
-    [[nodiscard]] std::array<item_bounds, 2> split_few(std::span<balanced_item> from, std::span<balanced_item> to,
+    [[nodiscard]] std::array<item_bounds, 2> split_few(std::span<const balanced_item> from, std::span<balanced_item> to,
                                                        const box& bounds, std::size_t left) const noexcept {
-        const few_items items(from, 1);
-        const std::size_t axis = axis_of(items, bounds, left);
-        const std::uint64_t first = items.first(axis, left);
-        if (std::popcount(first) != static_cast<int>(left)) {
-            // Ties.
-            std::ranges::nth_element(from, from.begin() + static_cast<std::ptrdiff_t>(left), centre_order{axis});
-            std::ranges::copy(from, to.begin());
-            return {bounds_of(to.first(left)), bounds_of(to.subspan(left))};
-        }
+        auto [axis, first] = best_split(few_items(from, 1), bounds, left);
+        while (std::popcount(first) != static_cast<int>(left)) first &= ~last_of(from, first, axis);
         std::array<std::size_t, 2> next{left, 0};
         std::array<item_bounds, 2> halves;
         for (std::size_t i = 0; i < from.size(); ++i) {
@@ -136,6 +138,17 @@ private:
             halves[1].take_if(!is_first, from[i]);
         }
         return halves;
+    }
+
+    /// The bit of the last of those items.
+    [[nodiscard]] static std::uint64_t last_of(std::span<const balanced_item> items, std::uint64_t which,
+                                               std::size_t axis) noexcept {
+        auto last = static_cast<std::size_t>(std::countr_zero(which));
+        for (std::uint64_t rest = which; rest != 0; rest &= rest - 1)
+            if (const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+                centre_order{axis}(items[last], items[i]))
+                last = i;
+        return std::uint64_t{1} << last;
     }
 
     /// What falls to one thread of a range that is split.
@@ -167,7 +180,7 @@ private:
         const std::size_t step = (from.size() + sampled - 1) / sampled;
         const std::size_t axis = rule_ == axis_rule::longest
                                      ? static_cast<std::size_t>(longest_axis(bounds))
-                                     : axis_of(few_items(from, step), bounds, (left + step - 1) / step);
+                                     : best_split(few_items(from, step), bounds, (left + step - 1) / step).axis;
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {

@@ -1,8 +1,10 @@
 module;
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -31,8 +33,8 @@ public:
             }
             ++count_;
         }
-        // The last one fills the last vector.
-        for (std::size_t i = count_; i < vectors() * width; ++i)
+        // The last one fills the rest, as far as whole vectors are looked at.
+        for (std::size_t i = count_; i < std::max(std::bit_ceil(count_), most_lanes); ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = lower_[k][count_ - 1];
                 negated_upper_[k][i] = negated_upper_[k][count_ - 1];
@@ -41,19 +43,7 @@ public:
 
     /// Bit i for each item i before which, along the axis, there are fewer than `left`.
     [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
-        std::array<eight_floats, most_vectors> centre;
-        std::array<eight_words, most_vectors> before{};
-        alignas(32) std::array<float, most> centres;
-        for (std::size_t v = 0; v < vectors(); ++v) {
-            centre[v] = 0.5F * load(lower_[axis], v) - 0.5F * load(negated_upper_[axis], v);
-            simd::store_eight(&centres[v * width], centre[v]);
-        }
-        for (std::size_t i = 0; i < count_; ++i)
-            for (std::size_t v = 0; v < vectors(); ++v) before[v] -= std::bit_cast<eight_words>(centres[i] < centre[v]);
-        std::uint64_t which = 0;
-        for (std::size_t v = 0; v < vectors(); ++v)
-            which |= std::uint64_t{simd::bits_of_eight(before[v] < static_cast<std::uint32_t>(left))} << v * width;
-        return which & ~std::uint64_t{0} >> (most - count_);
+        return first_in<1>(axis, static_cast<std::uint32_t>(left));
     }
 
     /// The sum, for those in `which` and for the others, of their box's area times their number.
@@ -80,10 +70,33 @@ public:
 
 private:
     using eight_floats = simd::eight_floats;
-    using eight_words = simd::eight_words;
     static constexpr std::size_t width = 8;
-    static constexpr std::size_t most_vectors = most / width;
+    static constexpr std::size_t most_lanes = 16;  // of any vector
     using row = std::array<float, most>;
+
+    /// By counting, so that nothing is moved: in registers, which is why how many vectors there are must be known.
+    template <std::size_t Vectors>
+    [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::uint32_t left) const noexcept {
+        if constexpr (Vectors * simd::width < most)
+            if (count_ > Vectors * simd::width) return first_in<2 * Vectors>(axis, left);
+        std::array<simd::floats, Vectors> centre;
+        std::array<simd::words, Vectors> before{};
+        alignas(64) std::array<float, Vectors * simd::width> centres;
+        std::memcpy(centre.data(), lower_[axis].data(), sizeof centre);
+        for (std::size_t v = 0; v < Vectors; ++v) {
+            simd::floats negated_upper;
+            std::memcpy(&negated_upper, &negated_upper_[axis][v * simd::width], sizeof negated_upper);
+            centre[v] = 0.5F * centre[v] - 0.5F * negated_upper;
+        }
+        std::memcpy(centres.data(), centre.data(), sizeof centres);
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t v = 0; v < Vectors; ++v)
+                before[v] -= std::bit_cast<simd::words>(simd::all(centres[i]) < centre[v]);
+        std::uint64_t which = 0;
+        for (std::size_t v = 0; v < Vectors; ++v)
+            which |= std::uint64_t{simd::bits(before[v] < left)} << v * simd::width;
+        return which & ~std::uint64_t{0} >> (most - count_);
+    }
 
     [[nodiscard]] static inline eight_floats lesser(eight_floats p, eight_floats q) noexcept { return p < q ? p : q; }
     [[nodiscard]] inline std::size_t vectors() const noexcept { return (count_ + width - 1) / width; }
@@ -97,8 +110,8 @@ private:
         return length[0] * length[1] + length[1] * length[2] + length[2] * length[0];
     }
 
-    alignas(32) std::array<row, 3> lower_;
-    alignas(32) std::array<row, 3> negated_upper_;
+    alignas(64) std::array<row, 3> lower_;
+    alignas(64) std::array<row, 3> negated_upper_;
     std::size_t count_ = 0;
 };
 

@@ -262,7 +262,8 @@ TEST_CASE("The configs of the repository are good, in both sizes") {
     const std::string config =
         GENERATE("first.toml", "global_search.toml", "local_detection.toml", "trees.toml", "exactness.toml",
                  "exactness_meshes.toml", "peers/brownian.toml", "peers/engines.toml", "peers/scenes.toml",
-                 "peers/growth.toml", "peers/ten_million.toml", "peers/threads.toml");
+                 "peers/growth.toml", "peers/ten_million.toml", "peers/threads.toml", "peers/meshes.toml",
+                 "peers/meshes_ordered.toml", "peers/builds.toml");
     for (const experiment_size size : {experiment_size::full, experiment_size::quick})
         REQUIRE_NOTHROW(aabblab::read_experiment(std::string(AABBLAB_CONFIGS) + "/" + config, size));
 }
