@@ -63,7 +63,7 @@ struct detection_result {
     std::vector<std::uint64_t> counts;                 ///< by pose, of a mesh with itself those that share no vertex
     std::optional<std::uint64_t> neighbours;           ///< of a mesh with itself: pairs that share a vertex
     std::optional<aabb::triangle_intersection> first;  ///< of the one pair that --first found, with --geometry
-    std::optional<std::string> digest;  ///< of all pairs, neighbours too; none where they are counted only
+    std::optional<std::string> digest;                 ///< of all pairs that are kept; none where they are counted only
     double build_ms = 0;
     std::vector<double> query_ms;  ///< by pose, and so again for each repeat
     std::vector<aabb::part_bytes> bytes;
@@ -280,7 +280,9 @@ void require_sense(const collide_request& request) {
         const std::vector<std::string> choices{"together", "apart"};
         if (std::ranges::find(choices, request.self) == choices.end())
             throw aabb::input_error(aabb::unknown_name("value of --self", request.self, choices));
-        if (request.b) throw aabb::input_error("--self holds one mesh against itself, so give no second one");
+        if (request.b)
+            throw aabb::input_error(
+                "--self holds one mesh against itself, so give no second one; to leave neighbours out, --self=apart");
         if (request.poses[0] || request.poses[1] || request.poses_of_b)
             throw aabb::input_error("--self holds a mesh against itself, so poses change nothing; leave them away");
         if (request.first)
@@ -332,7 +334,11 @@ void add_collide(CLI::App& program, int&) {
     auto* command =
         program.add_subcommand("collide", "Local detection of two meshes: every pair of intersecting triangles");
     auto request = std::make_shared<collide_request>();
-    command->add_option("A", request->a, "Mesh file, or a shape as in torus_knot:triangles=20000")
+    command
+        ->add_option(
+            "A", request->a,
+            "Mesh file, or a shape as in torus_knot:triangles=20000; with :order=sah behind a file its triangles "
+            "stand in the order of a tree's leaves")
         ->required()
         ->type_name("");
     command->add_option("B", request->b, "The other one")->type_name("");
@@ -357,9 +363,9 @@ void add_collide(CLI::App& program, int&) {
         ->add_option("--repeat", request->repeats, "Search so often, at all poses in turn; each time is told (--json)")
         ->type_name("N");
     command
-        ->add_option(
-            "--out", request->out,
-            "Write the pairs, rows a,b (with --self a,b,shared_vertices, with --poses pose,a,b), to this CSV file")
+        ->add_option("--out", request->out,
+                     "Write the pairs, rows a,b (with --self a,b,shared_vertices, with --self=apart a,b, with --poses "
+                     "pose,a,b), to this CSV file")
         ->type_name("FILE");
     command->add_flag("--geometry", request->geometry,
                       "Add to each pair what its triangles have in common, in the world: kind, corners, error");

@@ -82,11 +82,13 @@ std::vector<aabb::strategy_kind> stage_options::kinds() const {
 }
 
 void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes) {
-    std::vector<std::string> files = meshes;
-    for (const std::string& name : meshes) files.push_back((data_folder() / name).string());
+    std::vector<std::string> names;
+    for (const std::string& name : meshes) names.emplace_back(name_without_order(name));
+    std::vector<std::string> files = names;
+    for (const std::string& name : names) files.push_back((data_folder() / name).string());
     require_other_file(out, files);
     // A file of that name here would from now on hide the one in the data folder.
-    for (const std::string& name : meshes)
+    for (const std::string& name : names)
         if (std::filesystem::weakly_canonical(name) == std::filesystem::weakly_canonical(out))
             throw aabb::input_error(out + " is the name of a mesh that this command reads from the data folder");
 }

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "commands.hpp"
@@ -10,11 +13,12 @@
 // Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb.geometry;
+import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabblab.files;
 import aabblab.numbers;
+import aabblab.pair_output;
 
 namespace aabblab {
 
@@ -24,15 +28,35 @@ struct order_request {
     std::string mesh;
     std::string build = "sah";
     std::string out;
+    std::optional<std::string> numbers;
 };
 
 void write_ordered(const order_request& request) {
     const aabb::strategy_choice build = aabb::parse_strategy(request.build);
     require_known(aabb::strategy_kind::build, build);
+    const std::string ending = std::filesystem::path(request.out).extension().string();
+    if (ending != ".off")
+        throw aabb::input_error(fmt::format("order writes OFF, so --out ends in .off, not '{}'", ending));
     require_no_mesh(request.out, {request.mesh});
-    const aabb::mesh ordered = aabb::in_leaf_order(read_meshes({request.mesh}).front(), build);
-    write_off(ordered, request.out);
-    print(fmt::format("wrote {}: {}\n", visible(request.out), counted(ordered.triangles.size(), "triangle")));
+    std::optional<number_table> numbers;
+    if (request.numbers) {
+        require_no_mesh(*request.numbers, {request.mesh, request.out});
+        numbers.emplace(*request.numbers, "triangle,was");
+    }
+    const aabb::ordered_mesh made = in_leaf_order(read_meshes({request.mesh}).front(), build);
+    write_off(made.ordered, request.out);
+    print(fmt::format("wrote {}: {}\n", visible(request.out), counted(made.triangles.size(), "triangle")));
+    if (!numbers) return;
+    for (std::uint32_t t = 0; t < made.triangles.size(); ++t) numbers->add({t, made.triangles[t]});
+    numbers->commit();
+    print(fmt::format("wrote {}: which triangle each one was\n", visible(*request.numbers)));
+}
+
+std::string names_of_builds() {
+    std::string names;
+    for (const std::string& name : aabb::strategy_names(aabb::strategy_kind::build))
+        names += (names.empty() ? "" : ", ") + name;
+    return names;
 }
 
 }  // namespace
@@ -41,11 +65,18 @@ void add_order(CLI::App& program, int&) {
     auto* command = program.add_subcommand("order", "Write a mesh in the order of a tree's leaves, for smaller trees");
     auto request = std::make_shared<order_request>();
     command->add_option("MESH", request->mesh, "Mesh file or shape")->required()->type_name("");
-    command->add_option("--build", request->build, "The build whose leaves they are (default sah)")->type_name("S");
-    command->add_option("--out", request->out, "The mesh to write (OFF)")->required()->type_name("FILE");
+    command
+        ->add_option("--build", request->build,
+                     "The build that makes the leaves: one of " + names_of_builds() + " (default sah)")
+        ->type_name("S");
+    command->add_option("--out", request->out, "The mesh to write (.off)")->required()->type_name("FILE");
+    command
+        ->add_option("--numbers", request->numbers,
+                     "Write which triangle of MESH each one was, rows triangle,was, to this CSV file")
+        ->type_name("FILE");
     command->footer(
         "With --build file_order --tree implicit:vertices=fetched, a tree of such a mesh takes 1.2 bytes a triangle.\n"
-        "Triangles and vertices are numbered as they stand in the file that is written.");
+        "NAME:order=BUILD stands for such a mesh in any command or config, without a file.");
     command->callback([request] { write_ordered(*request); });
 }
 

@@ -78,14 +78,21 @@ std::vector<std::string> known_names() {
 /// "NAME:order=BUILD", or "SHAPE:parameter=value,order=BUILD".
 struct ordered_name {
     std::string_view name;
-    std::string_view build;  ///< empty where triangles stay as they stand
+    std::optional<std::string_view> build;  ///< none where triangles stay as they stand
 };
 
 ordered_name taken_apart(std::string_view name) {
     constexpr std::string_view key = "order=";
-    const std::size_t at = name.rfind(key);
-    if (at == std::string_view::npos || at == 0 || (name[at - 1] != ':' && name[at - 1] != ',')) return {name, {}};
-    return {name.substr(0, at - 1), name.substr(at + key.size())};
+    for (std::size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
+        const std::string_view before = name.substr(0, at);
+        if (!before.ends_with(':') && !(before.ends_with(',') && before.find(':') != std::string_view::npos)) continue;
+        const std::string_view build = name.substr(at + key.size());
+        if (build.find_first_of(":,") != std::string_view::npos)
+            throw aabb::input_error("order=BUILD stands last in the name of a mesh, not as in '" + std::string(name) +
+                                    "'");
+        return {before.substr(0, at - 1), build};
+    }
+    return {name, {}};
 }
 
 loaded_mesh make_mesh_as_it_stands(std::string_view name, const std::filesystem::path& folder) {
@@ -121,8 +128,12 @@ std::filesystem::path found_file(const std::filesystem::path& name, const std::f
                             (beside != name ? ", here or in " + folder.string() : ""));
 }
 
+std::string_view name_without_order(std::string_view name) {
+    return taken_apart(name).name;
+}
+
 bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
-    name = taken_apart(name).name;
+    name = name_without_order(name);
     std::error_code ignored;
     return is_shape(name.substr(0, name.find(':'))) || std::ranges::any_of(places(name, folder), [&](const auto& p) {
                return std::filesystem::exists(p, ignored);
@@ -131,8 +142,11 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
 
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
     const auto [itself, build] = taken_apart(name);
+    if (!build) return make_mesh_as_it_stands(name, folder);
+    const aabb::strategy_choice choice{std::string(*build), {}};
+    require_known(aabb::strategy_kind::build, choice);
     loaded_mesh made = make_mesh_as_it_stands(itself, folder);
-    if (itself != name) made.mesh = aabb::in_leaf_order(made.mesh, aabb::parse_strategy(build));
+    made.mesh = in_leaf_order(made.mesh, choice).ordered;
     return made;
 }
 

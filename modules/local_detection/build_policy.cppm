@@ -14,8 +14,8 @@ export namespace aabb {
 
 /// Makes what a layout packs: a binary tree, in which n triangles give n - 1 internal nodes, one triangle a leaf, in
 /// the order that `build_node` says; or the order of triangles in a balanced tree. Boxes are the smallest ones. The
-/// same for the same mesh on every machine, an order with the same standard library; it ends on any mesh that
-/// `require_valid` accepts, however many centroids are equal.
+/// same for the same mesh on every machine; it ends on any mesh that `require_valid` accepts, however many centroids
+/// are equal.
 template <class B>
 concept TreeBuilder = requires(const B builder, const mesh& m, leaf_arrangement arrangement) {
     { builder.build(m, arrangement) } -> std::same_as<std::vector<build_node>>;

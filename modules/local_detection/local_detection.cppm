@@ -18,6 +18,7 @@ export import :child_pairs;
 export import :corner_numbers;
 export import :depth_first_walk;
 export import :eight_boxes;
+export import :leaf_order;
 export import :leaf_pairs;
 export import :leaf_slab;
 export import :leaf_store;

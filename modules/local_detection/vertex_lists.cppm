@@ -13,6 +13,7 @@ export module aabb.local_detection:vertex_lists;
 import aabb.base;
 import aabb.geometry;
 import aabb.simd;
+import :balanced_order;
 
 export namespace aabb {
 
@@ -38,18 +39,18 @@ struct vertex_list {
 /// more than sixteen vertices: they have a list of none, and are read from the mesh.
 class vertex_lists {
 public:
-    static constexpr std::size_t triangles = 8;
+    static constexpr std::size_t triangles = balanced_order::leaf_triangles;
 
+    vertex_lists() = default;
     /// @param order the mesh's triangles, leaf by leaf
-    void build(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
-        width_ = 1;
+    vertex_lists(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
         while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
         begins_.resize((order.size() + triangles - 1) / triangles);
-        std::vector<std::vector<std::byte>> parts((begins_.size() + shared - 1) / shared);
+        std::vector<std::vector<std::byte>> parts((begins_.size() + least_shared - 1) / least_shared);
         workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
             // About what surfaces need.
-            parts[p].reserve(shared * triangles * (width_ * 5 / 4 + 2));
-            for (std::size_t l = p * shared; l < std::min(begins_.size(), (p + 1) * shared); ++l) {
+            parts[p].reserve(least_shared * triangles * (width_ * 5 / 4 + 2));
+            for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l) {
                 begins_[l] = static_cast<std::uint32_t>(parts[p].size());
                 add(m, order.subspan(l * triangles, std::min(triangles, order.size() - l * triangles)), parts[p]);
             }
@@ -63,10 +64,9 @@ public:
         if (all > most_bytes)
             throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
         lists_.resize(all + read_beyond);
-        lists_.shrink_to_fit();
         workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
             std::ranges::copy(parts[p], lists_.begin() + static_cast<std::ptrdiff_t>(offsets[p]));
-            for (std::size_t l = p * shared; l < std::min(begins_.size(), (p + 1) * shared); ++l)
+            for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l)
                 begins_[l] += static_cast<std::uint32_t>(offsets[p]);
         });
     }
@@ -101,7 +101,7 @@ private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::places;
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
-    static constexpr std::size_t shared = 1024;  // leaves that are worth another thread
+    static constexpr std::size_t least_shared = 1024;  // leaves that are worth another thread
 
     void add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::vector<std::byte>& to) const {
         constexpr simd::eight_words place_of_lane{0, 1, 2, 3, 4, 5, 6, 7};
@@ -132,7 +132,7 @@ private:
 
     std::vector<std::uint32_t> begins_;  // by leaf
     std::vector<std::byte> lists_;
-    std::size_t width_ = 4;  // bytes of an index
+    std::size_t width_ = 1;  // bytes of an index
 };
 
 }  // namespace aabb

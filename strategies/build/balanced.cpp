@@ -24,7 +24,7 @@ namespace aabb {
 
 namespace {
 
-constexpr std::size_t leaf_triangles = 8;
+constexpr std::size_t leaf_triangles = balanced_order::leaf_triangles;
 constexpr std::size_t sampled = 32;  // of more than few
 constexpr std::size_t bins = 256;
 
@@ -104,7 +104,8 @@ private:
                 part{middle, p.end, bounds[1].as_box(), !p.in_second}};
     }
 
-    /// An axis, and which items have fewer than half of the others before them along it: ties may be too many.
+    /// An axis, and the items before which fewer than `left` others lie along it; with ties there may be more than
+    /// `left` of them.
     struct few_split {
         std::size_t axis;
         std::uint64_t first;
@@ -223,11 +224,19 @@ private:
         std::array<item_bounds, 2> halves;
         for (const share& s : shares)
             for (std::size_t h = 0; h < 2; ++h) halves[h].take(s.halves[h]);
+        // In the order in which they came, whatever the library makes of it: what was read is no longer needed.
         const std::span between = to.subspan(begin, end - begin);
-        std::ranges::nth_element(between, between.begin() + static_cast<std::ptrdiff_t>(left - begin),
-                                 centre_order{axis});
-        for (const balanced_item& one : between.first(left - begin)) halves[0].take(one);
-        for (const balanced_item& one : between.subspan(left - begin)) halves[1].take(one);
+        const std::span came = from.subspan(begin, end - begin);
+        std::ranges::copy(between, came.begin());
+        const auto middle = between.begin() + static_cast<std::ptrdiff_t>(left - begin);
+        std::ranges::nth_element(between, middle, centre_order{axis});
+        const balanced_item first_of_right = *middle;
+        std::array<std::size_t, 2> place{begin, left};
+        for (const balanced_item& one : came) {
+            const bool is_right = !centre_order{axis}(one, first_of_right);
+            to[place[is_right]++] = one;
+            halves[is_right].take(one);
+        }
         return halves;
     }
 

@@ -4,7 +4,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 /// What a balanced build moves about.
 export module aabb.build.balanced_item;
@@ -61,11 +60,5 @@ private:
 
     simd::eight_floats at_ = simd::eight_floats{} + std::numeric_limits<float>::infinity();
 };
-
-[[nodiscard]] inline item_bounds bounds_of(std::span<const balanced_item> items) noexcept {
-    item_bounds all;
-    for (const balanced_item& one : items) all.take(one);
-    return all;
-}
 
 }  // namespace aabb

@@ -25,7 +25,7 @@ std::vector<build_node> file_order_build::build(const mesh& m, leaf_arrangement 
 }
 
 balanced_order file_order_build::order(const mesh& m) const {
-    constexpr std::size_t in_leaf = 8;
+    constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
     const std::size_t n = m.triangles.size();
     balanced_order made{std::vector<std::uint32_t>(n), std::vector<box>((n + in_leaf - 1) / in_leaf, empty_box()),
                         threads};

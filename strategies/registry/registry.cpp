@@ -245,10 +245,11 @@ std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice)
     return registry::triangle_test_named(choice);
 }
 
-mesh in_leaf_order(const mesh& m, const strategy_choice& build) {
+ordered_mesh in_leaf_order(const mesh& m, const strategy_choice& build) {
     require_known(strategy_kind::build, build);
     require_valid(m);
-    return in_leaf_order(m, registry::builder_named(build)->order(m));
+    balanced_order order = registry::builder_named(build)->order(m);
+    return {in_leaf_order(m, order), std::move(order.triangles)};
 }
 
 }  // namespace aabb

@@ -1,4 +1,5 @@
 module;
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -86,9 +87,15 @@ private:
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice);
 
+/// A mesh in another order, and which triangle stands where, by the number that it had.
+struct ordered_mesh {
+    mesh ordered;
+    std::vector<std::uint32_t> triangles;
+};
+
 /// The mesh in the order of the leaves that this build gives `implicit`: triangle by triangle, and its vertices in the
 /// order in which these come upon them.
 /// @throws input_error on an unknown name or parameter, and as `require_valid`.
-[[nodiscard]] mesh in_leaf_order(const mesh& m, const strategy_choice& build);
+[[nodiscard]] ordered_mesh in_leaf_order(const mesh& m, const strategy_choice& build);
 
 }  // namespace aabb

@@ -58,14 +58,16 @@ public:
     void pack(const mesh& m, const balanced_order& order) {
         worker_threads workers(order.threads);
         triangles_ = static_cast<std::uint32_t>(order.triangles.size());
+        bits_ = 0;
+        places_.clear();
         if (!std::ranges::is_sorted(order.triangles)) {
             bits_ = std::bit_width(triangles_ - 1);
             places_.assign((std::size_t{triangles_} * bits_ + 7) / 8 + read_beyond, {});
-            workers.for_each_range(triangles_, shared_triangles, [&](std::size_t begin, std::size_t end) {
+            workers.for_each_range(triangles_, least_shared_triangles, [&](std::size_t begin, std::size_t end) {
                 set_triangles(order.triangles, begin, end);
             });
         }
-        if (config_.vertices == vertex_choice::listed) vertices_.build(m, order.triangles, workers);
+        if (config_.vertices == vertex_choice::listed) vertices_ = vertex_lists(m, order.triangles, workers);
         std::size_t all = 0;
         levels_ = 0;
         for (std::size_t below = order.bounds.size(); levels_ == 0 || below > 1;) {
@@ -143,8 +145,8 @@ public:
 
 private:
     static constexpr std::size_t read_beyond = 8;
-    static constexpr std::size_t shared_triangles = 8 * 512;  // what is worth another thread
-    static constexpr std::size_t shared_boxes = wide_node::most_children * 256;
+    static constexpr std::size_t least_shared_triangles = 8 * 512;  // what is worth another thread
+    static constexpr std::size_t least_shared_boxes = wide_node::most_children * 256;
     static constexpr std::uint32_t leaf_height = 3;
     static constexpr std::size_t most_levels = 10;
     static_assert(std::uint64_t{1} << (leaf_height + 3 * most_levels) > most_triangles);
@@ -155,9 +157,12 @@ private:
 
     /// Eight numbers fill whole bytes, which no other thread touches.
     void set_triangles(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
-        for (std::size_t bit = begin * bits_; begin < end; bit += bits_)
-            for (std::uint64_t rest = std::uint64_t{order[begin++]} << bit % 8, at = bit / 8; rest != 0; rest >>= 8U)
+        for (std::size_t place = begin; place < end; ++place) {
+            const std::size_t bit = place * bits_;
+            std::size_t at = bit / 8;
+            for (std::uint64_t rest = std::uint64_t{order[place]} << bit % 8; rest != 0; rest >>= 8U)
                 places_[at++] |= static_cast<std::byte>(rest);
+        }
     }
 
     /// A node of one child is that child.
@@ -170,7 +175,7 @@ private:
     /// @param boxes of the leaves; scratch
     void fit(std::span<box> boxes, worker_threads& workers) {
         for (std::size_t l = 0; l < levels(); ++l) {
-            workers.for_each_range(boxes.size(), shared_boxes, [&](std::size_t begin, std::size_t end) {
+            workers.for_each_range(boxes.size(), least_shared_boxes, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; i += wide_node::most_children)
                     nodes_[begins_[l] + i / wide_node::most_children].encode(
                         boxes.subspan(i, std::min(wide_node::most_children, end - i)));
@@ -178,8 +183,8 @@ private:
             });
             // Those that each range left at its begin.
             std::size_t made = 0;
-            for (std::size_t begin = 0; begin < boxes.size(); begin += shared_boxes)
-                for (std::size_t i = 0; i < groups_of(std::min(shared_boxes, boxes.size() - begin)); ++i)
+            for (std::size_t begin = 0; begin < boxes.size(); begin += least_shared_boxes)
+                for (std::size_t i = 0; i < groups_of(std::min(least_shared_boxes, boxes.size() - begin)); ++i)
                     boxes[made++] = boxes[begin + i];
             boxes = boxes.first(made);
         }
@@ -189,7 +194,7 @@ private:
     void list_vertices(const mesh& m, worker_threads& workers) {
         std::vector<std::uint32_t> order(triangles_);
         for (std::uint32_t place = 0; place < triangles_; ++place) order[place] = triangle_at(place);
-        vertices_.build(m, order, workers);
+        vertices_ = vertex_lists(m, order, workers);
     }
 
     /// In place.

@@ -260,12 +260,20 @@ std::optional<answers> ask(local_stage& stage, exhausted_run& run, std::string& 
     return given;
 }
 
+/// The same triangles, whose vertices were numbered anew.
+mesh numbered_backwards(mesh m) {
+    std::ranges::reverse(m.vertices);
+    for (auto& t : m.triangles)
+        for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(m.vertices.size()) - 1 - v;
+    return m;
+}
+
 std::string fault_of(local_stage& stage, mesh& m, const std::vector<answers>& expected, exhausted_run& run) {
     std::string fault;
     m = sheet(0.1F);
     if (!run.insist([&] { stage.add_model(m); })) return "no model after one that failed";
     if (ask(stage, run, fault) != expected[0]) return "wrong pairs";
-    m.vertices = sheet(3).vertices;
+    m = numbered_backwards(sheet(3));
     if (!run.attempt([&] { stage.refit(0); })) {
         if (ask(stage, run, fault)) return "a query after a refit that failed";
         run.forget_refusal();

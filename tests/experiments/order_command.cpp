@@ -1,5 +1,7 @@
 #include <catch2/catch_test_macros.hpp>
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "mesh_bytes.hpp"
@@ -13,6 +15,20 @@ TEST_CASE("order writes a mesh whose tree need not say which triangle stands whe
     const program_result result = run_program({"order", mesh, "--out", written});
     REQUIRE(result.status == 0);
     REQUIRE(result.out == "wrote " + written + ": 2,000 triangles\n");
+
+    // Every triangle is somewhere.
+    REQUIRE(run_program({"order", mesh, "--out", written, "--numbers", folder / "numbers.csv"}).status == 0);
+    const std::string rows = bytes_of_file(folder / "numbers.csv");
+    REQUIRE(rows.starts_with("triangle,was\n0,"));
+    std::set<std::string> were;
+    for (std::size_t begin = rows.find('\n') + 1; begin < rows.size(); begin = rows.find('\n', begin) + 1) {
+        const std::string row = rows.substr(begin, rows.find('\n', begin) - begin);
+        REQUIRE(row.starts_with(std::to_string(were.size()) + ","));
+        were.insert(row.substr(row.find(',') + 1));
+    }
+    REQUIRE(were.size() == 2000);
+    REQUIRE(were.contains("0"));
+    REQUIRE(were.contains("1999"));
 
     const auto collided = [](const std::string& of, const std::string& build) {
         return nlohmann::json::parse(
@@ -36,7 +52,13 @@ TEST_CASE("order refuses what it does not know, and to write over the mesh that 
     const program_result build = run_program({"order", mesh, "--build", "sha", "--out", folder / "b.off"});
     REQUIRE(build.status == 2);
     REQUIRE(build.err.find("unknown build 'sha'; did you mean 'sah'?") != std::string::npos);
-    REQUIRE(run_program({"order", mesh, "--out", mesh}).status == 2);
-    REQUIRE(bytes_of_file(mesh) == tetrahedron);
+    for (const std::string& name : {mesh, mesh + ":order=median"}) {
+        REQUIRE(run_program({"order", name, "--out", mesh}).status == 2);
+        REQUIRE(run_program({"order", name, "--out", folder / "b.off", "--numbers", mesh}).status == 2);
+        REQUIRE(run_program({"collide", name, "--self", "--out", mesh}).status == 2);
+        REQUIRE(bytes_of_file(mesh) == tetrahedron);
+    }
+    REQUIRE(run_program({"order", mesh, "--out", folder / "b.ply"})
+                .err.find("order writes OFF, so --out ends in .off, not '.ply'") != std::string::npos);
     REQUIRE(run_program({"order", mesh}).status == 2);
 }

@@ -87,7 +87,7 @@ TEST_CASE("shapes but the floor are closed, face outwards, have no triangle of z
     REQUIRE(aabblab::make_mesh("torus_knot:triangles=20000").mesh.triangle_count() == 20000);
 }
 
-TEST_CASE("shapes are the same everywhere") {
+TEST_CASE("shapes are the same everywhere, in any order") {
     const auto digest_of = [](const std::string& name) {
         const aabb::mesh m = aabblab::make_mesh(name).mesh;
         aabb::digest all;
@@ -98,9 +98,11 @@ TEST_CASE("shapes are the same everywhere") {
     CHECK(digest_of("icosphere:triangles=1000") == "d755fdaa678cfdc0");
     CHECK(digest_of("noise_sphere:triangles=1000") == "dcf74046466fc0c4");
     CHECK(digest_of("torus_knot:triangles=1000") == "ffebf8a1a850ed68");
+    CHECK(digest_of("torus_knot:triangles=20000,order=sah") == "8ca70a2596f800f5");
+    CHECK(digest_of("torus_knot:triangles=20000,order=median") == "e02228f01ba3f345");
 }
 
-TEST_CASE("a mesh in the order of a build has the same triangles, and takes no place in a tree for which is where") {
+TEST_CASE("a mesh in the order of a build has the same triangles") {
     const auto sorted = [](const aabb::mesh& m) {
         std::vector<aabb::triangle3f> all;
         for (std::uint32_t t = 0; t < m.triangle_count(); ++t) all.push_back(m.triangle(t));
@@ -145,5 +147,10 @@ TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
     REQUIRE(aabblab::make_mesh("elephant.off:order=sah").report.polygons == 1);
     REQUIRE(error_of("elephant.off:order=sag") == "unknown build 'sag'; did you mean 'sah'?");
     REQUIRE(error_of("icosphere:order=").starts_with("unknown build ''"));
+    REQUIRE(error_of("icosphere:order=sah,triangles=80") ==
+            "order=BUILD stands last in the name of a mesh, not as in 'icosphere:order=sah,triangles=80'");
+    REQUIRE(error_of("icosphere:order=sah:order=sah").starts_with("order=BUILD stands last in the name of a mesh"));
+    REQUIRE(error_of("icosphere,order=sah").starts_with("unknown mesh 'icosphere,order=sah'"));
+    REQUIRE(aabblab::name_without_order("icosphere:triangles=80,order=sah") == "icosphere:triangles=80");
     REQUIRE(error_of("torus_knot:5000") == "'5000' after 'torus_knot:' is not of the form name=value");
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
@@ -6,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -305,7 +307,21 @@ TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a 
     CHECK(bytes_of_tree({"implicit", {}}, m) < 8 * m.triangles.size());
 }
 
-TEST_CASE("a mesh in the order of leaves is the same mesh, and its tree the same without a word on which is where") {
+namespace {
+
+bool same_nodes(const implicit_tree& one, const implicit_tree& other) {
+    if (one.bytes().nodes != other.bytes().nodes || one.levels() != other.levels()) return false;
+    const std::size_t bytes = one.bytes().nodes;
+    return std::memcmp(one.level(0), other.level(0), bytes) == 0;
+}
+
+std::tuple<std::uint32_t, std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> parts_of(const vertex_list& list) {
+    return {list.count, list.places, {list.vertices.begin(), list.vertices.begin() + list.count}};
+}
+
+}  // namespace
+
+TEST_CASE("a mesh in the order of leaves is the same mesh, and has the same tree without a word on which is where") {
     std::vector<mesh> all = meshes();
     all.push_back(sheet(70));
     all.back().vertices.insert(all.back().vertices.begin(), {5, 5, 5});  // of no triangle
@@ -336,12 +352,43 @@ TEST_CASE("a mesh in the order of leaves is the same mesh, and its tree the same
             const model<implicit_tree> before(m, built_by<Build>(), fetched);
             const model<implicit_tree> after(ordered, built_by<file_order_build>(), fetched);
             CHECK(after.tree().bytes().indices == 0);
-            CHECK(after.tree().bytes().nodes == before.tree().bytes().nodes);
+            CHECK(same_nodes(after.tree(), before.tree()));
             for (std::uint32_t place = 0; place < m.triangle_count(); ++place) {
                 REQUIRE(before.tree().triangle_at(place) == order.triangles[place]);
                 REQUIRE(after.tree().triangle_at(place) == place);
             }
         });
+}
+
+TEST_CASE("an implicit tree is packed alike by any number of threads, and anew") {
+    const mesh m = sheet(110);
+    const balanced_order order = sah_build().order(m);
+    implicit_tree alone;
+    alone.pack(m, order);
+    for (const std::uint32_t threads : {1U, 2U, 5U}) {
+        balanced_order shared = order;
+        shared.threads = threads;
+        implicit_tree packed;
+        if (threads == 5) packed.pack(m, file_order_build().order(m));
+        packed.pack(m, shared);
+        CHECK(same_nodes(packed, alone));
+        for (std::uint32_t place = 0; place < m.triangle_count(); ++place)
+            REQUIRE(packed.triangle_at(place) == order.triangles[place]);
+        for (std::uint32_t leaf = 0; 8 * leaf < m.triangle_count(); ++leaf) {
+            vertex_list list;
+            vertex_list expected;
+            packed.read_vertices(leaf, list);
+            alone.read_vertices(leaf, expected);
+            REQUIRE(parts_of(list) == parts_of(expected));
+            REQUIRE(list.count > 0);
+            for (std::uint32_t i = 0; i < std::min(8U, m.triangle_count() - 8 * leaf); ++i)
+                for (std::size_t c = 0; c < 3; ++c)
+                    REQUIRE(list.vertices[list.places[c] >> 4 * i & 15U] ==
+                            m.triangles[order.triangles[8 * leaf + i]][c]);
+        }
+        packed.pack(m, file_order_build().order(m));
+        CHECK(packed.triangle_at(1000) == 1000);
+    }
 }
 
 TEST_CASE("in a balanced tree triangles are split where halves are full, across one axis, by any number of threads") {

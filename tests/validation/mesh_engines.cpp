@@ -182,6 +182,32 @@ TEST_CASE("mesh engines refuse meshes that cannot be searched") {
     }
 }
 
+TEST_CASE("mesh engines follow vertices that were numbered anew, and refuse other triangles") {
+    for (const engine_info& info : mesh_engines()) {
+        INFO(info.name);
+        mesh_case c = mesh_cases().front();
+        const auto engine = make_mesh_engine(info.name);
+        const std::uint32_t a = engine->add_model(c.a);
+        const std::uint32_t b = engine->add_model(c.b);
+        const auto pairs = [&] {
+            std::vector<index_pair> all;
+            engine->all_pairs(a, c.pose_a, b, c.pose_b, all);
+            std::ranges::sort(all);
+            return all;
+        };
+        const std::vector<index_pair> before = pairs();
+        // One more, too, of no triangle.
+        std::ranges::reverse(c.b.vertices);
+        for (auto& t : c.b.triangles)
+            for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(c.b.vertices.size()) - 1 - v;
+        c.b.vertices.push_back(c.b.vertices.back());
+        engine->refit(b);
+        CHECK(pairs() == before);
+        c.b.triangles.pop_back();
+        CHECK_THROWS_AS(engine->refit(b), input_error);
+    }
+}
+
 TEST_CASE("engines take meshes of one triangle, with area and without") {
     const pose still;
     const mesh flat = one_triangle({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}});

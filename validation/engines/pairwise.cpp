@@ -30,8 +30,12 @@ public:
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
-    void refit(std::uint32_t model) override {
-        models_[model].fit.renew([&] { models_[model] = model_of(*models_[model].triangles); });
+    void refit(std::uint32_t number) override {
+        model& changed = models_[number];
+        changed.fit.renew([&] {
+            require_still_valid(*changed.triangles, changed.boxes.size());
+            changed = model_of(*changed.triangles);
+        });
     }
 
     [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,

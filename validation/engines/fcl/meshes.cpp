@@ -4,6 +4,7 @@ module;
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,16 +33,15 @@ namespace {
 template <class Volume>
 class fcl_tree {
 public:
-    /// Refitted where there is one already.
-    /// @param m always the same mesh
+    /// Refitted where there is one already of these triangles.
     void build(const mesh& m, std::span<const vec3f> vertices) {
         // Gone meanwhile: a tree whose refit broke off FCL would take for one in the midst of it, and write beyond its
         // vertices.
         std::unique_ptr<tree> made = std::move(tree_);
-        if (made) {
-            made->beginReplaceModel();
-            for (const vec3f& v : vertices) made->replaceVertex(in_double(v));
-            made->endReplaceModel(true, true);
+        if (made && is_of(*made, m)) {
+            require_done(made->beginReplaceModel());
+            for (const vec3f& v : vertices) require_done(made->replaceVertex(in_double(v)));
+            require_done(made->endReplaceModel(true, true));
         } else {
             std::vector<fcl::Vector3d> at;
             for (const vec3f& v : vertices) at.push_back(in_double(v));
@@ -67,6 +67,16 @@ public:
 private:
     using tree = fcl::BVHModel<Volume>;
 
+    /// FCL would take other vertices for the same ones.
+    [[nodiscard]] static bool is_of(const tree& made, const mesh& m) {
+        const auto same = [](const fcl::Triangle& held, const std::array<std::uint32_t, 3>& t) {
+            return held[0] == t[0] && held[1] == t[1] && held[2] == t[2];
+        };
+        const std::span held(made.tri_indices, static_cast<std::size_t>(made.num_tris));
+        return static_cast<std::size_t>(made.num_vertices) == m.vertices.size() &&
+               std::ranges::equal(held, m.triangles, same);
+    }
+
     [[nodiscard]] static fcl::Vector3d in_double(const vec3f& v) { return {v[0], v[1], v[2]}; }
 
     /// FCL says by a number that memory ran out, and would go on with half a tree.
@@ -82,7 +92,9 @@ template <class Volume>
 class fcl_meshes : public mesh_engine {
 public:
     std::uint32_t add_model(const mesh& m) final {
-        model made{&m, {}, {}, {}, {}};
+        require_ieee_arithmetic();
+        require_valid(m);
+        model made{&m, m.triangles.size(), {}, {}, {}, {}, {}};
         fit(made);
         models_.push_back(std::move(made));
         return static_cast<std::uint32_t>(models_.size() - 1);
@@ -91,7 +103,11 @@ public:
     void refit(std::uint32_t number) final {
         model& changed = models_[number];
         changed.poses.reset();
-        changed.fit.renew([&] { fit(changed); });
+        changed.fit.renew([&] {
+            require_ieee_arithmetic();
+            require_still_valid(*changed.triangles, changed.count);
+            fit(changed);
+        });
     }
 
     [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
@@ -110,6 +126,8 @@ public:
 protected:
     struct model {
         const mesh* triangles;
+        std::size_t count;  // of triangles
+        box bounds;
         fcl_tree<Volume> still;
         mesh_fit fit;
         fcl_tree<Volume> moved;                    // in the frame of another model, where FCL takes no poses
@@ -122,8 +140,7 @@ protected:
 
 private:
     static void fit(model& m) {
-        require_ieee_arithmetic();
-        require_valid(*m.triangles);
+        m.bounds = bounds_of(*m.triangles);
         m.still.build(*m.triangles, m.triangles->vertices);
     }
 
@@ -179,7 +196,7 @@ class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
                  const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         if (const std::array poses{pose_a, pose_b}; b.poses != poses) {
             b.poses.reset();
-            b.moved.build(*b.triangles, moved_vertices(pose_a, pose_b, *b.triangles, bounds_of(*b.triangles)));
+            b.moved.build(*b.triangles, moved_vertices(pose_a, pose_b, *b.triangles, b.bounds));
             b.poses = poses;
         }
         fcl::Transform3d still = fcl::Transform3d::Identity();
