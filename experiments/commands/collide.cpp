@@ -313,6 +313,7 @@ void collide(const collide_request& request) {
     std::optional<number_table> table;
     if (request.out) {
         require_no_mesh(*request.out, names);
+        if (request.poses_of_b) require_other_file(*request.out, {&*request.poses_of_b, 1});
         std::string columns = request.self == "together" ? "a,b,shared_vertices"
                               : request.poses_of_b       ? "pose,a,b"
                                                          : "a,b";
@@ -335,10 +336,10 @@ void add_collide(CLI::App& program, int&) {
         program.add_subcommand("collide", "Local detection of two meshes: every pair of intersecting triangles");
     auto request = std::make_shared<collide_request>();
     command
-        ->add_option(
-            "A", request->a,
-            "Mesh file, or a shape as in torus_knot:triangles=20000; with :order=sah behind a file its triangles "
-            "stand in the order of a tree's leaves")
+        ->add_option("A", request->a,
+                     "Mesh file, or a shape as in torus_knot:triangles=20000; with :order=sah behind a file, or "
+                     ",order=sah behind a shape's parameters, its triangles "
+                     "stand in the order of a tree's leaves")
         ->required()
         ->type_name("");
     command->add_option("B", request->b, "The other one")->type_name("");

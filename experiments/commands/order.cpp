@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -34,13 +36,16 @@ struct order_request {
 void write_ordered(const order_request& request) {
     const aabb::strategy_choice build = aabb::parse_strategy(request.build);
     require_known(aabb::strategy_kind::build, build);
-    const std::string ending = std::filesystem::path(request.out).extension().string();
+    std::string ending = std::filesystem::path(request.out).extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
     if (ending != ".off")
         throw aabb::input_error(fmt::format("order writes OFF, so --out ends in .off, not '{}'", ending));
     require_no_mesh(request.out, {request.mesh});
     std::optional<number_table> numbers;
     if (request.numbers) {
-        require_no_mesh(*request.numbers, {request.mesh, request.out});
+        require_no_mesh(*request.numbers, {request.mesh});
+        if (std::filesystem::weakly_canonical(*request.numbers) == std::filesystem::weakly_canonical(request.out))
+            throw aabb::input_error("--out and --numbers are the same file, " + request.out);
         numbers.emplace(*request.numbers, "triangle,was");
     }
     const aabb::ordered_mesh made = in_leaf_order(read_meshes({request.mesh}).front(), build);
@@ -75,8 +80,10 @@ void add_order(CLI::App& program, int&) {
                      "Write which triangle of MESH each one was, rows triangle,was, to this CSV file")
         ->type_name("FILE");
     command->footer(
-        "With --build file_order --tree implicit:vertices=fetched, a tree of such a mesh takes 1.2 bytes a triangle.\n"
-        "NAME:order=BUILD stands for such a mesh in any command or config, without a file.");
+        "The build file_order with the tree implicit:vertices=fetched takes 1.2 bytes a triangle of such a mesh, in\n"
+        "collide, contacts and configs. There FILE:order=BUILD, or SHAPE:triangles=N,order=BUILD, stands for it "
+        "without a\n"
+        "file. Put in order again, triangles move again: a build also goes by where they stood.");
     command->callback([request] { write_ordered(*request); });
 }
 

@@ -84,10 +84,13 @@ std::vector<std::string> names_of(const document& doc, const node& scene, const 
 std::vector<std::string> meshes_of(const document& doc, const node& scene, std::vector<std::string>& notes) {
     std::vector<std::string> meshes = names_of(doc, scene, "meshes");
     std::vector<std::string> instead = names_of(doc, scene, "without_data");
-    const auto missing =
-        std::ranges::find_if_not(meshes, [&](const auto& mesh) { return is_mesh(mesh, doc.folder()); });
+    auto missing = meshes.begin();
+    const auto is_there = [&](const std::string& mesh) { return is_mesh(mesh, doc.folder()); };
+    if (const node* listed = scene.find("meshes"))
+        doc.at(listed->line, [&] { missing = std::ranges::find_if_not(meshes, is_there); });
     if (instead.empty() || missing == meshes.end()) return meshes;
-    std::string note = *missing + " is not there (./aabblab data fetches it); instead the scene has";
+    std::string note = std::string(name_without_order(*missing, doc.folder())) +
+                       " is not there (./aabblab data fetches it); instead the scene has";
     for (const std::string& mesh : instead) note += (&mesh == instead.data() ? " " : ", ") + mesh;
     notes.push_back(note);
     return instead;

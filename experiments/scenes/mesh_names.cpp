@@ -81,15 +81,21 @@ struct ordered_name {
     std::optional<std::string_view> build;  ///< none where triangles stay as they stand
 };
 
-ordered_name taken_apart(std::string_view name) {
+/// A file may have such a name itself.
+ordered_name taken_apart(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
+    std::error_code ignored;
+    if (std::ranges::any_of(places(name, folder), [&](const auto& p) { return std::filesystem::exists(p, ignored); }))
+        return {name, {}};
     for (std::size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
         const std::string_view before = name.substr(0, at);
         if (!before.ends_with(':') && !(before.ends_with(',') && before.find(':') != std::string_view::npos)) continue;
         const std::string_view build = name.substr(at + key.size());
         if (build.find_first_of(":,") != std::string_view::npos)
-            throw aabb::input_error("order=BUILD stands last in the name of a mesh, not as in '" + std::string(name) +
-                                    "'");
+            throw aabb::input_error(
+                "order=BUILD stands last in the name of a mesh and takes no parameters, as in "
+                "torus_knot:triangles=5000,order=sah, not as in '" +
+                std::string(name) + "'");
         return {before.substr(0, at - 1), build};
     }
     return {name, {}};
@@ -128,12 +134,12 @@ std::filesystem::path found_file(const std::filesystem::path& name, const std::f
                             (beside != name ? ", here or in " + folder.string() : ""));
 }
 
-std::string_view name_without_order(std::string_view name) {
-    return taken_apart(name).name;
+std::string_view name_without_order(std::string_view name, const std::filesystem::path& folder) {
+    return taken_apart(name, folder).name;
 }
 
 bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
-    name = name_without_order(name);
+    name = name_without_order(name, folder);
     std::error_code ignored;
     return is_shape(name.substr(0, name.find(':'))) || std::ranges::any_of(places(name, folder), [&](const auto& p) {
                return std::filesystem::exists(p, ignored);
@@ -141,7 +147,7 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
 }
 
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
-    const auto [itself, build] = taken_apart(name);
+    const auto [itself, build] = taken_apart(name, folder);
     if (!build) return make_mesh_as_it_stands(name, folder);
     const aabb::strategy_choice choice{std::string(*build), {}};
     require_known(aabb::strategy_kind::build, choice);

@@ -31,7 +31,7 @@ export namespace aabblab {
 /// Whether a mesh has this name: a file, as given, in `folder` or in the data folder, or a shape.
 [[nodiscard]] bool is_mesh(std::string_view name, const std::filesystem::path& folder);
 /// The name before ":order=BUILD", if that stands there: that of a file or a shape.
-[[nodiscard]] std::string_view name_without_order(std::string_view name);
+[[nodiscard]] std::string_view name_without_order(std::string_view name, const std::filesystem::path& folder = {});
 /// The mesh of that name, looked for in this order. With ":order=BUILD" behind it, or ",order=BUILD" among a shape's
 /// parameters, its triangles stand in the order of the leaves that this build makes.
 /// @throws aabb::input_error on a name that is neither a file nor a shape, or no build, with the nearest one.

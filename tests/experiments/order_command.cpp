@@ -60,5 +60,8 @@ TEST_CASE("order refuses what it does not know, and to write over the mesh that 
     }
     REQUIRE(run_program({"order", mesh, "--out", folder / "b.ply"})
                 .err.find("order writes OFF, so --out ends in .off, not '.ply'") != std::string::npos);
+    REQUIRE(run_program({"order", mesh, "--out", folder / "B.OFF"}).status == 0);
+    REQUIRE(run_program({"order", mesh, "--out", folder / "b.off", "--numbers", folder / "./b.off"})
+                .err.find("--out and --numbers are the same file") != std::string::npos);
     REQUIRE(run_program({"order", mesh}).status == 2);
 }
