@@ -1,4 +1,5 @@
 #include <catch2/catch_test_macros.hpp>
+#include <cstddef>
 #include <optional>
 #include <set>
 #include <string>
@@ -6,6 +7,7 @@
 import aabblab.metrics;
 import aabblab.results;
 
+using aabblab::byte_columns;
 using aabblab::measured;
 using aabblab::row;
 
@@ -71,4 +73,13 @@ TEST_CASE("Processor time stands beside wall time, and what lies between was wai
     }
     r.update_cpu_ms.reset();
     CHECK_FALSE(measured("waiting")(r).has_value());
+}
+
+TEST_CASE("Bytes of trees are those of ours, since of an engine they are not known") {
+    row r;
+    r.triangles = 100;
+    for (std::size_t i = 0; i < r.bytes.size(); ++i) r.bytes[i] = byte_columns[i] == "nodes" ? 700 : 0;
+    CHECK(measured("tree_bytes")(r) == 7);
+    r.name.engine = "embree_meshes";
+    CHECK_FALSE(measured("tree_bytes")(r).has_value());
 }

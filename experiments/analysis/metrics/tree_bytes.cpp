@@ -1,4 +1,5 @@
 module;
+#include <optional>
 #include <string>
 
 module aabblab.metrics;
@@ -8,8 +9,11 @@ import aabblab.results;
 namespace aabblab {
 
 metric tree_bytes_metric() {
-    return {"tree_bytes",        "bytes a triangle", "memory of the trees",
-            metric_group::bytes, better::less,       a_triangle(bytes_of({"nodes", "indices"}))};
+    // What of an engine's bytes is its tree is not known.
+    const auto value = [ours = a_triangle(bytes_of({"nodes", "indices"}))](const row& r) {
+        return r.name.engine.empty() ? ours(r) : std::nullopt;
+    };
+    return {"tree_bytes", "bytes a triangle", "memory of the trees", metric_group::bytes, better::less, value};
 }
 
 }  // namespace aabblab
