@@ -24,12 +24,6 @@ namespace aabblab {
 
 namespace {
 
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
 /// "bucket, or std with another partition or sweep"
 std::string usual_of(aabb::strategy_kind kind) {
     const aabb::strategy_kind_info& info = info_of(kind);
@@ -45,13 +39,19 @@ std::string usual_of(aabb::strategy_kind kind) {
 
 }  // namespace
 
+std::string names_in_line(aabb::strategy_kind kind) {
+    std::string text;
+    for (const std::string& name : aabb::strategy_names(kind)) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 void stage_options::add_to(CLI::App& command) {
     for (const aabb::strategy_kind kind : kinds()) {
         const std::string name(name_of(kind));
         command
-            .add_option("--" + name, given_[kind],
-                        "One of " + joined(aabb::strategy_names(kind)) + " (default " + usual_of(kind) +
-                            "), as in NAME:parameter=value")
+            .add_option(
+                "--" + name, given_[kind],
+                "One of " + names_in_line(kind) + " (default " + usual_of(kind) + "), as in NAME:parameter=value")
             ->type_name("S");
     }
     command.footer("aabblab list has every strategy with its parameters.");

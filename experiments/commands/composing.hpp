@@ -32,6 +32,9 @@ private:
     aabb::by_kind<std::optional<std::string>> given_;
 };
 
+/// "median, mean, …", for help texts.
+[[nodiscard]] std::string names_in_line(aabb::strategy_kind kind);
+
 /// Meshes by the names that the user gave them; what was fanned, dropped or rounded is said.
 [[nodiscard]] std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names);
 

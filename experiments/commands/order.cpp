@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -36,8 +34,7 @@ struct order_request {
 void write_ordered(const order_request& request) {
     const aabb::strategy_choice build = aabb::parse_strategy(request.build);
     require_known(aabb::strategy_kind::build, build);
-    std::string ending = std::filesystem::path(request.out).extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string ending = mesh_ending_of(request.out);
     if (ending != ".off")
         throw aabb::input_error(fmt::format("order writes OFF, so --out ends in .off, not '{}'", ending));
     require_no_mesh(request.out, {request.mesh});
@@ -57,13 +54,6 @@ void write_ordered(const order_request& request) {
     print(fmt::format("wrote {}: which triangle each one was\n", visible(*request.numbers)));
 }
 
-std::string names_of_builds() {
-    std::string names;
-    for (const std::string& name : aabb::strategy_names(aabb::strategy_kind::build))
-        names += (names.empty() ? "" : ", ") + name;
-    return names;
-}
-
 }  // namespace
 
 void add_order(CLI::App& program, int&) {
@@ -71,8 +61,9 @@ void add_order(CLI::App& program, int&) {
     auto request = std::make_shared<order_request>();
     command->add_option("MESH", request->mesh, "Mesh file or shape")->required()->type_name("");
     command
-        ->add_option("--build", request->build,
-                     "The build that makes the leaves: one of " + names_of_builds() + " (default sah)")
+        ->add_option(
+            "--build", request->build,
+            "The build that makes the leaves: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)")
         ->type_name("S");
     command->add_option("--out", request->out, "The mesh to write (.off)")->required()->type_name("FILE");
     command

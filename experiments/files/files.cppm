@@ -31,6 +31,9 @@ export namespace aabblab {
 /// @throws aabb::input_error that says what takes how many bytes.
 void require_memory(const std::string& what, double bytes);
 
+/// By which a mesh file's format is chosen, in lower case.
+[[nodiscard]] std::string mesh_ending_of(const std::filesystem::path& file);
+
 /// The endings of mesh files, ".off" and so on.
 [[nodiscard]] std::vector<std::string> mesh_endings();
 

@@ -34,6 +34,12 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
 
 }  // namespace
 
+std::string mesh_ending_of(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return ending;
+}
+
 std::vector<std::string> mesh_endings() {
     std::vector<std::string> endings;
     for (const format& f : formats) endings.emplace_back(f.ending);
@@ -52,8 +58,7 @@ std::string mesh_report::text() const {
 
 loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
-    std::string ending = file.extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string ending = mesh_ending_of(file);
     const auto found = std::ranges::find(formats, ending, &format::ending);
     if (found == std::end(formats))
         throw aabb::input_error(file.string() + ": " + aabb::unknown_name("mesh format", ending, mesh_endings()));
