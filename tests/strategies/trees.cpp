@@ -372,6 +372,14 @@ TEST_CASE("an implicit tree is packed alike by any number of threads, and anew")
         if (threads == 5) packed.pack(m, file_order_build().order(m));
         packed.pack(m, shared);
         CHECK(same_nodes(packed, alone));
+        // More leaves than one range of boxes: every child holds its triangles.
+        std::size_t triangles_of_child = 8;
+        for (std::size_t level = 0; level < packed.levels(); ++level, triangles_of_child *= 8)
+            for (std::size_t place = 0; place < m.triangles.size(); ++place) {
+                const std::size_t child = place / triangles_of_child;
+                const box around = packed.level(level)[child / 8].child(child % 8);
+                REQUIRE(contains(around, bounds_of(m.triangle(order.triangles[place]))));
+            }
         for (std::uint32_t place = 0; place < m.triangle_count(); ++place)
             REQUIRE(packed.triangle_at(place) == order.triangles[place]);
         for (std::uint32_t leaf = 0; 8 * leaf < m.triangle_count(); ++leaf) {
