@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -71,12 +72,12 @@ public:
     /// @param reach box of the vertices of B in B's frame; only boxes and vertices inside it may be taken over.
     /// @throws input_error when they may lie beyond the range of float in A's frame.
     relative_pose(const pose& a, const pose& b, const box& reach) {
-        for (int i = 0; i < 3; ++i) {
-            between_[i] = b.translation[i] - a.translation[i];
-            for (int k = 0; k < 3; ++k) {
-                columns_b_[k][i] = b.rotation[3 * i + k];
-                rows_a_[k][i] = a.rotation[3 * k + i];
-            }
+        const vec3d& from = a.translation;
+        const vec3d& to = b.translation;
+        between_ = lanes{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+        for (std::size_t k = 0; k < 3; ++k) {
+            columns_b_[k] = lanes{b.rotation[k], b.rotation[3 + k], b.rotation[6 + k]};
+            rows_a_[k] = lanes{a.rotation[3 * k], a.rotation[3 * k + 1], a.rotation[3 * k + 2]};
         }
         lanes world = magnitudes(between_);
         for (int j = 0; j < 3; ++j)

@@ -18,7 +18,7 @@ import :child_pairs;
 import :corner_numbers;
 import :leaf_pairs;
 import :model;
-import :nearest_pair;
+import :nearest_last;
 import :triangle_batch;
 import :triangle_policy;
 import :walk_goal;
@@ -57,8 +57,7 @@ private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = 64;
-    static constexpr std::size_t most_missed = 4;
-    static constexpr int worth_a_slab = 6;  // pairs of triangles
+    static constexpr std::size_t most_missed = 2;
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
 
@@ -87,7 +86,7 @@ private:
     template <class Emit>
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
               walk_goal goal, Emit emit) {
-        begin(a, b, to_a, what, goal);
+        begin(a, b, to_a, goal);
         const bool any_pair = goal == walk_goal::first_pair;
         const std::size_t at_once = any_pair ? 1 : most_at_once;
         const auto emit_pair = [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
@@ -96,6 +95,7 @@ private:
         };
         std::size_t step = 0;
         std::size_t missed = 0;  // pairs of leaves
+        bool reached_leaves = false;
         for (;;) {
             if (pairs_[step].size == 0) {
                 step = steps_.size();
@@ -104,15 +104,18 @@ private:
                 --step;
             }
             node_pairs& from = pairs_[step];
+            const bool at_leaves = step + 1 == steps_.size();
             const std::size_t end = from.size;
             const std::size_t begin = end - std::min(end, at_once);
             from.size = begin;
             counters_.add(work::node_visits, end - begin);
-            if (step + 1 < steps_.size()) {
+            if (!at_leaves) {
                 open(a.tree(), b.tree(), what, any_pair, step, begin, end);
                 ++step;
                 continue;
             }
+            if (!reached_leaves) leaves_.begin(a, b, what == extent::one_mesh);
+            reached_leaves = true;
             if (test_leaves(test, a, b, to_a, what, begin, end, emit_pair)) return;
             if (!any_pair) continue;
             if (waiting_.decide(test, true, emit_pair)) return;
@@ -123,7 +126,7 @@ private:
         static_cast<void>(waiting_.decide(test, true, emit_pair));
     }
 
-    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, walk_goal goal) {
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, walk_goal goal) {
         require_ieee_arithmetic();
         a.require_fit();
         b.require_fit();
@@ -133,7 +136,6 @@ private:
         pairs_[0].a[0] = pairs_[0].b[0] = 0;
         pairs_[0].size = 1;
         children_.begin(a.tree(), b.tree(), to_a, a.bounds(), goal == walk_goal::every_pair);
-        leaves_.begin(a, b, what == extent::one_mesh);
         waiting_.clear();
     }
 
@@ -180,14 +182,15 @@ private:
             simd::store_places(places.data(), met);
             const auto count = static_cast<std::size_t>(std::popcount(met));
             if (nearest_last && opens_a && opens_b && count > 1)
-                std::swap(places[nearest_pair(std::span(places).first(count), of_a, children_.in_a(of_b))],
-                          places[count - 1]);
-            for (std::size_t p = 0; p < count; p += children) {
+                put_nearest_last(places.data(), count, of_a, children_.in_a(of_b));
+            std::size_t p = 0;
+            do {  // mostly once, which is foreseen
                 const auto place =
                     __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&places[p]), simd::eight_words);
                 simd::store_eight(&to.a[to.size + p], first_a + (place & 7U));
                 simd::store_eight(&to.b[to.size + p], first_b + (place >> 3U));
-            }
+                p += children;
+            } while (p < count);
             to.size += count;
         }
     }
@@ -201,27 +204,18 @@ private:
         const node_pairs& from = pairs_[steps_.size() - 1];
         const std::span leaves_a = std::span(from.a).subspan(begin, end - begin);
         const std::span leaves_b = std::span(from.b).subspan(begin, end - begin);
-        if constexpr (Counters::enabled)
-            for (std::size_t p = 0; p < leaves_a.size(); ++p)
-                counters_.add(work::box_tests, triangles_in(a, leaves_a[p]) * triangles_in(b, leaves_b[p]));
-        return leaves_(a, b, to_a, leaves_a, leaves_b,
-                       [&](std::size_t p, leaf_of_a& of_a, const leaf_of_b& of_b, std::uint64_t met) {
+        return leaves_(a, b, to_a, leaves_a, leaves_b, counters_,
+                       [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b, std::uint64_t met) {
                            if (what == extent::one_mesh) {
                                if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
                                if (emit_neighbours(of_a.corners, of_b.corners, met, leaves_a[p], leaves_b[p], emit))
                                    return true;
+                               if (met == 0) return false;
                            }
-                           if (std::popcount(met) >= worth_a_slab)
-                               met &= rows(leaves_.slab_of(of_a).reached_by(of_b.block, of_b.boxes.merged()));
-                           if (met == 0) return false;
                            counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
                            waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
                            return waiting_.is_full() && waiting_.decide(test, false, emit);
                        });
-    }
-
-    [[nodiscard]] static std::uint64_t triangles_in(const model<Tree>& m, std::uint32_t leaf) noexcept {
-        return std::min(children, m.triangles().triangles.size() - children * leaf);
     }
 
     /// An exact test would find that triangles with a corner in common meet there.
@@ -246,12 +240,6 @@ private:
     static constexpr std::uint64_t not_twice = 0xff7f3f1f0f070301;
     static constexpr std::uint64_t not_itself = 0x7fbfdfeff7fbfdfe;
 
-    /// All bits of row j for bit j.
-    [[nodiscard]] static constexpr std::uint64_t rows(std::uint64_t which) noexcept {
-        const std::uint64_t bit_of_row = which * 0x0101010101010101 & 0x8040201008040201;
-        constexpr std::uint64_t low_bits = 0x7f7f7f7f7f7f7f7f;
-        return ((((bit_of_row & low_bits) + low_bits) | bit_of_row) >> 7U & 0x0101010101010101) * 0xff;
-    }
     /// Bit 8 j for every row j of which a bit is set.
     [[nodiscard]] static constexpr std::uint64_t any_of_columns(std::uint64_t met) noexcept {
         met |= met >> 4U;

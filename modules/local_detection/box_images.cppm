@@ -1,7 +1,7 @@
 module;
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 export module aabb.local_detection:box_images;
 
@@ -18,16 +18,12 @@ export namespace aabb {
 /// Takes the boxes of a node's children into another frame: each holds the image of all that the child's does.
 class box_images {
 public:
-    box_images() = default;
-    explicit box_images(const box_motion& motion) noexcept {
+    void begin(const box_motion& motion) noexcept {
         for (std::size_t k = 0; k < 3; ++k) {
             const auto axis = static_cast<int>(k);
-            low_[k] = motion.shift[axis] - motion.margin[axis] - least;
-            high_[k] = motion.shift[axis] + motion.margin[axis] + least;
-            for (std::size_t j = 0; j < 3; ++j) {
-                turn_[k][j] = motion.columns[j][axis];
-                rises_[k][j] = turn_[k][j] > 0;
-            }
+            shift_[k] = motion.shift[axis];
+            margin_[k] = motion.margin[axis] + least;
+            for (std::size_t j = 0; j < 3; ++j) turn_[k][j] = motion.columns[j][axis];
         }
     }
 
@@ -36,22 +32,25 @@ public:
     /// least step. What rounding adds by that is within what is left of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
-        std::array<std::array<simd::eight_doubles, 3>, 2> planes;
+        // Centres and halves of edges, exactly: whole or half codes, times powers of two.
+        std::array<simd::eight_doubles, 3> centre;
+        std::array<simd::eight_doubles, 3> half;
         for (std::size_t j = 0; j < 3; ++j) {
-            const double step = n.step(j);
-            const double origin = n.origin[j] * step;
-            planes[0][j] = doubles_of(n.planes.lower[j]) * step + origin;
-            planes[1][j] = (255 - doubles_of(n.planes.upper[j])) * step + origin;
+            const double half_step = n.step(j) / 2;
+            const simd::eight_doubles lower = doubles_of(n.planes.lower[j]);
+            const simd::eight_doubles upper = 255 - doubles_of(n.planes.upper[j]);
+            centre[j] = (upper + lower + 2.0 * n.origin[j]) * half_step;
+            half[j] = (upper - lower) * half_step;
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            simd::eight_doubles low = simd::eight_doubles{} + low_[k];
-            simd::eight_doubles high = simd::eight_doubles{} + high_[k];
+            simd::eight_doubles at = simd::eight_doubles{} + shift_[k];
+            simd::eight_doubles reach = simd::eight_doubles{} + margin_[k];
             for (std::size_t j = 0; j < 3; ++j) {
-                low += turn_[k][j] * planes[1U - rises_[k][j]][j];
-                high += turn_[k][j] * planes[rises_[k][j]][j];
+                at += turn_[k][j] * centre[j];
+                reach += std::abs(turn_[k][j]) * half[j];
             }
-            simd::store_eight(to.lower[k].data(), __builtin_convertvector(low, simd::eight_floats));
-            simd::store_eight(to.upper[k].data(), __builtin_convertvector(high, simd::eight_floats));
+            simd::store_eight(to.lower[k].data(), __builtin_convertvector(at - reach, simd::eight_floats));
+            simd::store_eight(to.upper[k].data(), __builtin_convertvector(at + reach, simd::eight_floats));
         }
         to.count = n.children;
     }
@@ -64,9 +63,8 @@ private:
     }
 
     std::array<std::array<double, 3>, 3> turn_{};  // by the axis there, then here
-    std::array<std::array<std::uint8_t, 3>, 3> rises_{};
-    std::array<double, 3> low_{};
-    std::array<double, 3> high_{};
+    std::array<double, 3> shift_{};
+    std::array<double, 3> margin_{};
 };
 
 }  // namespace aabb

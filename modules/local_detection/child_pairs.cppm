@@ -23,11 +23,11 @@ public:
     void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, bool in_both) {
         first_a_ = a.level(0);
         first_b_ = b.level(0);
-        to_a_ = box_images(to_a.to_boxes());
+        to_a_.begin(to_a.to_boxes());
         in_a_.begin(nodes(b));
         turned_ = in_both && to_a.growth() > least_growth;
         if (!turned_) return;
-        to_b_ = box_images(to_a.back_to_boxes(bounds_of_a));
+        to_b_.begin(to_a.back_to_boxes(bounds_of_a));
         in_b_.begin(nodes(a));
     }
 

@@ -26,17 +26,6 @@ struct eight_boxes {
         const std::uint64_t rows = ~std::uint64_t{0} >> (most * (most - others.count));
         return simd::pairs_of_eight_that_overlap(lower[0].data(), others.lower[0].data()) & columns & rows;
     }
-
-    /// The box of all; in the places from `count` on one of them must be repeated.
-    [[nodiscard]] inline box merged() const noexcept {
-        box all;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto axis = static_cast<int>(k);
-            all.min[axis] = simd::least(simd::load_eight<simd::eight_floats>(lower[k].data()));
-            all.max[axis] = -simd::least(-simd::load_eight<simd::eight_floats>(upper[k].data()));
-        }
-        return all;
-    }
 };
 
 }  // namespace aabb

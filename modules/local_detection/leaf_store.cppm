@@ -34,7 +34,8 @@ public:
     [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
         const std::size_t place = number & (leaves_.size() - 1);
         const bool is_missing = held_[place] != number;
-        if (is_missing && claims_[place] == claim_) return false;
+        // Of the two, one is mostly false and the other hard to foresee, so there is one branch for both.
+        if (static_cast<unsigned>(is_missing) & static_cast<unsigned>(claims_[place] == claim_)) return false;
         missing_[missing_count_] = number;
         missing_count_ += is_missing;
         held_[place] = number;

@@ -4,6 +4,7 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 export module aabb.local_detection:triangle_batch;
 
@@ -31,7 +32,9 @@ public:
         leaves_[leaf_pairs_] = {leaf_a, leaf_b};
         const auto from = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
         const auto count = static_cast<std::size_t>(std::popcount(which));
-        for (std::size_t first = 0; first < count; first += triangle_block::width) {
+        // Mostly once, which is foreseen.
+        std::size_t first = 0;
+        do {
             const auto chosen =
                 __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&place[first]), simd::eight_words);
             const std::size_t to = pairs_ + first;
@@ -40,7 +43,8 @@ public:
                 simd::store_eight(&b_[row][to], simd::taken(b.corner[row / 3][row % 3].data(), chosen >> 3));
             }
             simd::store_eight(&origin_[to], chosen | from);
-        }
+            first += triangle_block::width;
+        } while (first < count);
         pairs_ += count;
     }
 
@@ -49,19 +53,20 @@ public:
     template <class Emit>
     [[nodiscard]] bool decide(const Triangle& test, bool all, Emit emit) {
         std::size_t done = 0;
+        std::size_t found = 0;
         for (; done + simd::width <= pairs_ || (all && done < pairs_); done += simd::width) {
             const std::uint32_t present = simd::lanes_below(pairs_ - done);
-            const filtered_pairs found = filtered(done);
-            std::uint32_t hits = found.hits & present;
-            for (std::uint32_t open = found.undecided & present; open != 0; open &= open - 1) {
+            const filtered_pairs by_filter = filtered(done);
+            std::uint32_t hits = by_filter.hits & present;
+            for (std::uint32_t open = by_filter.undecided & present; open != 0; open &= open - 1) {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
                 if (test.intersects(triangle(a_, done + lane), triangle(b_, done + lane))) hits |= 1U << lane;
             }
-            for (; hits != 0; hits &= hits - 1) {
-                const std::uint32_t origin = origin_[done + static_cast<std::size_t>(std::countr_zero(hits))];
-                const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
-                if (emit(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U)) return true;
-            }
+            found += simd::store_where(&found_[found], simd::load(&origin_[done]), hits);
+        }
+        for (const std::uint32_t origin : std::span(found_).first(found)) {
+            const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
+            if (emit(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U)) return true;
         }
         keep_from(std::min(done, pairs_));
         return false;
@@ -105,8 +110,9 @@ private:
     std::size_t leaf_pairs_ = 0;
     alignas(64) corners a_{};
     alignas(64) corners b_{};
-    std::array<std::uint32_t, capacity + triangle_block::width> origin_{};  // place among leaf pairs, then 8 j + i
+    std::array<std::uint32_t, capacity + simd::width> origin_{};  // place among leaf pairs, then 8 j + i
     std::array<std::array<std::uint32_t, 2>, capacity> leaves_{};
+    std::array<std::uint32_t, capacity + simd::width> found_{};  // origins of those that intersect
 };
 
 }  // namespace aabb

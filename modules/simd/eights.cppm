@@ -189,6 +189,26 @@ template <class Number, class Vector>
     return lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6))[0];
 }
 
+/// The least number of each of three rows of eight, then of each of three other rows, negated; then two of no account.
+[[nodiscard, gnu::always_inline]] inline eight_floats least_of_rows(const float* rows, const float* negated) noexcept {
+    const auto lesser = [](eight_floats p, eight_floats q) { return p < q ? p : q; };
+    const auto by_twos = [&](eight_floats p, eight_floats q) {
+        return lesser(__builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13),
+                      __builtin_shufflevector(p, q, 2, 10, 3, 11, 6, 14, 7, 15));
+    };
+    const auto by_fours = [&](eight_floats p, eight_floats q) {
+        return lesser(__builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13),
+                      __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15));
+    };
+    const auto row = [&](int r) { return load_eight<eight_floats>(rows + 8 * r); };
+    const auto other = [&](int r) { return -load_eight<eight_floats>(negated + 8 * r); };
+    const eight_floats first = by_fours(by_twos(row(0), row(1)), by_twos(row(2), other(0)));
+    const eight_floats last_two = by_twos(other(1), other(2));
+    const eight_floats last = by_fours(last_two, last_two);
+    return lesser(__builtin_shufflevector(first, last, 0, 1, 2, 3, 8, 9, 10, 11),
+                  __builtin_shufflevector(first, last, 4, 5, 6, 7, 12, 13, 14, 15));
+}
+
 [[nodiscard, gnu::always_inline]] inline float sum(eight_floats v) noexcept {
     v += __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
     v += __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);

@@ -202,7 +202,7 @@ TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every
     const auto bounds_of_block = [](const triangle_block& block) {
         eight_boxes boxes{};
         block.bounds(boxes);
-        return boxes.merged();
+        return box_row(boxes).bounds();
     };
     for (const float size : {1e-9F, 1.0F, 1e9F}) {
         CAPTURE(size);
@@ -344,9 +344,12 @@ TEST_CASE("children that meet are found, however one node is turned against the 
         wide_node node_a{};
         node_a.encode(a);
         eight_boxes images{};
-        box_images(to_a.to_boxes()).store(node_b, images);
+        box_images to_other;
+        to_other.begin(to_a.to_boxes());
+        to_other.store(node_b, images);
         const std::uint64_t in_a = node_a.planes.overlaps(node_a.grid(), images);
-        box_images(to_a.back_to_boxes(all_of(a))).store(node_a, images);
+        to_other.begin(to_a.back_to_boxes(all_of(a)));
+        to_other.store(node_a, images);
         const std::uint64_t in_b = node_b.planes.overlaps(node_b.grid(), images);
         for (int sample = 0; sample < 40; ++sample) {
             const auto j = *rc::gen::inRange<std::size_t>(0, b.size());
@@ -370,6 +373,76 @@ TEST_CASE("children that meet are found, however one node is turned against the 
     CHECK(apart_in_b > 1000);
 }
 
+TEST_CASE("the box of eight boxes in a row meets others as boxes do") {
+    std::size_t met = 0;
+    std::size_t apart = 0;
+    CHECK(rc::check([&] {
+        std::array<box_row, 2> rows;
+        std::array<box, 2> merged_boxes{empty_box(), empty_box()};
+        for (std::size_t side = 0; side < 2; ++side) {
+            eight_boxes boxes{};
+            boxes.count = 8;
+            for (std::size_t i = 0; i < 8; ++i) {
+                box one;
+                for (int k = 0; k < 3; ++k) {
+                    const auto axis = static_cast<std::size_t>(k);
+                    const int low = *rc::gen::inRange(-20, 20);
+                    boxes.lower[axis][i] = one.min[k] = static_cast<float>(low);
+                    boxes.upper[axis][i] = one.max[k] = static_cast<float>(low + *rc::gen::inRange(0, 5));
+                }
+                merged_boxes[side] = merged(merged_boxes[side], one);
+            }
+            rows[side] = box_row(boxes);
+            RC_ASSERT(rows[side].bounds() == merged_boxes[side]);
+            // A single box, so that some lie apart.
+            if (side == 0) continue;
+            for (auto* bounds : {&boxes.lower, &boxes.upper})
+                for (auto& row : *bounds) row.fill(row[0]);
+            RC_ASSERT(box_row(boxes).meets(rows[0]) == overlaps(box_row(boxes).bounds(), merged_boxes[0]));
+            RC_ASSERT(box_row(boxes).meets(box_row(boxes)));
+            const bool meets = rows[0].meets(box_row(boxes));
+            RC_ASSERT(meets == overlaps(box_row(boxes).bounds(), merged_boxes[0]));
+            (meets ? met : apart) += 1;
+        }
+    }));
+    CHECK(met > 0);
+    CHECK(apart > 0);
+}
+
+TEST_CASE("pairs are put in order of their distance, the nearest last") {
+    CHECK(rc::check([] {
+        std::vector<box> children;
+        eight_boxes others{};
+        others.count = 8;
+        const auto at = [] { return static_cast<float>(*rc::gen::inRange(-1000, 1000)); };
+        for (std::size_t i = 0; i < 8; ++i) {
+            const vec3f corner{at(), at(), at()};
+            children.push_back({corner, corner});
+            for (std::size_t k = 0; k < 3; ++k) others.lower[k][i] = others.upper[k][i] = at();
+        }
+        wide_node node{};
+        node.encode(children);
+        std::array<std::uint8_t, 64> pairs{};
+        for (std::uint8_t i = 0; i < 64; ++i) pairs[i] = i;
+        put_nearest_last(pairs.data(), pairs.size(), node, others);
+        double last = std::numeric_limits<double>::infinity();
+        std::uint64_t seen = 0;
+        for (const std::uint8_t p : pairs) {
+            seen |= std::uint64_t{1} << p;
+            double distance = 0;
+            const box child = node.child(p & 7U);
+            for (int k = 0; k < 3; ++k) {
+                const double way =
+                    (double{child.min[k]} + child.max[k]) / 2 - others.lower[static_cast<std::size_t>(k)][p >> 3U];
+                distance += way * way;
+            }
+            RC_ASSERT(distance <= last * (1 + 1e-4) + 1e-6);
+            last = distance;
+        }
+        RC_ASSERT(seen == ~std::uint64_t{0});
+    }));
+}
+
 TEST_CASE("a box of A that holds no more than the image of a vertex holds the vertex when taken back") {
     triangle_pairs::generator g{9};
     std::uniform_real_distribution<double> unit(-1, 1);
@@ -391,7 +464,9 @@ TEST_CASE("a box of A that holds no more than the image of a vertex holds the ve
             wide_node node{};
             node.encode(std::array{bounds_of(seen)});
             eight_boxes back{};
-            box_images(to_a.back_to_boxes(bounds_of(seen))).store(node, back);
+            box_images to_b;
+            to_b.begin(to_a.back_to_boxes(bounds_of(seen)));
+            to_b.store(node, back);
             bool holds = true;
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto axis = static_cast<int>(k);
