@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -6,6 +7,7 @@ module;
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Experiments as config files: which scenes, which compositions and engines, what to measure.
@@ -31,6 +33,22 @@ struct external_engine {
     bool exact = true;                 ///< a difference from the exact answer is a failure, not a measurement
 };
 
+/// What is asked of local detection, and timed.
+enum class question : std::uint8_t {
+    pairs,  ///< every pair of intersecting triangles
+    count,  ///< how many there are
+    first   ///< any one
+};
+inline constexpr std::array<std::string_view, 3> question_names{"pairs", "count", "first"};
+
+/// How the queries of a scene of meshes are timed.
+struct asking {
+    question ask = question::pairs;
+    bool cold = false;  ///< the processor's caches hold other things before each frame
+
+    friend bool operator==(const asking&, const asking&) = default;
+};
+
 /// A config with its lists multiplied out. All names, values and combinations in it are known to be good.
 struct experiment {
     std::string name;
@@ -44,6 +62,7 @@ struct experiment {
     std::vector<aabb::composition> compositions;  ///< scenes of boxes use the global search of each only
     std::size_t repeats = 9;
     std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
+    asking how;
     /// What rows hold beside the pairs and their digest; compute metrics later what they will.
     std::set<metric_group> recorded{metric_group::time, metric_group::counts, metric_group::bytes, metric_group::error};
     std::vector<std::string> shown;  ///< metrics that tables have columns of beside the usual ones

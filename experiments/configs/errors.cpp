@@ -163,7 +163,7 @@ experiment whole_of(const document& doc, const error_study& study, const std::st
     e.quick = size == experiment_size::quick;
     read_measure(doc, size, e);
     if (const node* measure = doc.root().find("measure"))
-        for (const char* key : {"processes", "metrics"})
+        for (const char* key : {"processes", "ask", "caches", "metrics"})
             if (const node* found = measure->find(key))
                 doc.fail(found->line, std::string("errors has no ") + key + "; run has");
     for (const error_curve& curve : study.curves)

@@ -12,7 +12,9 @@ module;
 #include <fstream>
 #include <ios>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -144,6 +146,37 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
     }
 }
 
+/// One of a few words.
+/// @returns its place among them
+std::size_t read_word(const document& doc, const char* key, const node& value,
+                      std::span<const std::string_view> known) {
+    if (value.kind != node_kind::text) doc.fail_type(key, value, "a word in quotes");
+    const auto found = std::ranges::find(known, value.text);
+    if (found == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, std::vector<std::string>(known.begin(), known.end())));
+    return static_cast<std::size_t>(found - known.begin());
+}
+
+/// What is asked, of scenes of meshes, and with which caches.
+void read_asking(const document& doc, experiment& e) {
+    const node* measure = doc.root().find("measure");
+    if (!measure) return;
+    if (const node* ask = measure->find("ask")) {
+        e.how.ask = static_cast<question>(read_word(doc, "ask", *ask, question_names));
+        const auto boxes = std::ranges::find_if(e.scenes, [](const scene_choice& scene) {
+            const auto info = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
+            return info != scene_kinds().end() && !info->has_meshes;
+        });
+        if (e.how.ask != question::pairs && boxes != e.scenes.end())
+            doc.fail(ask->line,
+                     "ask = \"" + ask->text + "\" is for scenes of meshes, and " + boxes->kind + " has none");
+    }
+    constexpr std::array<std::string_view, 2> states{"warm", "cold"};
+    if (const node* caches = measure->find("caches")) e.how.cold = read_word(doc, "caches", *caches, states) == 1;
+    if (e.how.ask == question::first) e.notes.emplace_back("asked for: any one contact of a frame");
+    if (e.how.ask == question::count) e.notes.emplace_back("asked for: the number of contacts of a frame");
+    if (e.how.cold) e.notes.emplace_back("before each frame is timed, the caches hold other things");
+}
+
 /// Fresh processes share the repeats, so there are at most as many.
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
@@ -166,7 +199,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
     doc.require_table("measure", *measure);
-    doc.require_keys(*measure, " of [measure]", {"repeats", "processes", "metrics", "quick"});
+    doc.require_keys(*measure, " of [measure]", {"repeats", "processes", "ask", "caches", "metrics", "quick"});
     const node* repeats = measure->find("repeats");
     if (repeats && !quick) e.repeats = doc.integer_of("repeats", *repeats, 1);
     if (e.repeats > most_repeats) doc.fail(repeats->line, "repeats must be at most " + std::to_string(most_repeats));
@@ -194,6 +227,7 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     read_measure(doc, size, e);
     read_processes(doc, e);
     read_scenes(doc, size, e);
+    read_asking(doc, e);
     // What stands under quick is checked now, not when somebody first asks for it.
     if (size == experiment_size::full) (void)parse_experiment(text, file, experiment_size::quick);
     return e;
@@ -226,6 +260,9 @@ std::string hash_of(const experiment& e) {
         for (const aabb::strategy_kind kind : aabb::strategy_kinds) all += to_text(c[kind]) + " + ";
     }
     for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
+    if (e.how != asking{})
+        all +=
+            "\n" + std::string(question_names[static_cast<std::size_t>(e.how.ask)]) + (e.how.cold ? " cold" : " warm");
     all += "\n" + e.content_digest;
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx",

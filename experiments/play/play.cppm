@@ -75,13 +75,14 @@ struct timing {
     elapsed first;
     elapsed update;
     elapsed search;
-    elapsed detect;
+    elapsed detect;  ///< of the query that is asked
     std::string digest;
+    std::string wrong;  ///< what was asked for and answered otherwise than by `digest`; empty where all was right
 };
 /// Of an external engine, what it says of itself, of wall time alone. The scene is told what the contender itself
 /// finds.
-[[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who);
-[[nodiscard]] timing time_scene(scene_play& scene, const contender& who);
+[[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who, const asking& how = {});
+[[nodiscard]] timing time_scene(scene_play& scene, const contender& who, const asking& how = {});
 
 /// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
 /// adds a row for each. What the folder has already is not played again; later processes take what the first one

@@ -178,12 +178,17 @@ std::optional<double> player::box_inflation() const {
     return sum / static_cast<double>(models);
 }
 
-void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each, std::size_t most) {
+elapsed detect_in(player& who) {
+    return elapsed_in([&] { who.detect(); });
+}
+
+void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each, std::size_t most,
+          const detecting& detect) {
     for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
         const elapsed update = elapsed_in([&] { who.update(); });
         const elapsed search = elapsed_in([&] { who.search(); });
-        const elapsed detect = elapsed_in([&] { who.detect(); });
-        const played_frame played{frame, update, search, detect, who.sorted_pairs(), who.sorted_contacts()};
+        const elapsed asked = detect(who);
+        const played_frame played{frame, update, search, asked, who.sorted_pairs(), who.sorted_contacts()};
         each(played);
         scene.tell(played.pairs, played.contacts);
     }

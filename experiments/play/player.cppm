@@ -148,10 +148,14 @@ struct played_frame {
     [[nodiscard]] double ms() const { return update.wall_ms + search.wall_ms + detect.wall_ms; }
 };
 
+/// Detects the contacts of a frame, and says how long the query took that is asked: the detection itself, or another.
+using detecting = std::function<elapsed(player&)>;
+[[nodiscard]] elapsed detect_in(player& who);
+
 /// Plays what is left of a scene, or so many frames of it. Each frame is handed over, then the scene is told what was
 /// found in it.
 void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each,
-          std::size_t most = std::numeric_limits<std::size_t>::max());
+          std::size_t most = std::numeric_limits<std::size_t>::max(), const detecting& detect = detect_in);
 
 /// Number and digest of what is found, frame by frame.
 class tally {

@@ -104,9 +104,9 @@ bool goes_its_own_way(const scene_choice& scene, const contender& who) {
 
 /// Times one repeat. The answer is compared again: what is timed is compiled apart from what counted its work.
 /// @returns what is wrong; empty when nothing is
-std::string time_into(const scene_choice& scene, timed_contender& timed) {
+std::string time_into(const scene_choice& scene, const asking& how, timed_contender& timed) {
     row& r = timed.result;
-    const timing times = time_scene(scene, *timed.who);
+    const timing times = time_scene(scene, *timed.who, how);
     const bool told = timed.who->told != nullptr;
     const auto take = [told](const elapsed& time, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
         wall_ms = time.wall_ms;
@@ -117,6 +117,10 @@ std::string time_into(const scene_choice& scene, timed_contender& timed) {
     take(times.update, r.update_ms, r.update_cpu_ms);
     take(times.search, r.search_ms, r.search_cpu_ms);
     take(times.detect, r.detect_ms, r.detect_cpu_ms);
+    if (!times.wrong.empty()) {
+        timed.strayed = true;
+        return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + times.wrong;
+    }
     if (times.digest == r.digest || goes_its_own_way(scene, *timed.who)) return {};
     timed.strayed = true;
     return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): timed, its digest is " +
@@ -179,7 +183,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
             turn.result.repeat = repeat;
             turn.result.process = process;
             if (turn.strayed || results.has(turn.result)) continue;
-            const std::string failure = e.records(metric_group::time) ? time_into(scene, turn) : std::string();
+            const std::string failure = e.records(metric_group::time) ? time_into(scene, e.how, turn) : std::string();
             if (failure.empty()) {
                 results.add(turn.result);
                 continue;

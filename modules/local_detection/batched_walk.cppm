@@ -173,6 +173,7 @@ private:
             const wide_node& of_b = nodes_b[node_b];
             auto [met, box_tests] = children_(of_a, of_b);
             counters_.add(work::box_tests, box_tests);
+            if (met == 0) continue;
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
             if (!opens_a) met = any_of_columns(met);
             if (!opens_b) met = any_of_rows(met);

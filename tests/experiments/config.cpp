@@ -167,6 +167,23 @@ TEST_CASE("The hash is of what a config says, not of how it is written") {
     REQUIRE(aabblab::hash_of(parsed("engines = [\"cgal\"]\n" + text)) != hash);
 }
 
+TEST_CASE("What is asked of meshes, and with which caches, is read, checked and part of the hash") {
+    const std::string meshes =
+        "name = \"m\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"icosphere:triangles=80\"]\nframes = 2\n";
+    REQUIRE(parsed(meshes).how == aabblab::asking{});
+    const experiment first = parsed(meshes + "[measure]\nask = \"first\"\ncaches = \"cold\"\n");
+    REQUIRE(first.how == aabblab::asking{aabblab::question::first, true});
+    REQUIRE(first.notes.size() == 2);
+    const std::string plain = aabblab::hash_of(parsed(meshes));
+    REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\nask = \"pairs\"\ncaches = \"warm\"\n")) == plain);
+    REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\nask = \"count\"\n")) != plain);
+    REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\ncaches = \"cold\"\n")) != plain);
+    REQUIRE(refusal_of(meshes + "[measure]\nask = \"frist\"\n")
+                .ends_with(":7: unknown ask 'frist'; did you mean 'first'?"));
+    REQUIRE(refusal_of(minimal + "[measure]\nask = \"first\"\n")
+                .ends_with("ask = \"first\" is for scenes of meshes, and brownian has none"));
+}
+
 TEST_CASE("A mesh file that changes makes another hash") {
     const temporary_folder folder;
     const auto hash_with = [&](const std::string& vertex) {

@@ -102,7 +102,58 @@ aabblab::stages local_only() {
     return {nullptr, aabb::compose_local_detection({}, aabb::instrumentation::none)};
 }
 
+/// Counts one contact too many, or says of the first one that it is in another triangle.
+class wrong_answers final : public aabb::local_stage {
+public:
+    std::uint32_t add_model(const aabb::mesh& m) override { return right_->add_model(m); }
+    void all_pairs(std::uint32_t a, const aabb::pose& pose_a, std::uint32_t b, const aabb::pose& pose_b,
+                   std::vector<aabb::index_pair>& pairs) override {
+        right_->all_pairs(a, pose_a, b, pose_b, pairs);
+    }
+    std::optional<aabb::index_pair> first_pair(std::uint32_t a, const aabb::pose& pose_a, std::uint32_t b,
+                                               const aabb::pose& pose_b) override {
+        auto found = right_->first_pair(a, pose_a, b, pose_b);
+        if (found) found->b += 1000;
+        return found;
+    }
+    std::uint64_t count_pairs(std::uint32_t a, const aabb::pose& pose_a, std::uint32_t b,
+                              const aabb::pose& pose_b) override {
+        return right_->count_pairs(a, pose_a, b, pose_b) + 1;
+    }
+    void self_pairs(std::uint32_t model, std::vector<aabb::index_pair>& pairs) override {
+        right_->self_pairs(model, pairs);
+    }
+    void refit(std::uint32_t model) override { right_->refit(model); }
+    std::optional<aabb::tree_survey> survey(std::uint32_t model) const override { return right_->survey(model); }
+    aabb::work_counters counters() const override { return right_->counters(); }
+    std::vector<aabb::part_bytes> bytes() const override { return right_->bytes(); }
+    std::vector<std::string> left_out() const override { return right_->left_out(); }
+
+private:
+    std::unique_ptr<aabb::local_stage> right_ = aabb::compose_local_detection({}, aabb::instrumentation::none);
+};
+
 }  // namespace
+
+TEST_CASE("What is asked is answered by each contender, and a wrong answer is told") {
+    const aabblab::scene_choice choice{"mesh_pair", {{"frames", "3"}}, {"icosphere:triangles=320"}, 1};
+    const std::vector<contender> contenders = exact_contenders(true);
+    for (const aabblab::question ask : {aabblab::question::count, aabblab::question::first})
+        for (const bool cold : {false, true}) {
+            std::string digest;
+            for (const contender& who : contenders) {
+                const aabblab::timing times = aabblab::time_scene(choice, who, {ask, cold});
+                INFO(aabblab::text_of(who.name) << ": " << times.wrong);
+                CHECK(times.wrong.empty());
+                CHECK(times.detect.wall_ms > 0);
+                if (digest.empty()) digest = times.digest;
+                CHECK(times.digest == digest);
+            }
+            contender wrong = contenders[0];
+            wrong.make_local = [](aabb::instrumentation) { return std::make_unique<wrong_answers>(); };
+            CHECK_FALSE(aabblab::time_scene(choice, wrong, {ask, cold}).wrong.empty());
+        }
+}
 
 TEST_CASE("A scene that reacts to contacts shows every contender the same frames, validated and timed") {
     for (const bool meshes : {true, false}) {
