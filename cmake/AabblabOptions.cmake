@@ -13,6 +13,9 @@ set(aabblab_options
     -ffp-contract=off)
 if(AABBLAB_NATIVE)
     list(APPEND aabblab_options -march=native)
+else()
+    # Vectors of the compiler's are handed over within what one set of options compiles, so that their ABI is the same.
+    list(APPEND aabblab_options -Wno-psabi)
 endif()
 add_compile_options("$<BUILD_INTERFACE:${aabblab_options}>")
 add_link_options(-Wl,--gc-sections)
