@@ -44,7 +44,7 @@ inline constexpr std::array<std::string_view, 3> question_names{"pairs", "count"
 /// How the queries of a scene of meshes are timed.
 struct asking {
     question ask = question::pairs;
-    bool cold = false;  ///< the processor's caches hold other things before each frame
+    bool cold = false;  ///< the processor's caches hold other things before each query
 
     friend bool operator==(const asking&, const asking&) = default;
 };

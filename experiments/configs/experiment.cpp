@@ -152,7 +152,8 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
                       std::span<const std::string_view> known) {
     if (value.kind != node_kind::text) doc.fail_type(key, value, "a word in quotes");
     const auto found = std::ranges::find(known, value.text);
-    if (found == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, std::vector<std::string>(known.begin(), known.end())));
+    const std::vector<std::string> names(known.begin(), known.end());
+    if (found == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, names));
     return static_cast<std::size_t>(found - known.begin());
 }
 
@@ -160,21 +161,24 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
 void read_asking(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
+    const auto require_meshes = [&](const char* key, const node& value) {
+        const auto boxes = std::ranges::find_if_not(e.scenes, has_meshes);
+        if (boxes == e.scenes.end()) return;
+        doc.fail(value.line, std::string(key) + " = \"" + value.text + "\" is for scenes of meshes, and " +
+                                 boxes->kind + " has none");
+    };
     if (const node* ask = measure->find("ask")) {
         e.how.ask = static_cast<question>(read_word(doc, "ask", *ask, question_names));
-        const auto boxes = std::ranges::find_if(e.scenes, [](const scene_choice& scene) {
-            const auto info = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
-            return info != scene_kinds().end() && !info->has_meshes;
-        });
-        if (e.how.ask != question::pairs && boxes != e.scenes.end())
-            doc.fail(ask->line,
-                     "ask = \"" + ask->text + "\" is for scenes of meshes, and " + boxes->kind + " has none");
+        if (e.how.ask != question::pairs) require_meshes("ask", *ask);
     }
     constexpr std::array<std::string_view, 2> states{"warm", "cold"};
-    if (const node* caches = measure->find("caches")) e.how.cold = read_word(doc, "caches", *caches, states) == 1;
+    if (const node* caches = measure->find("caches")) {
+        e.how.cold = read_word(doc, "caches", *caches, states) == 1;
+        if (e.how.cold) require_meshes("caches", *caches);
+    }
     if (e.how.ask == question::first) e.notes.emplace_back("asked for: any one contact of a frame");
     if (e.how.ask == question::count) e.notes.emplace_back("asked for: the number of contacts of a frame");
-    if (e.how.cold) e.notes.emplace_back("before each frame is timed, the caches hold other things");
+    if (e.how.cold) e.notes.emplace_back("before each query the caches hold other things");
 }
 
 /// Fresh processes share the repeats, so there are at most as many.

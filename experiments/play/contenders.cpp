@@ -77,11 +77,6 @@ contender contender_of(const external_engine& engine, const std::shared_ptr<exch
 
 }  // namespace
 
-bool has_meshes(const scene_choice& scene) {
-    const auto info = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
-    return info != scene_kinds().end() && info->has_meshes;
-}
-
 std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
     std::vector<contender> all;

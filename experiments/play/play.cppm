@@ -25,8 +25,6 @@ export namespace aabblab {
 /// "insertion + none + one_axis + canonical + exact", "cgal".
 [[nodiscard]] std::string text_of(const contender_name& name);
 
-[[nodiscard]] bool has_meshes(const scene_choice& scene);
-
 [[nodiscard]] contender contender_of(const aabb::composition& c, bool meshes);
 /// An engine that does one stage only gets the default composition for the other; empty for one that has no part in the
 /// scene.

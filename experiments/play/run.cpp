@@ -117,14 +117,12 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_conten
     take(times.update, r.update_ms, r.update_cpu_ms);
     take(times.search, r.search_ms, r.search_cpu_ms);
     take(times.detect, r.detect_ms, r.detect_cpu_ms);
-    if (!times.wrong.empty()) {
-        timed.strayed = true;
-        return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + times.wrong;
-    }
-    if (times.digest == r.digest || goes_its_own_way(scene, *timed.who)) return {};
+    std::string wrong = times.wrong;
+    if (wrong.empty() && times.digest != r.digest && !goes_its_own_way(scene, *timed.who))
+        wrong = "timed, its digest is " + times.digest + ", validated it was " + r.digest;
+    if (wrong.empty()) return {};
     timed.strayed = true;
-    return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): timed, its digest is " +
-           times.digest + ", validated it was " + r.digest;
+    return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + wrong;
 }
 
 /// Who is ready to be timed, and what is wrong with the others.

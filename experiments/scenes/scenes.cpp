@@ -38,6 +38,11 @@ std::span<const scene_info> scene_kinds() {
     return infos;
 }
 
+bool has_meshes(const scene_choice& scene) {
+    const auto info = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
+    return info != scene_kinds().end() && info->has_meshes;
+}
+
 std::vector<std::string> scene_names() {
     std::vector<std::string> names;
     for (const scene_kind& k : kinds()) names.push_back(k.info.name);

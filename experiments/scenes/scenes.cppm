@@ -21,6 +21,7 @@ export import :spacing;
 export namespace aabblab {
 
 [[nodiscard]] std::span<const scene_info> scene_kinds();
+[[nodiscard]] bool has_meshes(const scene_choice& scene);
 [[nodiscard]] std::vector<std::string> scene_names();
 
 /// @throws aabb::input_error on an unknown kind, parameter or value, on meshes for a scene of boxes, on a seed where

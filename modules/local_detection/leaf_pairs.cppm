@@ -43,7 +43,8 @@ public:
     }
 
     /// Hands over, in order, those pairs of leaves whose triangles may meet: their boxes do, and those of B reach into
-    /// the slab of A's leaf. One test is made of many pairs before the next, so that the processor need not guess.
+    /// the slab of A's leaf. One test is made of many pairs before the next, so that the processor need not guess,
+    /// and writes a list of its own, so that nothing read waits for what was just written.
     /// @param take called with the place of a pair, its leaves and, bit 8 j + i for triangle i of A's leaf and j of
     /// B's, the pairs of triangles; returns whether to stop
     template <class Counters, class Take>
@@ -59,6 +60,7 @@ public:
                 ++end;
             read(a, of_a_, [](leaf_of_a& leaf, const auto&... from) { leaf.block.load(from...); });
             read(b, of_b_, [&](read_leaf& leaf, const auto&... from) { leaf.block.load(from..., to_a); });
+            counters.add(work::box_tests, end - begin);
             std::size_t near = 0;
             for (; begin < end; ++begin) {
                 near_[near] = begin;

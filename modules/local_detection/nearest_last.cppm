@@ -1,11 +1,9 @@
 module;
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <span>
 
 export module aabb.local_detection:nearest_last;
 

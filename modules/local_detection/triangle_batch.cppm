@@ -110,7 +110,7 @@ private:
     std::size_t leaf_pairs_ = 0;
     alignas(64) corners a_{};
     alignas(64) corners b_{};
-    std::array<std::uint32_t, capacity + simd::width> origin_{};  // place among leaf pairs, then 8 j + i
+    std::array<std::uint32_t, capacity + triangle_block::width> origin_{};  // place among leaf pairs, then 8 j + i
     std::array<std::array<std::uint32_t, 2>, capacity> leaves_{};
     std::array<std::uint32_t, capacity + simd::width> found_{};  // origins of those that intersect
 };

@@ -180,6 +180,8 @@ TEST_CASE("What is asked of meshes, and with which caches, is read, checked and 
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\ncaches = \"cold\"\n")) != plain);
     REQUIRE(refusal_of(meshes + "[measure]\nask = \"frist\"\n")
                 .ends_with(":7: unknown ask 'frist'; did you mean 'first'?"));
+    REQUIRE(refusal_of(minimal + "[measure]\ncaches = \"cold\"\n")
+                .ends_with("caches = \"cold\" is for scenes of meshes, and brownian has none"));
     REQUIRE(refusal_of(minimal + "[measure]\nask = \"first\"\n")
                 .ends_with("ask = \"first\" is for scenes of meshes, and brownian has none"));
 }
