@@ -1,9 +1,12 @@
 module;
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,7 +19,14 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
+import aabb.prepare.grown_boxes;
+import aabb.prepare.list_plan;
 import aabb.prepare.mean_extent;
+import aabb.prepare.relative_motion;
+import aabb.prepare.rest_watch;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
 
@@ -40,12 +50,26 @@ public:
     void search(std::vector<index_pair>& pairs) override;
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
-    [[nodiscard]] std::vector<std::string> left_out() const override { return search_->left_out(); }
+    [[nodiscard]] std::vector<std::string> left_out() const override;
 
 private:
-    [[nodiscard]] bool is_due(std::span<const box> boxes) const;
-    void grow(std::span<const box> boxes);
-    void refresh(std::span<const box> boxes);
+    /// Where the pairs of a frame come from.
+    enum class source : std::uint8_t {
+        list,   ///< which may hold others too
+        whole,  ///< the list, which is of these very boxes
+        search  ///< of these boxes, of which nothing is kept
+    };
+
+    [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
+    [[nodiscard]] bool rests(std::span<const box> boxes);
+    [[nodiscard]] bool serves(std::span<const box> boxes);
+    [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
+    [[nodiscard]] list_outlook outlook(std::span<const box> boxes) const;
+    void keep(std::span<const box> boxes, double margin);
+
+    /// How many frames are searched as they are, at most, until one is kept again to see how boxes move.
+    static constexpr unsigned longest_pause = 7;
+    static constexpr std::size_t longest_history = 256;
 
     std::unique_ptr<global_stage> search_;
     neighbour_list_prepare::config config_;
@@ -54,43 +78,97 @@ private:
     membership objects_;
     frame_state frame_;
     std::span<const box> boxes_;
-    std::vector<box> grown_;        // of the last search
+    source from_ = source::search;
+    std::vector<box> kept_;         // boxes of the last search that was kept
+    std::vector<box> grown_;        // the same with their margin
     std::vector<index_pair> list_;  // that it found, less the pairs of objects that have left
-    bool is_listed_ = false;        // false where a search failed, or there was none
-    std::uint32_t age_ = 0;         // frames since
+    bool is_kept_ = false;          // false where that search failed, or there was none
+    bool is_too_long_ = false;      // so that a search takes less time
+    double margin_ = 0;
+    std::vector<double> motion_;  // since then, frame by frame
+    std::uint32_t age_ = 0;       // frames since
+    std::size_t found_ = 0;       // pairs of the frame before
+    double foreseen_ = 0;         // pairs of the list beside those that overlap, as they were reckoned
+    double correction_ = 1;       // of that
+    rest_watch rest_;
+    bool came_to_rest_ = false;
+    unsigned pause_ = 0;  // frames that are searched as they are after the next list that does not pay
+    unsigned left_ = 0;   // of them
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
     frame_.begin();
     require_ieee_arithmetic();
     objects_.require_boxes_for_all(boxes.size());
-    require_valid(boxes);
     boxes_ = boxes;
-    ++age_;
     const bool comes_any = !objects_.arrivals().empty();
     const bool leaves_any = objects_.any_departures();
     frame_.change([&] { objects_.settle(); });
-    if (!is_listed_ || comes_any || boxes.size() != grown_.size() || is_due(boxes))
-        refresh(boxes);
-    else if (leaves_any)
-        std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
+    if (left_ > 0) {
+        --left_;
+        search_->update(boxes);
+    } else {
+        if (is_kept_ && !comes_any && !leaves_any && rests(boxes)) {
+            frame_.taken();
+            return;
+        }
+        require_valid(boxes);
+        if (is_kept_ && !is_too_long_ && !comes_any && boxes.size() == kept_.size() && serves(boxes)) {
+            if (leaves_any)
+                std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
+        } else if (const std::optional<double> margin = next_margin(boxes)) {
+            keep(boxes, *margin);
+        } else {
+            is_kept_ = false;
+            from_ = source::search;
+            search_->update(boxes);
+        }
+    }
     frame_.taken();
+}
+
+/// The least and the greatest numbers of a box on all three axes, each with a fourth one of no account.
+using corner = float __attribute__((vector_size(16)));
+[[nodiscard, gnu::always_inline]] inline corner lower_of(const box& b) noexcept {
+    corner v;
+    std::memcpy(&v, &b, sizeof v);
+    return v;
+}
+[[nodiscard, gnu::always_inline]] inline corner upper_of(const box& b) noexcept {
+    corner v;
+    std::memcpy(&v, reinterpret_cast<const char*>(&b) + sizeof(box) - sizeof v, sizeof v);
+    return __builtin_shufflevector(v, v, 1, 2, 3, 0);
+}
+
+/// As `overlaps`, on three axes at a time.
+[[nodiscard, gnu::always_inline]] inline bool meet(const box& a, const box& b) noexcept {
+    using bools = bool __attribute__((ext_vector_type(4)));
+    const auto held = (lower_of(a) <= upper_of(b)) & (lower_of(b) <= upper_of(a));
+    return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
 }
 
 void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
     frame_.require_taken();
     require_ieee_arithmetic();
-    if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-    append_whole(pairs, [&] {
-        // Written without a branch, since which pairs of the list overlap cannot be predicted.
-        std::size_t end = pairs.size();
-        pairs.resize(end + list_.size());
-        for (const index_pair pair : list_) {
-            pairs[end] = pair;
-            end += static_cast<std::size_t>(overlaps(boxes_[pair.a], boxes_[pair.b]));
-        }
-        pairs.resize(end);
-    });
+    const std::size_t before = pairs.size();
+    if (from_ == source::search) {
+        search_->search(pairs);
+    } else if (from_ == source::whole) {
+        pairs.insert(pairs.end(), list_.begin(), list_.end());
+    } else {
+        if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
+        append_whole(pairs, [&] {
+            // Written without a branch, since which pairs of the list overlap cannot be predicted.
+            std::size_t end = pairs.size();
+            pairs.resize(end + list_.size());
+            for (const index_pair pair : list_) {
+                pairs[end] = pair;
+                end += static_cast<std::size_t>(meet(boxes_[pair.a], boxes_[pair.b]));
+            }
+            pairs.resize(end);
+        });
+    }
+    found_ = pairs.size() - before;
 }
 
 work_counters neighbour_list_stage::counters() const {
@@ -101,37 +179,88 @@ work_counters neighbour_list_stage::counters() const {
 
 std::vector<part_bytes> neighbour_list_stage::bytes() const {
     std::vector<part_bytes> parts = search_->bytes();
-    parts.push_back({"prepare", bytes_of(objects_) + bytes_of(grown_) + bytes_of(list_)});
+    parts.push_back(
+        {"prepare", bytes_of(objects_) + bytes_of(kept_) + bytes_of(grown_) + bytes_of(list_) + bytes_of(motion_)});
     return parts;
 }
 
-bool neighbour_list_stage::is_due(std::span<const box> boxes) const {
-    if (config_.every > 0) return age_ >= config_.every;
-    for (std::uint32_t id = 0; id < boxes.size(); ++id)
-        if (objects_.contains(id) && !contains(grown_[id], boxes[id])) return true;
-    return false;
+std::vector<std::string> neighbour_list_stage::left_out() const {
+    std::vector<std::string> absent = search_->left_out();
+    if (from_ == source::search) absent.emplace_back("no list of neighbours: boxes move too far for one to pay");
+    return absent;
 }
 
-/// A grown box holds its own, whatever rounding does: floats are rounded to themselves, and rounding keeps order.
-void neighbour_list_stage::grow(std::span<const box> boxes) {
-    constexpr double most = std::numeric_limits<float>::max();
-    const double margin = mean_extents(config_.margin, boxes, objects_);
-    grown_.resize(boxes.size());
-    for (std::size_t id = 0; id < boxes.size(); ++id)
-        for (int k = 0; k < 3; ++k) {
-            grown_[id].min[k] = static_cast<float>(std::max(double{boxes[id].min[k]} - margin, -most));
-            grown_[id].max[k] = static_cast<float>(std::min(double{boxes[id].max[k]} + margin, most));
-        }
+/// Whether nothing has moved since a search of boxes as they were, so that the list is the answer.
+bool neighbour_list_stage::rests(std::span<const box> boxes) {
+    if (!adapts() || margin_ > 0 || boxes.size() != kept_.size() ||
+        std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) != 0)
+        return false;
+    motion_.clear();
+    from_ = source::whole;
+    return true;
 }
 
-void neighbour_list_stage::refresh(std::span<const box> boxes) {
-    is_listed_ = false;
-    grow(boxes);
-    search_->update(grown_);
+/// Whether every pair of the frame is in the list.
+bool neighbour_list_stage::serves(std::span<const box> boxes) {
+    ++age_;
+    from_ = source::list;
+    if (config_.every > 0 && config_.margin) return age_ < config_.every;
+    const relative_motion moved = motion_between(kept_, boxes, objects_);
+    if (motion_.size() < longest_history) motion_.push_back(moved.margin);
+    if (!moved.any && margin_ == 0) from_ = source::whole;
+    if (config_.every > 0) return age_ < config_.every;
+    came_to_rest_ = adapts() && moved.any && rest_.came_to_rest(boxes, moved.margin);
+    return moved.margin <= margin_ && !came_to_rest_;
+}
+
+/// The margin of the list that is to be kept now; none where none pays. A first frame is kept as it is, to see how
+/// boxes move, and one of boxes that came to rest, to be the answer until they move.
+std::optional<double> neighbour_list_stage::next_margin(std::span<const box> boxes) {
+    foreseen_ = 0;
+    if (config_.margin) return mean_extents(*config_.margin, boxes, objects_);
+    if (!is_kept_ || std::exchange(came_to_rest_, false)) return 0;
+    if (config_.every > 0) return motion_.empty() ? 0 : margin_after(motion_, config_.every - 1);
+    const list_outlook seen = outlook(boxes);
+    const list_plan plan = plan_list(seen);
+    if (plan.frames > 1) {
+        pause_ = 0;
+        foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
+        return plan.margin;
+    }
+    pause_ = std::min(2 * pause_ + 1, longest_pause);
+    left_ = pause_ - 1;
+    return std::nullopt;
+}
+
+list_outlook neighbour_list_stage::outlook(std::span<const box> boxes) const {
+    std::array<box, 32> some;
+    std::size_t count = 0;
+    const std::size_t step = (boxes.size() + some.size() - 1) / some.size();
+    for (std::size_t i = 0; i < boxes.size(); i += step)
+        if (objects_.contains(static_cast<std::uint32_t>(i))) some[count++] = boxes[i];
+    return {motion_, objects_.size(), found_, growth_of_pairs(std::span(some).first(count)), correction_};
+}
+
+void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
+    is_kept_ = false;
+    kept_.assign(boxes.begin(), boxes.end());
+    if (margin > 0) {
+        grown_.resize(boxes.size());
+        grow(boxes, margin, grown_);
+    }
+    search_->update(margin > 0 ? std::span<const box>(grown_) : boxes);
     list_.clear();
     search_->search(list_);
-    is_listed_ = true;
+    if (foreseen_ > 0) {
+        const double beside = static_cast<double>(list_.size()) - static_cast<double>(found_);
+        correction_ = std::clamp(correction_ * beside / foreseen_, 0.01, 1000.0);
+    }
+    margin_ = margin;
+    is_too_long_ = foreseen_ > 0 && !pays(objects_.size(), found_, list_.size());
+    motion_.clear();
     age_ = 0;
+    is_kept_ = true;
+    from_ = margin > 0 ? source::list : source::whole;
 }
 
 }  // namespace

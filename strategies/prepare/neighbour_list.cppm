@@ -2,6 +2,7 @@ module;
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
@@ -12,19 +13,24 @@ import aabb.policy;
 
 export namespace aabb {
 
-/// Boxes are searched grown by a margin, and the pairs found are kept as a list. While every object's box stays in its
-/// grown one, each pair that overlaps is in the list, so that a frame takes one test a listed pair and no search
-/// (Verlet, "Computer 'experiments' on classical fluids", 1967). An object that comes makes a search too.
+/// Boxes are searched grown by a margin, and the pairs found are kept as a list. While no box has moved by more than
+/// the margin relative to the others, each pair that overlaps is in the list, so that a frame takes one test a listed
+/// pair and no search (Verlet, "Computer 'experiments' on classical fluids", 1967). What all move alike is no motion.
+/// An object that comes makes a search too.
+///
+/// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one;
+/// where no list pays, frames are searched as they are, and every eighth looks again.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
 /// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
-/// objects move by little a frame; `every` only to see what stale lists cost.
+/// objects move by little a frame, or might; `every` only to see what stale lists cost.
 struct neighbour_list_prepare {
     static constexpr std::string_view name = "neighbour_list";
-    static constexpr std::string_view summary = "pairs of boxes grown by a margin, kept until an object leaves its own";
+    static constexpr std::string_view summary =
+        "pairs of boxes grown by a margin, kept until boxes have moved by more than that";
 
     struct config {
-        double margin = 0.1;
+        std::optional<double> margin;
         std::uint32_t every = 0;
 
         /// Lists of an earlier frame may lack a pair of this one.
@@ -32,9 +38,10 @@ struct neighbour_list_prepare {
     };
     static constexpr std::tuple parameters{
         number_parameter{"margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
-                         "by which boxes are grown on every side, in mean extents", true},
+                         "by which boxes are grown on every side, in mean extents; auto: as it pays, list by list",
+                         true},
         integer_parameter{"every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
-                          "frames from one search to the next, inexact above 1; 0: when an object leaves its margin"}};
+                          "frames from one search to the next, inexact above 1; 0: when boxes have moved too far"}};
 
     neighbour_list_prepare() = default;
     explicit neighbour_list_prepare(const config& c) : config_(c) {}

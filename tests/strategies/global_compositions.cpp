@@ -179,8 +179,8 @@ TEST_CASE("counted compositions do the same and say what they did") {
                 std::vector<box> moved = boxes;
                 for (std::uint32_t id = 0; id < boxes.size(); ++id)
                     for (int k = 0; k < 3; ++k) {
-                        // Further than any margin.
-                        const auto way = static_cast<float>(frame) * (20.5F + static_cast<float>(id % 3));
+                        // Apart from each other by more than any margin.
+                        const auto way = static_cast<float>(frame) * (0.5F + 20 * static_cast<float>(id % 3));
                         moved[id].min[k] += way;
                         moved[id].max[k] += way;
                     }

@@ -60,6 +60,74 @@ TEST_CASE("a neighbour list is searched for again when an object leaves its grow
     CHECK(cells() > second);
 }
 
+TEST_CASE("a neighbour list serves boxes that move alike, however far, and is exact whatever rounding does") {
+    std::size_t served = 0;
+    REQUIRE(rc::check([&] {
+        const std::string margin = *rc::gen::element("auto", "0", "0.01", "0.3");
+        const auto n = *rc::gen::inRange<std::size_t>(1, 60);
+        const auto counted = stage_of(listing(margin, "0"), n);
+        const auto exact = stage_of({}, n);
+        // Coordinates that lose some bits of what is added to them, and some that lose none.
+        const float origin = *rc::gen::element(0.0F, 1e3F, 1e6F);
+        const float drift = *rc::gen::element(0.0F, 0.37F, 1e3F);
+        const int unrest = *rc::gen::element(0, 1, 40);
+        std::vector<box> boxes(n);
+        std::vector<vec3f> ways(n);
+        for (std::size_t id = 0; id < n; ++id)
+            for (int k = 0; k < 3; ++k) {
+                boxes[id].min[k] = origin + static_cast<float>(*rc::gen::inRange(0, 300)) / 100;
+                boxes[id].max[k] = boxes[id].min[k] + static_cast<float>(*rc::gen::inRange(0, 100)) / 100;
+                // All the way or none, so that some come upon each other as fast as any may.
+                ways[id][k] = drift + static_cast<float>(unrest * *rc::gen::element(-1, 0, 1)) / 1000;
+            }
+        for (int frame = 0; frame < 12; ++frame) {
+            for (std::size_t id = 0; id < n; ++id)
+                for (int k = 0; k < 3; ++k) {
+                    boxes[id].min[k] += ways[id][k];
+                    boxes[id].max[k] = std::max(boxes[id].min[k], boxes[id].max[k] + ways[id][k]);
+                }
+            const std::uint64_t before = counted->counters()[work::moves];
+            RC_ASSERT(pairs_of(*counted, boxes) == pairs_of(*exact, boxes));
+            served += drift > 0 && counted->counters()[work::moves] == before;
+        }
+    }));
+    CHECK(served > 100);
+}
+
+TEST_CASE("without a margin of its own a list is kept where it pays, and nothing where it does not") {
+    const auto plain = stage_of({}, 1000);
+    const auto listed = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 1000);
+    std::vector<box> boxes;
+    for (std::size_t i = 0; i < 1000; ++i)
+        boxes.push_back(
+            {{static_cast<float>(i % 10) * 1.5F, static_cast<float>(i / 10 % 10) * 1.5F, static_cast<float>(i / 100)},
+             {static_cast<float>(i % 10) * 1.5F + 1, static_cast<float>(i / 10 % 10) * 1.5F + 1,
+              static_cast<float>(i / 100) + 1}});
+    // How often boxes are brought to their places while each moves by so much along x, some there and some back.
+    std::uint32_t frame = 0;
+    const auto searches = [&](float way) {
+        std::uint64_t found = 0;
+        for (int i = 0; i < 16; ++i, ++frame) {
+            for (std::size_t id = 0; id < boxes.size(); ++id) {
+                const float by = id % 2 == 0 ? way : -way;
+                boxes[id].min[0] += frame / 16 % 2 == 0 ? by : -by;
+                boxes[id].max[0] += frame / 16 % 2 == 0 ? by : -by;
+            }
+            const std::uint64_t before = listed->counters()[work::moves];
+            REQUIRE(pairs_of(*listed, boxes) == pairs_of(*plain, boxes));
+            found += listed->counters()[work::moves] > before;
+        }
+        return found;
+    };
+    CHECK(searches(0.001F) <= 4);
+    CHECK(searches(0.001F) <= 2);
+    CHECK(searches(0.4F) >= 13);
+    CHECK(searches(0.4F) == 16);
+    CHECK(searches(0.0005F) <= 10);
+    CHECK(searches(0) <= 2);
+    CHECK(searches(0) == 0);
+}
+
 TEST_CASE("a stale list misses pairs until its search comes round, and invents none") {
     bool missed_any = false;
     REQUIRE(rc::check([&] {
@@ -99,9 +167,10 @@ TEST_CASE("a neighbour list goes on after a frame that its search refuses") {
     CHECK(pairs_of(*stage, boxes).size() == 1);
 }
 
-TEST_CASE("the margin is a number of at least 0") {
+TEST_CASE("the margin is a number of at least 0, or auto") {
     for (const std::string text : {"", "-1", "nan", "inf", "2x"})
-        CHECK_THROWS_MATCHES(require_known(strategy_kind::prepare, {"neighbour_list", {{"margin", text}}}), input_error,
-                             Message("neighbour_list: margin must be a number of at least 0, not '" + text + "'"));
+        CHECK_THROWS_MATCHES(
+            require_known(strategy_kind::prepare, {"neighbour_list", {{"margin", text}}}), input_error,
+            Message("neighbour_list: margin must be a number of at least 0 or auto, not '" + text + "'"));
     CHECK_NOTHROW(require_known(strategy_kind::prepare, {"neighbour_list", {{"margin", "0"}}}));
 }

@@ -1,0 +1,109 @@
+module;
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+
+export module aabb.prepare.relative_motion;
+
+import aabb.geometry;
+import aabb.global_search;
+import aabb.simd;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+namespace aabb::detail {
+
+/// The farthest that lower planes moved down, by its sign, and upper planes up; and whether any plane moved at all.
+struct plane_motion {
+    vec3f least{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
+                std::numeric_limits<float>::max()};
+    vec3f most{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
+               std::numeric_limits<float>::lowest()};
+    bool any = false;
+
+    void take(const box& from, const box& to) noexcept {
+        for (int k = 0; k < 3; ++k) {
+            least[k] = std::min(least[k], to.min[k] - from.min[k]);
+            most[k] = std::max(most[k], to.max[k] - from.max[k]);
+        }
+        any |= from != to;
+    }
+};
+
+/// Boxes lie in memory as rows of six numbers; three vectors hold whole rows, whatever their width.
+[[nodiscard]] inline plane_motion motion_of_all(std::span<const box> from, std::span<const box> to) noexcept {
+    constexpr std::size_t block = simd::width / 2;
+    plane_motion motion;
+    const std::size_t whole = to.size() / block * block;
+    if (whole > 0) {
+        const auto moved = [&](std::size_t row, std::size_t v) {
+            simd::floats a;
+            simd::floats b;
+            const std::size_t at = row * sizeof(box) + v * sizeof a;
+            std::memcpy(&a, reinterpret_cast<const char*>(from.data()) + at, sizeof a);
+            std::memcpy(&b, reinterpret_cast<const char*>(to.data()) + at, sizeof b);
+            return b - a;
+        };
+        simd::floats least[3];
+        simd::floats most[3];
+        for (std::size_t v = 0; v < 3; ++v) least[v] = most[v] = moved(0, v);
+        for (std::size_t row = block; row < whole; row += block)
+            for (std::size_t v = 0; v < 3; ++v) {
+                const simd::floats d = moved(row, v);
+                least[v] = d < least[v] ? d : least[v];
+                most[v] = d > most[v] ? d : most[v];
+            }
+        for (std::size_t i = 0; i < 3 * simd::width; ++i) {
+            const std::size_t column = i % 6;
+            const auto k = static_cast<int>(column % 3);
+            const std::size_t v = i / simd::width;
+            const std::size_t lane = i % simd::width;
+            motion.any |= least[v][lane] != 0 || most[v][lane] != 0;
+            if (column < 3)
+                motion.least[k] = std::min(motion.least[k], least[v][lane]);
+            else
+                motion.most[k] = std::max(motion.most[k], most[v][lane]);
+        }
+    }
+    for (std::size_t i = whole; i < to.size(); ++i) motion.take(from[i], to[i]);
+    return motion;
+}
+
+}  // namespace aabb::detail
+
+export namespace aabb {
+
+struct relative_motion {
+    double margin;  ///< see `motion_between`
+    bool any;       ///< whether anything moved, though it were all alike
+};
+
+/// By how much the boxes of the objects that are present moved beyond what all moved alike: the least margin by which
+/// the earlier ones, grown on every side and shifted together, hold the later ones. What moves as one, as in free fall,
+/// does not move. Never less than the exact margin: each difference is off by half a unit in its last place at most.
+///
+/// Where later boxes lie in the earlier ones so grown and shifted, two that overlap now overlapped when grown.
+/// @param from, to valid boxes by id, as many of one as of the other
+[[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to,
+                                                    const membership& objects) noexcept {
+    detail::plane_motion motion;
+    if (objects.size() == to.size())
+        motion = detail::motion_of_all(from, to);
+    else
+        for (std::uint32_t id = 0; id < to.size(); ++id)
+            if (objects.contains(id)) motion.take(from[id], to[id]);
+    double margin = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double most = motion.most[k];
+        const double least = motion.least[k];
+        margin = std::max(margin, (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2);
+    }
+    return {margin, motion.any};
+}
+
+}  // namespace aabb
