@@ -61,7 +61,7 @@ function(aabblab_each result format separator)
     set(${result} "${all}" PARENT_SCOPE)
 endfunction()
 
-# aabblab_registry(): the module aabb.registry over all declared kinds and strategies. Its interface names no strategy;
+# aabblab_registry(): the modules aabb.registry, over all declared kinds and strategies, and aabb.selection. The first's interface names no strategy;
 # generated implementation units do, one for each strategy of a stage's first kind, so that a changed strategy rebuilds
 # few of them.
 function(aabblab_registry)
@@ -118,7 +118,8 @@ function(aabblab_registry)
                      registry/composed.cppm
                      registry/composed_global_search.cppm
                      registry/composed_local_detection.cppm
+                     selection/selection.cppm
                      ${to}/kinds.cppm
-        PRIVATE registry/registry.cpp ${to}/catalog.cpp ${units})
+        PRIVATE registry/registry.cpp selection/selection.cpp ${to}/catalog.cpp ${units})
     target_link_libraries(aabblab_registry PUBLIC aabblab_core PRIVATE aabblab_strategies)
 endfunction()

@@ -27,6 +27,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
 import aabblab.pair_output;
 import aabblab.play;
@@ -70,7 +71,7 @@ struct detection_result {
     std::optional<double> bytes_per_triangle;  ///< of the trees; none for an engine that does not say
 };
 
-detection_method method_of(const collide_request& request) {
+detection_method method_of(const collide_request& request, const scene_play& scene) {
     if (request.engine) {
         if (request.local.any())
             throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it alone");
@@ -78,7 +79,7 @@ detection_method method_of(const collide_request& request) {
     }
     aabb::named_strategies named;
     request.local.add_to(named);
-    const aabb::composition composition(named);
+    const aabb::composition composition = composed_of(select_strategies(named, outlook_of(scene)));
     detection_method method{aabb::to_text(composition, aabb::stage::local_detection),
                             aabb::is_exact(composition, aabb::stage::local_detection),
                             aabb::compose_local_detection(composition, aabb::instrumentation::none),
@@ -304,7 +305,6 @@ void require_sense(const collide_request& request) {
 
 void collide(const collide_request& request) {
     require_sense(request);
-    detection_method method = method_of(request);
     const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
     std::vector<aabb::pose> of_b{pose_of(request.poses[1], "--pose-b")};
     if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);
@@ -321,6 +321,7 @@ void collide(const collide_request& request) {
         table.emplace(*request.out, columns);
     }
     scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), of_a, std::move(of_b), request.repeats));
+    detection_method method = method_of(request, scene);
     const detection_result result = detect(request, method, scene, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)

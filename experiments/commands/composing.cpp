@@ -17,6 +17,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 import aabblab.files;
 import aabblab.scenes;
 
@@ -24,8 +25,9 @@ namespace aabblab {
 
 namespace {
 
-/// "bucket, or std with another partition or sweep"
+/// "bucket, or std with another partition or sweep", "as it serves the scene"
 std::string usual_of(aabb::strategy_kind kind) {
+    if (aabb::hangs_on_scene(kind)) return "as it serves the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
     std::string text(info.fallback);
     if (info.beside == info.fallback) return text;

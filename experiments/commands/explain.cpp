@@ -11,14 +11,21 @@
 #include "commands.hpp"
 #include "output.hpp"
 
+// Import, so they come last.
 #include "experiments.hpp"
+#include "explain_savings.hpp"
+#include "scene_arguments.hpp"
 
 import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
 import aabblab.configs;
+import aabblab.measures;
 import aabblab.play;
 import aabblab.scenes;
+import aabblab.tables;
 
 namespace aabblab {
 
@@ -80,28 +87,65 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
     print("  " + kinds + " have no part in this scene: it has no meshes\n");
 }
 
-void explain(const std::string& config) {
-    const experiment e = open_experiment(config, false);
-    for (const scene_choice& scene : e.scenes) {
-        print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n");
-        if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
-            print(fmt::format(
-                "  bytes are those after {} of {} frames; run tells those after the last, which may be more\n",
-                explained_frames, frames));
-        explain_unused(e, scene);
-        for (const contender& who : contenders_for(e, scene)) explain_contender(scene, who);
-        print("\n");
+void explain_measures(const scene_choice& scene) {
+    table t{{{"measured", false}, {"", false}}, {}};
+    for (const told_measure& one : told(measure_scene(scene))) t.rows.push_back({one.name, one.value});
+    print(to_text(t, output_width()) + "\n");
+}
+
+/// What is selected and why, what comes of it, and what it saves.
+void explain_automatic(const scene_choice& choice, const aabb::named_strategies& named) {
+    const scene_play scene(choice);
+    const std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene));
+    table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
+    for (const aabb::selected_strategy& one : selected)
+        if (scene.meshes() || info_of(one.kind).stage == aabb::stage::global_search)
+            t.rows.push_back({std::string(name_of(one.kind)), to_text(one.choice), one.rule});
+    print(to_text(t, output_width()) + "\n");
+    const aabb::composition c = composed_of(selected);
+    explain_contender(choice, contender_of(c, scene.meshes() != nullptr));
+    print("\n");
+    print_savings(choice, c);
+}
+
+void explain_scene(const experiment& e, const scene_choice& scene) {
+    print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n");
+    explain_measures(scene);
+    if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
+        print(
+            fmt::format("  bytes are those after {} of {} frames; run tells those after the last, which may be more\n",
+                        explained_frames, frames));
+    explain_unused(e, scene);
+    for (const aabb::named_strategies& named : e.automatic) explain_automatic(scene, named);
+    for (const contender& who : contenders_for(e, scene))
+        if (!who.name.is_automatic()) explain_contender(scene, who);
+    print("\n");
+}
+
+void explain(const std::vector<std::string>& what) {
+    if (!names_scene(what)) {
+        const experiment e = open_experiment(what.front(), false);
+        for (const scene_choice& scene : e.scenes) explain_scene(e, scene);
+        return;
     }
+    experiment e;
+    e.automatic.emplace_back();
+    explain_scene(e, scene_of_arguments(what));
 }
 
 }  // namespace
 
 void add_explain(CLI::App& program, int&) {
     auto* command = program.add_subcommand(
-        "explain", "Which composition each scene of an experiment gets, its bytes, and what is left out");
-    auto config = std::make_shared<std::string>();
-    command->add_option("CONFIG", *config, "Config of the experiment (.toml)")->required()->type_name("");
-    command->callback([config] { explain(*config); });
+        "explain", "What a scene is like, which composition it gets and why, its bytes, and what is left out");
+    auto what = std::make_shared<std::vector<std::string>>();
+    command
+        ->add_option(
+            "WHAT", *what,
+            std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help)
+        ->required()
+        ->type_name("");
+    command->callback([what] { explain(*what); });
 }
 
 }  // namespace aabblab

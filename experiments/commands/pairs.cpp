@@ -20,6 +20,7 @@ import aabb.digest;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
 import aabblab.files;
 import aabblab.numbers;
@@ -52,7 +53,7 @@ struct search_result {
     std::vector<double> milliseconds;  ///< of update and search, by frame
 };
 
-search_method method_of(const pairs_request& request) {
+search_method method_of(const pairs_request& request, const scene_play& scene) {
     if (request.engine) {
         if (request.global.any())
             throw aabb::input_error("--engine stands in for " + request.global.names() + ", so give it alone");
@@ -60,7 +61,7 @@ search_method method_of(const pairs_request& request) {
     }
     aabb::named_strategies named;
     request.global.add_to(named);
-    const aabb::composition composition(named);
+    const aabb::composition composition = composed_of(select_strategies(named, outlook_of(scene)));
     return {aabb::to_text(composition, aabb::stage::global_search),
             aabb::is_exact(composition, aabb::stage::global_search),
             aabb::compose_global_search(composition, aabb::instrumentation::none)};
@@ -103,8 +104,8 @@ void print_text(const pairs_request& request, const search_method& method, const
 }
 
 void find_pairs(const pairs_request& request) {
-    search_method method = method_of(request);
     scene_play scene(open_recording(request.recording));
+    search_method method = method_of(request, scene);
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.recording, 1});

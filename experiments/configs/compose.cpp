@@ -14,6 +14,7 @@ import :choices;
 import :document;
 import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 
 namespace aabblab {
 
@@ -43,6 +44,7 @@ std::vector<std::optional<aabb::strategy_choice>> strategies_of(const document& 
 void require_kinds(const document& doc, const node& compose) {
     std::vector<std::string> known;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) known.emplace_back(name_of(kind));
+    known.emplace_back("auto");
     for (const node& entry : compose.items)
         if (std::ranges::find(known, entry.key) == known.end()) fail_key(doc, entry, known);
 }
@@ -61,16 +63,15 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
 
 }  // namespace
 
-/// @param compose whose keys are kinds; its lists multiply
-void add_compositions(const document& doc, const node& compose, each_once<aabb::composition>& list) {
+/// What the kinds name, every combination; the last kind varies fastest.
+std::vector<aabb::named_strategies> named_by(const document& doc, const node& compose, std::size_t listed) {
     aabb::by_kind<std::vector<std::optional<aabb::strategy_choice>>> choices;
     std::vector<std::size_t> factors;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         choices[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
         factors.push_back(choices[kind].size());
     }
-    doc.require_few(compose.line, "compositions", factors, list.all().size());
-    // The last kind varies fastest.
+    doc.require_few(compose.line, "compositions", factors, listed);
     std::vector<aabb::named_strategies> products(1);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         std::vector<aabb::named_strategies> longer;
@@ -78,26 +79,60 @@ void add_compositions(const document& doc, const node& compose, each_once<aabb::
             for (const auto& choice : choices[kind]) longer.emplace_back(product)[kind] = choice;
         products = std::move(longer);
     }
-    for (const aabb::named_strategies& named : products)
+    return products;
+}
+
+/// @param compose whose keys are kinds; its lists multiply
+void add_compositions(const document& doc, const node& compose, each_once<aabb::composition>& list) {
+    for (const aabb::named_strategies& named : named_by(doc, compose, list.all().size()))
         add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
-/// One [compose], or several [[compose]], whose lists multiply each for itself.
+namespace {
+
+bool is_automatic(const document& doc, const node& compose) {
+    const node* value = compose.find("auto");
+    if (value && value->kind != node_kind::boolean) doc.fail_type("auto", *value, "true or false");
+    return value && value->text == "true";
+}
+
+/// What is refused with what is named is refused whatever the scene.
+void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
+    for (const aabb::named_strategies& named : named_by(doc, compose, automatic.size())) {
+        each_once<aabb::composition> alone;
+        add_composition(doc, compose.line, composed_of(select_strategies(named, {})), alone);
+        if (std::ranges::find(automatic, named) != automatic.end()) doc.fail(compose.line, "this auto is listed twice");
+        automatic.push_back(named);
+    }
+}
+
+}  // namespace
+
+/// One [compose], or several [[compose]], whose lists multiply each for itself, or "auto".
 /// @param compose null where the config has none.
-std::vector<aabb::composition> compositions_of(const document& doc, const node* compose) {
+void read_compositions(const document& doc, const node* compose, experiment& e) {
     static const node nothing{};
     each_once<aabb::composition> list;
     const auto add = [&](const node& one) {
         doc.require_table("compose", one);
         require_kinds(doc, one);
-        add_compositions(doc, one, list);
+        if (is_automatic(doc, one))
+            add_automatic(doc, one, e.automatic);
+        else
+            add_compositions(doc, one, list);
     };
-    if (compose && compose->kind == node_kind::list)
+    if (compose && compose->kind == node_kind::text) {
+        if (compose->text != "auto")
+            doc.fail(compose->line, "compose must be a table or \"auto\", not \"" + compose->text + "\"");
+        e.automatic.emplace_back();
+    } else if (compose && compose->kind == node_kind::list) {
         for (const node& one : compose->items) add(one);
-    else
+    } else {
         add(compose ? *compose : nothing);
-    if (list.all().empty()) doc.fail(compose->line, "compose is an empty list; expected a table");
-    return list.all();
+    }
+    e.compositions = list.all();
+    if (e.compositions.empty() && e.automatic.empty())
+        doc.fail(compose->line, "compose is an empty list; expected a table");
 }
 
 }  // namespace aabblab

@@ -60,6 +60,8 @@ struct experiment {
     std::vector<scene_choice> scenes;
     std::string content_digest;                   ///< of the scenes' meshes, and of the frames of files that they play
     std::vector<aabb::composition> compositions;  ///< scenes of boxes use the global search of each only
+    /// What each `auto` names itself; the rest is selected scene by scene.
+    std::vector<aabb::named_strategies> automatic;
     std::size_t repeats = 9;
     std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
     asking how;

@@ -32,7 +32,7 @@ import aabblab.scenes;
 namespace aabblab {
 
 // Defined in compose.cpp and scenes.cpp.
-std::vector<aabb::composition> compositions_of(const document& doc, const node* compose);
+void read_compositions(const document& doc, const node* compose, experiment& e);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
 
 namespace {
@@ -227,7 +227,7 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     e.name = name_of(doc);
     e.engines = engines_of(doc);
     e.externals = externals_of(doc);
-    e.compositions = compositions_of(doc, doc.root().find("compose"));
+    read_compositions(doc, doc.root().find("compose"), e);
     read_measure(doc, size, e);
     read_processes(doc, e);
     read_scenes(doc, size, e);
@@ -262,6 +262,11 @@ std::string hash_of(const experiment& e) {
     for (const aabb::composition& c : e.compositions) {
         all += "\n";
         for (const aabb::strategy_kind kind : aabb::strategy_kinds) all += to_text(c[kind]) + " + ";
+    }
+    for (const aabb::named_strategies& named : e.automatic) {
+        all += "\nauto";
+        for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+            if (named[kind]) all += " + " + to_text(*named[kind]);
     }
     for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
     if (e.how != asking{})

@@ -11,9 +11,11 @@ module aabblab.play;
 
 import :external;
 import :player;
+import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.scenes;
@@ -43,6 +45,25 @@ contender contender_of(const aabb::composition& c, bool meshes) {
     use(who, c, aabb::stage::global_search);
     if (meshes) use(who, c, aabb::stage::local_detection);
     return who;
+}
+
+contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
+    contender who = contender_of(composed_of(select_strategies(named, outlook_of(scene))), scene.meshes() != nullptr);
+    // It has one name in all scenes, whatever is selected.
+    who.name = {};
+    who.name.engine = contender_name::automatic;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (named[kind]) who.name.engine += " + " + to_text(*named[kind]);
+    return who;
+}
+
+aabb::scene_outlook outlook_of(const scene_play& scene) {
+    aabb::scene_outlook seen{scene.objects(), scene.frames()};
+    if (!scene.meshes()) return seen;
+    for (const aabb::mesh& m : scene.meshes()->meshes) seen.triangles += m.triangle_count();
+    // Each object is held against one other a frame, as a guess.
+    seen.queries = seen.frames * std::max<std::size_t>(seen.objects / 2, 1);
+    return seen;
 }
 
 std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes) {
@@ -87,6 +108,10 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
         contender who = contender_of(c, meshes);
         // In a scene of boxes, compositions that differ in local detection only are one.
         if (names.insert(who.name).second) all.push_back(std::move(who));
+    }
+    if (!e.automatic.empty()) {
+        const scene_play play(scene);
+        for (const aabb::named_strategies& named : e.automatic) all.push_back(contender_of(named, play));
     }
     for (const std::string& name : e.engines) {
         const auto engine = std::ranges::find(aabb::engines(), name, &aabb::engine_info::name);

@@ -13,6 +13,7 @@ export module aabblab.play;
 
 import aabb.counters;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.results;
@@ -26,6 +27,10 @@ export namespace aabblab {
 [[nodiscard]] std::string text_of(const contender_name& name);
 
 [[nodiscard]] contender contender_of(const aabb::composition& c, bool meshes);
+/// What is selected for the scene beside what is named.
+[[nodiscard]] contender contender_of(const aabb::named_strategies& named, const scene_play& scene);
+/// What `auto` may know of a scene that has not begun.
+[[nodiscard]] aabb::scene_outlook outlook_of(const scene_play& scene);
 /// An engine that does one stage only gets the default composition for the other; empty for one that has no part in the
 /// scene.
 [[nodiscard]] std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes);

@@ -115,6 +115,8 @@ public:
     /// particular order.
     void find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs);
 
+    /// Of the frame, by object; by piece where meshes are divided; empty without global search.
+    [[nodiscard]] std::span<const aabb::box> boxes() const { return pipeline_ ? pipeline_->boxes() : scene_.boxes(); }
     /// Of the frame, sorted; duplicates stay.
     [[nodiscard]] const std::vector<aabb::index_pair>& sorted_pairs();
     [[nodiscard]] const std::vector<aabb::contact>& sorted_contacts();

@@ -30,6 +30,12 @@ struct contender_name {
     aabb::by_kind<std::string> choices;
     std::string engine;
 
+    /// What `auto` has in place of an engine; what is named with it stands behind.
+    static constexpr std::string_view automatic = "auto";
+    [[nodiscard]] bool is_automatic() const { return engine == automatic || engine.starts_with("auto + "); }
+    /// Whether any of it is of a system that is not ours.
+    [[nodiscard]] bool is_reference() const { return !engine.empty() && !is_automatic(); }
+
     [[nodiscard]] std::string& operator[](aabb::strategy_kind kind) { return choices[kind]; }
     [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return choices[kind]; }
     friend auto operator<=>(const contender_name&, const contender_name&) = default;

@@ -67,6 +67,7 @@ struct list_outlook {
 struct list_plan {
     std::size_t frames = 1;  ///< 1 where no list pays
     double margin = 0;
+    double cost = std::numeric_limits<double>::infinity();  ///< of the cheapest list a frame, over that of a search
 };
 
 /// The margin that a list needs to serve so many frames after its own: what was seen, and further on in a line through
@@ -123,18 +124,21 @@ struct list_costs {
     const auto n = static_cast<double>(seen.boxes);
     list_plan best;
     if (seen.motion.empty()) return best;
-    double least = cost.worth_a_list * cost_of_search(n, pairs_listed(seen, 0), cost);
+    const double search = cost_of_search(n, pairs_listed(seen, 0), cost);
+    double least = cost.worth_a_list * search;
     for (const std::size_t frames : lifetimes) {
         const double margin = margin_after(seen.motion, frames - 1);
         if (!(margin <= seen.growth.longest_margin())) break;
         const double listed = pairs_listed(seen, margin);
         const double served = cost_of_service(n, listed, cost);
-        if (served >= least) break;
         const double made = n * cost.keep_box + cost_of_search(n, listed, cost);
         const double each = made / static_cast<double>(frames) + served;
+        best.cost = std::min(best.cost, each / search);
+        if (served >= least) break;
         if (each >= least) continue;
         least = each;
-        best = {frames, margin};
+        best.frames = frames;
+        best.margin = margin;
     }
     return best;
 }

@@ -64,11 +64,16 @@ private:
     [[nodiscard]] bool rests(std::span<const box> boxes);
     [[nodiscard]] bool serves(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
-    [[nodiscard]] list_outlook outlook(std::span<const box> boxes) const;
+    [[nodiscard]] std::optional<double> watched(std::span<const box> boxes, bool same_objects);
+    [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
+    [[nodiscard]] growth_of_pairs growth_of(std::span<const box> boxes) const;
     void keep(std::span<const box> boxes, double margin);
 
-    /// How many frames are searched as they are, at most, until one is kept again to see how boxes move.
-    static constexpr unsigned longest_pause = 7;
+    /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many.
+    static constexpr std::uint32_t longest_watch = 8;
+    static constexpr unsigned pause = 6;
+    /// A list that costs so many times what a search does is not waited for.
+    static constexpr double hopeless = 3;
     static constexpr std::size_t longest_history = 256;
 
     std::unique_ptr<global_stage> search_;
@@ -88,12 +93,14 @@ private:
     std::vector<double> motion_;  // since then, frame by frame
     std::uint32_t age_ = 0;       // frames since
     std::size_t found_ = 0;       // pairs of the frame before
-    double foreseen_ = 0;         // pairs of the list beside those that overlap, as they were reckoned
-    double correction_ = 1;       // of that
+    growth_of_pairs growth_;
+    double foreseen_ = 0;    // pairs of the list beside those that overlap, as they were reckoned
+    double correction_ = 1;  // of that
     rest_watch rest_;
     bool came_to_rest_ = false;
-    unsigned pause_ = 0;  // frames that are searched as they are after the next list that does not pay
-    unsigned left_ = 0;   // of them
+    double cost_ = 0;       // of the cheapest list that was thought of last, over that of a search
+    bool watches_ = false;  // how far boxes are from those that are kept, without a list
+    unsigned left_ = 0;     // frames that are searched as they are before one is kept again
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
@@ -107,16 +114,13 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     if (left_ > 0) {
         --left_;
         search_->update(boxes);
-    } else {
-        if (is_kept_ && !comes_any && !leaves_any && rests(boxes)) {
-            frame_.taken();
-            return;
-        }
-        require_valid(boxes);
-        if (is_kept_ && !is_too_long_ && !comes_any && boxes.size() == kept_.size() && serves(boxes)) {
+    } else if (!is_kept_ || comes_any || leaves_any || !rests(boxes)) {
+        const bool same_objects = !comes_any && boxes.size() == kept_.size();
+        if (is_kept_ && !is_too_long_ && same_objects && serves(boxes)) {
+            require_valid(boxes);
             if (leaves_any)
                 std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
-        } else if (const std::optional<double> margin = next_margin(boxes)) {
+        } else if (const std::optional<double> margin = watches_ ? watched(boxes, same_objects) : next_margin(boxes)) {
             keep(boxes, *margin);
         } else {
             is_kept_ = false;
@@ -220,31 +224,56 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     if (config_.margin) return mean_extents(*config_.margin, boxes, objects_);
     if (!is_kept_ || std::exchange(came_to_rest_, false)) return 0;
     if (config_.every > 0) return motion_.empty() ? 0 : margin_after(motion_, config_.every - 1);
-    const list_outlook seen = outlook(boxes);
-    const list_plan plan = plan_list(seen);
-    if (plan.frames > 1) {
-        pause_ = 0;
-        foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
-        return plan.margin;
-    }
-    pause_ = std::min(2 * pause_ + 1, longest_pause);
-    left_ = pause_ - 1;
+    const bool is_first_look = margin_ == 0 && motion_.size() == 1;
+    if (const std::optional<double> margin = paying_margin(boxes)) return margin;
+    // What jiggles about its place shows it only after some frames.
+    watches_ = is_first_look && cost_ < hopeless;
+    if (!watches_) left_ = pause;
     return std::nullopt;
 }
 
-list_outlook neighbour_list_stage::outlook(std::span<const box> boxes) const {
-    std::array<box, 32> some;
+/// The margin of the list that is to be kept now, while nothing is kept but boxes of some frames before; none where
+/// none pays yet.
+std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects) {
+    ++age_;
+    std::optional<double> margin;
+    bool drifts = false;
+    if (same_objects && std::has_single_bit(age_)) {
+        const double half_way = motion_.back();
+        motion_.resize(age_, motion_between(kept_, boxes, objects_).margin);
+        drifts = motion_.back() > 1.8 * half_way;
+        margin = paying_margin(boxes);
+    }
+    watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
+    if (!watches_ && !margin) left_ = pause;
+    return margin;
+}
+
+std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
+    if (age_ <= 1) growth_ = growth_of(boxes);
+    const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
+    const list_plan plan = plan_list(seen);
+    cost_ = plan.cost;
+    if (plan.frames == 1) return std::nullopt;
+    foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
+    return plan.margin;
+}
+
+growth_of_pairs neighbour_list_stage::growth_of(std::span<const box> boxes) const {
+    std::array<box, 16> some;
     std::size_t count = 0;
     const std::size_t step = (boxes.size() + some.size() - 1) / some.size();
     for (std::size_t i = 0; i < boxes.size(); i += step)
         if (objects_.contains(static_cast<std::uint32_t>(i))) some[count++] = boxes[i];
-    return {motion_, objects_.size(), found_, growth_of_pairs(std::span(some).first(count)), correction_};
+    return growth_of_pairs(std::span(some).first(count));
 }
 
 void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     is_kept_ = false;
     kept_.assign(boxes.begin(), boxes.end());
     if (margin > 0) {
+        // Grown, an inverted box may be none. As they are, the search looks at them.
+        require_valid(boxes);
         grown_.resize(boxes.size());
         grow(boxes, margin, grown_);
     }

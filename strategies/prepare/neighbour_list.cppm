@@ -19,7 +19,7 @@ export namespace aabb {
 /// An object that comes makes a search too.
 ///
 /// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one;
-/// where no list pays, frames are searched as they are, and every eighth looks again.
+/// where no list pays, frames are searched as they are, and boxes watched in some of them.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
 /// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where

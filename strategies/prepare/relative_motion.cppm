@@ -88,7 +88,8 @@ struct relative_motion {
 /// does not move. Never less than the exact margin: each difference is off by half a unit in its last place at most.
 ///
 /// Where later boxes lie in the earlier ones so grown and shifted, two that overlap now overlapped when grown.
-/// @param from, to valid boxes by id, as many of one as of the other
+/// Of boxes that are not valid it tells nothing.
+/// @param from, to boxes by id, as many of one as of the other
 [[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to,
                                                     const membership& objects) noexcept {
     detail::plane_motion motion;

@@ -32,6 +32,7 @@ const std::vector<std::string> rooms = {
     "strategies/tree",
     "strategies/triangle",
     "strategies/registry",
+    "strategies/selection",
     "validation/engines",
     "validation/truth",
     "validation/extreme",
@@ -49,6 +50,7 @@ const std::vector<std::string> rooms = {
     "experiments/analysis/conditions",
     "experiments/configs",
     "experiments/play",
+    "experiments/measures",
     "experiments/errors",
     "experiments/stiff",
     "experiments/extreme",
@@ -69,7 +71,7 @@ struct arrow {
 /// Who may not import whom, though it stands above.
 bool is_forbidden(const arrow& one) {
     const auto is_kind = [](const std::string& room) {
-        return room.starts_with("strategies/") && room != "strategies/registry";
+        return room.starts_with("strategies/") && room != "strategies/registry" && room != "strategies/selection";
     };
     const bool to_paper = one.to.starts_with("paper");
     const bool is_of_paper =

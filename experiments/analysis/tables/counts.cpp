@@ -25,7 +25,7 @@ namespace {
 template <class Numbers>
 bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t place) {
     return std::ranges::any_of(scene.lines, [&](const summary_line& line) {
-        return line.name.engine.empty() && (line.*numbers)[place].value_or(0) > 0;
+        return !line.name.is_reference() && (line.*numbers)[place].value_or(0) > 0;
     });
 }
 
@@ -70,7 +70,7 @@ table counts_table_of(const scene_summary& scene) {
     std::size_t rank = 0;
     for (const summary_line* line : ranking_of(scene)) {
         ++rank;
-        if (!line->name.engine.empty()) continue;
+        if (line->name.is_reference()) continue;
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, line->name, rank));
         for (const std::size_t i : works) {
             const double each = line->counts[i].value_or(0);

@@ -6,6 +6,7 @@ module;
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -15,12 +16,32 @@ module;
 module aabblab.tables;
 
 import aabb.registry;
+import aabblab.metrics;
 import aabblab.numbers;
 import aabblab.results;
+import aabblab.statistics;
 
 namespace aabblab {
 
 namespace {
+
+/// Time of all frames, making the stages included.
+std::optional<double> whole_of(const summary_line& line) {
+    static const std::size_t place = [] {
+        const std::vector<std::string> names = metric_names();
+        return static_cast<std::size_t>(std::ranges::find(names, "whole_ms") - names.begin());
+    }();
+    return place < line.metrics.size() ? line.metrics[place] : std::nullopt;
+}
+
+std::optional<double> least_whole_of(const scene_summary& scene) {
+    std::optional<double> least;
+    for (const summary_line& line : scene.lines)
+        if (const std::optional<double> whole = whole_of(line);
+            whole && line.status == "exact" && (!least || *whole < *least))
+            least = whole;
+    return least;
+}
 
 /// Ratios of one composition or engine, over scenes.
 struct standing {
@@ -31,8 +52,11 @@ struct standing {
     double log_sum = 0;
     double least = std::numeric_limits<double>::infinity();
     double greatest = 0;
+    std::vector<double> regrets;  ///< time of all frames over that of the fastest of the exact ones
 
-    void add(const summary_line& line, bool wins_here) {
+    void add(const summary_line& line, bool wins_here, std::optional<double> least_whole) {
+        if (const std::optional<double> whole = whole_of(line); whole && least_whole)
+            regrets.push_back(*whole / *least_whole);
         ++scenes;
         wins += wins_here ? 1 : 0;
         exact = exact && line.status == "exact";
@@ -50,11 +74,12 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     std::map<contender_name, std::size_t> places;
     for (const scene_summary& scene : scenes) {
         const summary_line* const fastest = ranking_of(scene).front();
+        const std::optional<double> least_whole = least_whole_of(scene);
         for (const summary_line& line : scene.lines) {
             if (!line.ratio) continue;
             const auto [place, is_new] = places.emplace(line.name, all.size());
-            if (is_new) all.push_back({.name = line.name});
-            all[place->second].add(line, &line == fastest);
+            if (is_new) all.emplace_back().name = line.name;
+            all[place->second].add(line, &line == fastest, least_whole);
         }
     }
     std::vector<contender_name> names;
@@ -64,13 +89,19 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     const bool inexact = std::ranges::any_of(all, [](const standing& one) { return !one.exact; });
     table t{name_columns_of(differing), {}};
     if (inexact) t.columns.push_back({"answer"});
-    t.columns.insert(t.columns.end(), {{"ratio"}, {"least"}, {"greatest"}, {"scenes"}, {"fastest in"}});
+    t.columns.insert(t.columns.end(),
+                     {{"ratio"}, {"least", true, 2}, {"greatest", true, 1}, {"scenes"}, {"fastest in"}});
+    const bool whole = std::ranges::all_of(all, [](const standing& one) { return !one.regrets.empty(); });
+    if (whole) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
     for (const standing& one : all) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name, t.rows.size() + 1));
         if (inexact) cells.emplace_back(one.exact ? "exact" : "inexact");
         for (const double ratio : {one.ratio(), one.least, one.greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
         cells.push_back(grouped(one.scenes));
         cells.push_back(grouped(one.wins));
+        if (!whole) continue;
+        cells.push_back(fmt::format("{:.2f}", quartiles_of(one.regrets).median));
+        cells.push_back(fmt::format("{:.2f}", std::ranges::max(one.regrets)));
     }
     return t;
 }

@@ -104,7 +104,8 @@ struct scene_summary {
 [[nodiscard]] table counts_table_of(const scene_summary& scene);
 
 /// All scenes in one, which have the same first composition: those who play from the fastest to the slowest by the
-/// geometric mean of their ratios.
+/// geometric mean of their ratios. `regret` is the time of all frames, making the stages included, over that of the
+/// fastest exact line of the scene, the median and the worst over the scenes.
 [[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
 
 /// The table of a summary.csv: every line of every scene with its rank, every number in full.

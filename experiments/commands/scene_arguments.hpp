@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+import aabblab.scenes;
+
+namespace aabblab {
+
+/// What a command takes in place of a config, for help texts.
+inline constexpr const char* scene_arguments_help =
+    "A recording (.aabbs); one or two meshes, which pass through each other; or a motion file and its meshes";
+
+/// Whether these arguments name a scene, and not a config.
+[[nodiscard]] bool names_scene(const std::vector<std::string>& arguments);
+
+/// The scene that these arguments name.
+/// @throws aabb::input_error where they name none.
+[[nodiscard]] scene_choice scene_of_arguments(const std::vector<std::string>& arguments);
+
+}  // namespace aabblab

@@ -1,0 +1,61 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// What a scene is like: numbers that decide which composition serves it.
+export module aabblab.measures;
+
+import aabb.geometry;
+import aabblab.scenes;
+
+export namespace aabblab {
+
+/// Of the boxes of one frame.
+struct box_measures {
+    double mean_extent = 0;            ///< over boxes and axes
+    double size_ratio = 1;             ///< the longest edge of any box over the median of the boxes' longest edges
+    std::array<double, 3> overlaps{};  ///< by axis: of how many others a box overlaps the projection, a mean
+    double expected_pairs = 0;         ///< if boxes of the mean extents lay evenly spread over the bounds of all
+};
+[[nodiscard]] box_measures measure_boxes(std::span<const aabb::box> boxes);
+
+/// Of the same boxes in two frames, one after the other.
+struct motion_measures {
+    double displacement = 0;  ///< mean way of a box's centre
+    double relative = 0;      ///< greatest way of any box, on any axis, beyond what all move alike
+    double at_rest = 1;       ///< share of boxes that are equal
+    double inversions = 0;    ///< an object, on the axis on which boxes overlap least
+};
+/// @param axis on which inversions are counted
+[[nodiscard]] motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after,
+                                             std::size_t axis);
+
+/// Of a scene: means over its first frames.
+struct scene_measures {
+    std::size_t objects = 0;
+    std::size_t frames = 0;
+    std::optional<std::size_t> triangles;   ///< of all meshes; empty in scenes of boxes
+    box_measures boxes;                     ///< of frame 0
+    double pairs_an_object = 0;             ///< of boxes that overlap, in frame 0
+    double clustering = 0;                  ///< pairs of frame 0 over those expected
+    std::optional<motion_measures> motion;  ///< empty where there is one frame
+    double turnover = 0;                    ///< share of the objects that come or go in a frame
+};
+
+/// Plays the first frames of the scene.
+/// @throws aabb::input_error where the scene cannot be made or played.
+[[nodiscard]] scene_measures measure_scene(const scene_choice& scene);
+
+/// A measure as it is told: "displacement", "0.031 of a mean extent a frame".
+struct told_measure {
+    std::string name;
+    std::string value;
+};
+[[nodiscard]] std::vector<told_measure> told(const scene_measures& m);
+
+}  // namespace aabblab

@@ -1,0 +1,87 @@
+module;
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+module aabb.selection;
+
+import aabb.policy;
+import aabb.registry;
+
+namespace aabb {
+
+namespace {
+
+/// A list of neighbours serves from the fourth frame on: one is kept, one shows how boxes move, one is searched grown.
+constexpr std::size_t fewest_frames_of_list = 4;
+
+/// From so many queries on, the quarter that `sah` takes longer to build than `median` comes back from queries that
+/// take a twelfth less. A build takes 26 ns a triangle more; a query takes about 1.2 us times the root of them.
+double queries_that_repay_sah(std::size_t triangles) {
+    constexpr double build_ns = 26;
+    constexpr double query_ns = 1200;
+    constexpr double saved = 1.0 / 12;
+    return build_ns / (query_ns * saved) * std::sqrt(static_cast<double>(triangles));
+}
+
+selected_strategy selected_prepare(const scene_outlook& scene) {
+    if (scene.frames < fewest_frames_of_list)
+        return {strategy_kind::prepare, {"none", {}}, "fewer than four frames: a list of pairs would not be used"};
+    return {strategy_kind::prepare,
+            {"neighbour_list", {}},
+            "frames follow each other: pairs are kept while boxes move little, and only then"};
+}
+
+selected_strategy selected_build(const scene_outlook& scene) {
+    const auto repaid = static_cast<std::size_t>(std::ceil(queries_that_repay_sah(scene.triangles)));
+    if (scene.queries < repaid)
+        return {strategy_kind::build,
+                {"median", {}},
+                "built fastest: better trees are repaid from " + std::to_string(repaid) +
+                    " queries on, and there are " + std::to_string(scene.queries)};
+    return {strategy_kind::build,
+            {"sah", {}},
+            std::to_string(scene.queries) + " queries repay a better tree, as " + std::to_string(repaid) + " would"};
+}
+
+std::string usual_rule(strategy_kind kind) {
+    switch (kind) {
+        case strategy_kind::sort: return "orders boxes within columns, by buckets";
+        case strategy_kind::partition: return "cuts first, and only as far as a sample of the boxes says that it pays";
+        case strategy_kind::sweep: return "tests a vector of boxes at a time";
+        case strategy_kind::tree: return "least bytes and fastest queries of the exact trees";
+        case strategy_kind::triangle: return "exact";
+        default: return "";
+    }
+}
+
+}  // namespace
+
+bool hangs_on_scene(strategy_kind kind) {
+    return kind == strategy_kind::prepare || kind == strategy_kind::build;
+}
+
+std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
+    const composition usual(named);
+    std::vector<selected_strategy> all;
+    for (const strategy_kind kind : strategy_kinds) {
+        if (named[kind])
+            all.push_back({kind, *named[kind], "as it is named"});
+        else if (kind == strategy_kind::prepare)
+            all.push_back(selected_prepare(scene));
+        else if (kind == strategy_kind::build)
+            all.push_back(selected_build(scene));
+        else
+            all.push_back({kind, usual[kind], usual_rule(kind)});
+    }
+    return all;
+}
+
+composition composed_of(const std::vector<selected_strategy>& selected) {
+    composition c;
+    for (const selected_strategy& one : selected) c[one.kind] = one.choice;
+    return c;
+}
+
+}  // namespace aabb

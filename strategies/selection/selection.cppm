@@ -1,0 +1,40 @@
+module;
+#include <cstddef>
+#include <string>
+#include <vector>
+
+/// What serves a scene: `auto`, by rules that say why.
+export module aabb.selection;
+
+import aabb.policy;
+import aabb.registry;
+
+export namespace aabb {
+
+/// What is known of a scene before it is played. What boxes do from frame to frame is left to strategies that watch it:
+/// `neighbour_list`, and the plans of `columns`.
+struct scene_outlook {
+    std::size_t objects = 0;
+    std::size_t frames = 1;
+    std::size_t triangles = 0;  ///< of all meshes; 0 where there are boxes only
+    std::size_t queries = 1;    ///< of two meshes, that a tree is to serve
+};
+
+/// What one kind of strategy gets, and the rule that says so, a sentence.
+struct selected_strategy {
+    strategy_kind kind;
+    strategy_choice choice;
+    std::string rule;
+};
+
+/// Whether what is selected for the kind hangs on the scene.
+[[nodiscard]] bool hangs_on_scene(strategy_kind kind);
+
+/// A strategy for each kind, in their order: what is named stays, the others are what costs least together with it.
+/// @throws input_error as `composition`.
+[[nodiscard]] std::vector<selected_strategy> select_strategies(const named_strategies& named,
+                                                               const scene_outlook& scene);
+
+[[nodiscard]] composition composed_of(const std::vector<selected_strategy>& selected);
+
+}  // namespace aabb

@@ -1,0 +1,170 @@
+// `auto` in configs and commands, and what explain says of a scene.
+
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.configs;
+import aabblab.measures;
+import aabblab.play;
+import aabblab.scenes;
+
+using aabblab::experiment_size;
+
+namespace {
+
+aabblab::experiment parsed(const std::string& compose) {
+    return aabblab::parse_experiment(
+        "name = \"a\"\n" + compose + "\n[[scene]]\nkind = \"pile\"\nobjects = 60\nframes = 6\n", "a.toml",
+        experiment_size::full);
+}
+
+std::string refusal_of(const std::string& compose) {
+    try {
+        (void)parsed(compose);
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+aabb::box cube(float x, float y, float z) {
+    return {{x, y, z}, {x + 1, y + 1, z + 1}};
+}
+
+bool is_near(double a, double b) {
+    return std::abs(a - b) < 1e-6 * (1 + std::abs(b));
+}
+
+}  // namespace
+
+TEST_CASE("A config leaves all to auto, or what it does not name") {
+    const aabblab::experiment whole = parsed("compose = \"auto\"");
+    CHECK(whole.compositions.empty());
+    REQUIRE(aabblab::contenders_for(whole, whole.scenes[0]).size() == 1);
+    const aabblab::contender who = aabblab::contenders_for(whole, whole.scenes[0])[0];
+    CHECK(aabblab::text_of(who.name) == "auto");
+    CHECK(who.exact);
+    const aabblab::experiment some = parsed("[[compose]]\nauto = true\nsort = [\"radix\", \"std\"]\n[[compose]]\n");
+    const auto all = aabblab::contenders_for(some, some.scenes[0]);
+    REQUIRE(all.size() == 3);
+    CHECK(aabblab::text_of(all[0].name) == "bucket + columns + simd");
+    CHECK(aabblab::text_of(all[1].name) == "auto + radix");
+    CHECK(aabblab::text_of(all[2].name) == "auto + std");
+    CHECK(hash_of(whole) != hash_of(some));
+    CHECK(hash_of(whole) != hash_of(parsed("compose = \"auto\"\nengines = [\"cgal\"]")));
+    CHECK(parsed("[[compose]]\nauto = false").automatic.empty());
+}
+
+TEST_CASE("What is wrong with auto in a config is said with its line") {
+    CHECK(refusal_of("compose = \"best\"") == "a.toml:2: compose must be a table or \"auto\", not \"best\"");
+    CHECK(refusal_of("[[compose]]\nauto = 1") == "a.toml:3: auto is a number; expected true or false");
+    CHECK(refusal_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
+    CHECK(refusal_of("[[compose]]\nauto = true\nsort = \"shell\"\nsweep = \"incremental\"").starts_with("a.toml:2: "));
+    CHECK(refusal_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
+}
+
+TEST_CASE("auto finds the exact pairs in a run, and is one line of every table") {
+    const temporary_folder folder;
+    const std::filesystem::path config = folder.write(
+        "a.toml",
+        "name = \"a\"\n[[compose]]\nauto = true\n[[compose]]\nsort = \"std\"\n[[scene]]\nkind = [\"pile\", "
+        "\"population\"]\nobjects = 60\nframes = 6\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 1\n"
+        "[measure]\nrepeats = 1\n");
+    const program_result run = run_program({"run", config.string(), "--out", (folder / "r").string()});
+    REQUIRE(run.status == 0);
+    CHECK(run.out.find("3 scenes with std + none + one_axis") != std::string::npos);
+    CHECK(run.out.find("regret") != std::string::npos);
+    // A line for each scene, and one for all.
+    std::size_t lines = 0;
+    for (const char* first : {"\n1  auto ", "\n2  auto "})
+        for (std::size_t at = run.out.find(first); at != std::string::npos; at = run.out.find(first, at + 1)) ++lines;
+    CHECK(lines == 4);
+}
+
+TEST_CASE("Boxes are measured: spread, sizes, pairs expected") {
+    // On x all overlap, on y two and two; the pairs expected are those of all on x and z.
+    const std::vector<aabb::box> boxes{cube(0, 0, 0), cube(0, 0.5F, 0), cube(0, 8, 0), cube(0, 9, 0)};
+    const aabblab::box_measures m = aabblab::measure_boxes(boxes);
+    CHECK(is_near(m.mean_extent, 1));
+    CHECK(is_near(m.size_ratio, 1));
+    CHECK(is_near(m.overlaps[0], 3));
+    CHECK(is_near(m.overlaps[1], 1));
+    CHECK(is_near(m.overlaps[2], 3));
+    CHECK(is_near(m.expected_pairs, 6 * 0.2));
+    std::vector<aabb::box> one_long = boxes;
+    one_long[3].max[2] = 5;
+    CHECK(is_near(aabblab::measure_boxes(one_long).size_ratio, 5));
+    CHECK(aabblab::measure_boxes({}).expected_pairs == 0);
+}
+
+TEST_CASE("Motion is measured: the way, what is not alike, rest, inversions") {
+    const std::vector<aabb::box> before{cube(0, 0, 0), cube(2, 0, 0), cube(4, 0, 0), cube(6, 0, 0)};
+    std::vector<aabb::box> all_alike;
+    for (const aabb::box& b : before) all_alike.push_back(cube(b.min[0] + 3, 4, 0));
+    const aabblab::motion_measures alike = aabblab::measure_motion(before, all_alike, 0);
+    CHECK(is_near(alike.displacement, 5));
+    CHECK(is_near(alike.relative, 0));
+    CHECK(is_near(alike.at_rest, 0));
+    CHECK(is_near(alike.inversions, 0));
+    std::vector<aabb::box> one_passes = before;
+    one_passes[0] = cube(5, 0, 0);
+    const aabblab::motion_measures passing = aabblab::measure_motion(before, one_passes, 0);
+    CHECK(is_near(passing.displacement, 1.25));
+    CHECK(is_near(passing.relative, 2.5));
+    CHECK(is_near(passing.at_rest, 0.75));
+    CHECK(is_near(passing.inversions, 0.5));
+}
+
+TEST_CASE("explain says of a recording what was measured, selected and saved") {
+    const temporary_folder folder;
+    const std::string file = (folder / "p.aabbs").string();
+    REQUIRE(run_program({"scene", "pile", "--n", "200", "--frames", "6", "--out", file}).status == 0);
+    const program_result told = run_program({"explain", file});
+    REQUIRE(told.status == 0);
+    for (const char* part :
+         {"objects       200\n", "at rest       0 % of the objects\n", "prepare    neighbour_list  frames follow",
+          "as selected", "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
+        CHECK(told.out.find(part) != std::string::npos);
+    CHECK(told.out.find("canonical") == std::string::npos);
+    CHECK(run_program({"explain", file, file}).err.find("a recording is a scene of its own") != std::string::npos);
+}
+
+TEST_CASE("explain takes meshes, and a motion with its meshes") {
+    const temporary_folder folder;
+    const std::string motion = (folder / "m.txt").string();
+    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "4", "--frames", "4", "--normalise", "no", "--mesh",
+                         "icosphere:triangles=80", "--motion", motion})
+                .status == 0);
+    const program_result moved = run_program({"explain", motion, "icosphere:triangles=80"});
+    CHECK(moved.status == 0);
+    CHECK(moved.out.find("triangles     80 in the meshes\n") != std::string::npos);
+    const program_result pair = run_program({"explain", "icosphere:triangles=80", "torus_knot:triangles=96"});
+    CHECK(pair.status == 0);
+    for (const char* part : {"canonical", "sah", "interval_arithmetic"})
+        CHECK(pair.out.find(part) != std::string::npos);
+    CHECK(pair.out.find("moller") == std::string::npos);
+    const program_result three = run_program({"explain", "icosphere", "icosphere", "icosphere"});
+    CHECK(three.status == 2);
+    CHECK(three.err.find("more than two meshes move by a motion file") != std::string::npos);
+}
+
+TEST_CASE("pairs and collide say what they selected") {
+    const temporary_folder folder;
+    const std::string file = (folder / "p.aabbs").string();
+    REQUIRE(run_program({"scene", "pile", "--n", "50", "--frames", "6", "--out", file}).status == 0);
+    CHECK(run_program({"pairs", file}).out.find("neighbour_list + bucket + columns + simd: ") != std::string::npos);
+    CHECK(run_program({"pairs", file, "--prepare", "none"}).out.find("\nbucket + columns + simd: ") !=
+          std::string::npos);
+    const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};
+    CHECK(run_program({"collide", meshes[0], meshes[1]}).out.find("\nimplicit + exact: ") != std::string::npos);
+    CHECK(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out.find("\nsah + implicit + exact: ") !=
+          std::string::npos);
+}
