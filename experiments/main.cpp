@@ -77,6 +77,7 @@ int main_of(int argc, char** argv) {
         add_compare(program, status);
         add_errors(program, status);
         add_explain(program, status);
+        add_recommend(program, status);
         add_list(program, status);
         add_pairs(program, status);
         add_collide(program, status);

@@ -14,6 +14,7 @@ void add_compare(CLI::App& program, int& status);
 void add_contacts(CLI::App& program, int& status);
 void add_errors(CLI::App& program, int& status);
 void add_explain(CLI::App& program, int& status);
+void add_recommend(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_order(CLI::App& program, int& status);
 void add_pairs(CLI::App& program, int& status);

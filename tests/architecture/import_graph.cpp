@@ -51,6 +51,7 @@ const std::vector<std::string> rooms = {
     "experiments/configs",
     "experiments/play",
     "experiments/measures",
+    "experiments/race",
     "experiments/errors",
     "experiments/stiff",
     "experiments/extreme",

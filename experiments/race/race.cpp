@@ -1,0 +1,228 @@
+module;
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.race;
+
+import :apart;
+import aabb.base;
+import aabb.pipeline;
+import aabb.registry;
+import aabb.validation;
+import aabblab.play;
+import aabblab.progress;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.stopwatch;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::size_t first_frames = 4;
+constexpr std::size_t most_finalists = 6;
+constexpr std::size_t fewest_repeats = 5;
+constexpr std::size_t most_repeats = 15;
+/// Who takes so many times as long as the fastest, in the whole and a frame, is dropped; less in every round.
+constexpr double first_margin = 2;
+constexpr double last_margin = 1.25;
+
+std::uint64_t bytes_of(const player& p) {
+    std::uint64_t all = p.buffer_bytes();
+    for (const auto& parts : {p.global_bytes(), p.local_bytes()})
+        for (const aabb::part_bytes& part : parts)
+            if (part.part != "triangles" && part.part != "vertices") all += part.bytes;
+    return all;
+}
+
+race_time play_frames(const scene_choice& choice, const contender& who, std::size_t frames) {
+    scene_play scene(choice);
+    std::optional<player> p;
+    race_time time;
+    time.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
+    tally found(scene.meshes() != nullptr);
+    play(
+        scene, *p,
+        [&](const played_frame& frame) {
+            found.add(frame.pairs, frame.contacts);
+            (frame.number == 0 ? time.first_ms : time.rest_ms) += frame.ms();
+            ++time.frames;
+        },
+        frames);
+    time.bytes = bytes_of(*p);
+    time.digest = found.digest();
+    return time;
+}
+
+std::string to_line(const race_time& t) {
+    std::ostringstream text;
+    text.precision(17);
+    text << t.build_ms << ' ' << t.first_ms << ' ' << t.rest_ms << ' ' << t.frames << ' ' << t.bytes << ' ' << t.digest;
+    return text.str();
+}
+
+race_time from_line(const std::string& line) {
+    std::istringstream text(line);
+    race_time t;
+    text >> t.build_ms >> t.first_ms >> t.rest_ms >> t.frames >> t.bytes >> t.digest;
+    return t;
+}
+
+std::optional<race_time> play_apart(const scene_choice& choice, const contender& who, std::size_t frames,
+                                    double seconds) {
+    const auto line = done_apart([&] { return to_line(play_frames(choice, who, frames)); }, seconds);
+    return line ? std::optional(from_line(*line)) : std::nullopt;
+}
+
+class race {
+public:
+    race(const scene_choice& scene, std::vector<racer> all, double seconds)
+        : scene_(scene), running_(std::move(all)), seconds_(seconds) {
+        const scene_play made(scene);
+        result_.objects = made.objects();
+        result_.frames = made.frames();
+        result_.of = result_.frames * running_.size();
+    }
+
+    race_result run() {
+        std::size_t frames = std::min(result_.frames, first_frames);
+        double margin = first_margin;
+        play_round(frames, margin);
+        while (frames < result_.frames && running_.size() > most_finalists && left() > seconds_ / 2) {
+            frames = std::min(result_.frames, 2 * frames);
+            margin = std::max(last_margin, std::sqrt(margin));
+            play_round(frames, margin);
+        }
+        drop_to(most_finalists);
+        play_final();
+        std::ranges::reverse(result_.dropped);
+        result_.finalists = std::move(running_);
+        return std::move(result_);
+    }
+
+private:
+    [[nodiscard]] double left() const {
+        return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+    }
+
+    /// Plays the first frames with all; who takes far longer than the fastest so far is stopped.
+    void play_round(std::size_t frames, double margin) {
+        progress shown("racing over " + std::to_string(frames) + " frames", running_.size());
+        double least = std::numeric_limits<double>::infinity();
+        std::size_t done = 0;
+        for (racer& one : running_) {
+            // Reading the scene takes time as well.
+            const double patience = std::isfinite(least) ? 1 + 20 * least / 1000 + reading_s_ : 600;
+            const auto began = std::chrono::steady_clock::now();
+            one.last = play_apart(scene_, one.who, frames, patience);
+            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+            if (one.last) {
+                const double own = one.last->over(static_cast<double>(frames));
+                if (!std::isfinite(least)) reading_s_ = 2 * std::max(0.0, took - own / 1000);
+                least = std::min(least, own);
+                result_.played += frames;
+            }
+            shown.at(++done);
+        }
+        judge(margin);
+    }
+
+    /// Drops who is behind both over the whole scene and a frame.
+    void judge(double margin) {
+        const auto whole = [&](const racer& r) { return r.last->over(static_cast<double>(result_.frames)); };
+        double least_whole = std::numeric_limits<double>::infinity();
+        double least_steady = least_whole;
+        for (const racer& r : running_) {
+            if (!r.last) continue;
+            least_whole = std::min(least_whole, whole(r));
+            least_steady = std::min(least_steady, r.last->steady_ms());
+        }
+        for (racer& r : running_) r.behind = r.last ? whole(r) / least_whole : 0;
+        std::ranges::stable_sort(running_, [](const racer& a, const racer& b) {
+            return a.last.has_value() && (!b.last || a.behind < b.behind);
+        });
+        const auto stays = [&](const racer& r) {
+            return r.last &&
+                   (r.behind <= margin || (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
+        };
+        const auto first_out = std::stable_partition(running_.begin(), running_.end(), stays);
+        for (auto last = running_.end(); last != first_out;) result_.dropped.push_back(std::move(*--last));
+        running_.erase(first_out, running_.end());
+    }
+
+    void drop_to(std::size_t most) {
+        for (; running_.size() > most; running_.pop_back()) result_.dropped.push_back(std::move(running_.back()));
+    }
+
+    /// The whole scene, in turn, as often as there is time for.
+    void play_final() {
+        progress shown("racing to the end", most_repeats);
+        for (std::size_t repeat = 0; repeat < most_repeats && (repeat < fewest_repeats || left() > 0); ++repeat) {
+            for (racer& r : running_)
+                if (const auto time = play_apart(scene_, r.who, result_.frames, 600)) {
+                    r.times.push_back(*time);
+                    result_.played += repeat == 0 ? result_.frames : 0;
+                }
+            shown.at(repeat + 1);
+        }
+        std::erase_if(running_, [](const racer& r) { return r.times.size() < fewest_repeats; });
+        if (running_.empty()) throw aabb::input_error("nothing plays this scene to its end");
+        const auto whole = [](const race_time& t) { return t.over(static_cast<double>(t.frames)); };
+        for (racer& r : running_) {
+            std::vector<race_time> ordered = r.times;
+            std::ranges::sort(ordered, {}, whole);
+            r.last = ordered[ordered.size() / 2];
+        }
+        std::ranges::sort(running_, {}, [&](const racer& r) { return whole(*r.last); });
+        const std::vector<race_time>& winner = running_.front().times;
+        for (racer& r : running_) {
+            cells ratios(1, 1);
+            for (std::size_t i = 0; i < std::min(r.times.size(), winner.size()); ++i)
+                ratios.add(0, 0, std::log(whole(r.times[i]) / whole(winner[i])));
+            r.log_ratio = bootstrap(ratios);
+        }
+    }
+
+    const scene_choice& scene_;
+    std::vector<racer> running_;
+    double seconds_;
+    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+    double reading_s_ = 0;
+    race_result result_;
+};
+
+}  // namespace
+
+std::vector<racer> starters(const scene_choice& choice) {
+    const scene_play scene(choice);
+    const bool meshes = scene.meshes() != nullptr;
+    std::vector<racer> all;
+    const auto add = [&](contender who) {
+        std::string name = text_of(who.name);
+        all.push_back({std::move(who), std::move(name), {}, {}, 0, {}});
+    };
+    add(contender_of(aabb::named_strategies(), scene));
+    const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
+    for (const aabb::composition& c : aabb::every_composition(stage))
+        if (is_exact(c, stage) && (meshes || needs_meshes(c).empty())) add(contender_of(c, meshes));
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (meshes ? engine.collides_meshes : engine.searches_boxes)
+            if (auto who = contender_of(engine, meshes)) add(*std::move(who));
+    return all;
+}
+
+race_result run_race(const scene_choice& scene, std::vector<racer> all, double seconds) {
+    return race(scene, std::move(all), seconds).run();
+}
+
+}  // namespace aabblab
