@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -50,7 +51,9 @@ public:
         if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
         select(boxes, objects);
         const std::size_t n = present_.boxes.size();
-        const bool is_anew = is_stale(n);
+        const box bounds = bounds_of_some();
+        const bool is_anew = is_stale(n) || lie_elsewhere(bounds, planned_bounds_);
+        if (is_anew) planned_bounds_ = bounds;
         planned_ = 0;
         age_ = is_anew ? 0 : age_ + 1;
         const bool valid = is_grouped(n) ? distribute(is_anew, counters) : fill(is_anew, counters);
@@ -121,6 +124,31 @@ private:
         const std::size_t change = n > planned_ ? n - planned_ : planned_ - n;
         return planned_ == 0 || age_ + 1 == frames_a_plan || 8 * change > planned_ ||
                is_grouped(n) != (groups_.size() > 0);
+    }
+
+    /// Of a few of the boxes, the same ones in every frame that has as many.
+    [[nodiscard]] box bounds_of_some() const noexcept {
+        constexpr std::size_t looked_at = 16;
+        box bounds = empty_box();
+        const std::size_t n = present_.boxes.size();
+        const std::size_t step = std::max<std::size_t>(1, n / looked_at);
+        for (std::size_t i = 0; i < n; i += step) bounds = merged(bounds, present_.boxes[i]);
+        return bounds;
+    }
+
+    /// Whether boxes spread over half as much again as when they were planned for, or over two thirds, or have moved on
+    /// by half of that, on any axis; on one on which they hardly spread, by more than a part of the longest.
+    [[nodiscard]] static bool lie_elsewhere(const box& now, const box& planned) noexcept {
+        const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
+        const double longest = width_of(planned, longest_axis(planned));
+        for (int k = 0; k < 3; ++k) {
+            const double width = std::max(width_of(planned, k), longest / 64);
+            const double change = width_of(now, k) - width_of(planned, k);
+            const double way =
+                double{now.min[k]} - double{planned.min[k]} + double{now.max[k]} - double{planned.max[k]};
+            if (change > width / 2 || change < -width / 3 || std::abs(way) > width) return true;
+        }
+        return false;
     }
 
     [[nodiscard]] bool is_grouped(std::size_t n) const noexcept { return partition_.group(n) < n; }
@@ -241,6 +269,7 @@ private:
     std::vector<pairs_of_group> found_;
     std::size_t planned_ = 0;  // boxes of the frame before; 0 without a plan
     unsigned age_ = 0;         // frames since the plan
+    box planned_bounds_ = empty_box();
 };
 
 }  // namespace aabb

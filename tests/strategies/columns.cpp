@@ -91,6 +91,36 @@ TEST_CASE("more boxes than one group takes are put into groups") {
     CHECK(pairs == true_pairs(boxes));
 }
 
+TEST_CASE("columns are planned anew once boxes lie elsewhere") {
+    const std::vector<box> heap = random_boxes(3000, 14, 1, 1);
+    // Tests of a frame, of a search that has seen others before.
+    const auto tests_of = [](search_by_columns& search, const std::vector<box>& boxes) {
+        const std::uint64_t before = search.counters()[work::box_tests];
+        std::vector<index_pair> pairs;
+        search.update(boxes);
+        search.search(pairs);
+        return static_cast<double>(search.counters()[work::box_tests] - before);
+    };
+    for (const double wide : {1.6, 4.0, 0.4})
+        for (const float way : {0.0F, 500.0F}) {
+            std::vector<box> later = random_boxes(3000, 14 * wide, 1, 1);
+            for (box& b : later) {
+                b.min[0] += way;
+                b.max[0] += way;
+            }
+            search_by_columns anew;
+            search_by_columns seen;
+            for (std::uint32_t id = 0; id < heap.size(); ++id) {
+                anew.insert(id);
+                seen.insert(id);
+            }
+            const double at_first = tests_of(anew, later);
+            (void)tests_of(seen, heap);
+            INFO(wide << " times as wide, " << way << " away");
+            CHECK(tests_of(seen, later) == at_first);
+        }
+}
+
 TEST_CASE("a few boxes far away do not widen a plan much") {
     std::vector<box> boxes = random_boxes(12'800, 50, 1, 9);
     for (std::size_t i = 0; i < boxes.size(); i += 200)
