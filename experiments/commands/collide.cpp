@@ -71,7 +71,7 @@ struct detection_result {
     std::optional<double> bytes_per_triangle;  ///< of the trees; none for an engine that does not say
 };
 
-detection_method method_of(const collide_request& request, const scene_play& scene) {
+detection_method method_of(const collide_request& request, const aabb::scene_outlook& outlook) {
     if (request.engine) {
         if (request.local.any())
             throw aabb::input_error("--engine stands in for " + request.local.names() + ", so give it alone");
@@ -79,7 +79,7 @@ detection_method method_of(const collide_request& request, const scene_play& sce
     }
     aabb::named_strategies named;
     request.local.add_to(named);
-    const aabb::composition composition = composed_of(select_strategies(named, outlook_of(scene)));
+    const aabb::composition composition = composed_of(select_strategies(named, outlook));
     detection_method method{aabb::to_text(composition, aabb::stage::local_detection),
                             aabb::is_exact(composition, aabb::stage::local_detection),
                             aabb::compose_local_detection(composition, aabb::instrumentation::none),
@@ -305,6 +305,8 @@ void require_sense(const collide_request& request) {
 
 void collide(const collide_request& request) {
     require_sense(request);
+    // What makes no sense is refused before anything is read.
+    static_cast<void>(method_of(request, {}));
     const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
     std::vector<aabb::pose> of_b{pose_of(request.poses[1], "--pose-b")};
     if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);
@@ -321,7 +323,7 @@ void collide(const collide_request& request) {
         table.emplace(*request.out, columns);
     }
     scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), of_a, std::move(of_b), request.repeats));
-    detection_method method = method_of(request, scene);
+    detection_method method = method_of(request, outlook_of(scene));
     const detection_result result = detect(request, method, scene, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)

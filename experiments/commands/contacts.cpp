@@ -64,11 +64,11 @@ struct contacts_result {
     std::vector<double> milliseconds;  ///< by frame
 };
 
-both_stages stages_of(const contacts_request& request, const scene_play& scene) {
+both_stages stages_of(const contacts_request& request, const aabb::scene_outlook& outlook) {
     aabb::named_strategies named;
     request.global.add_to(named);
     request.local.add_to(named);
-    const aabb::composition c = composed_of(select_strategies(named, outlook_of(scene)));
+    const aabb::composition c = composed_of(select_strategies(named, outlook));
     const std::string global = to_text(c, aabb::stage::global_search);
     const bool exact = is_exact(c, aabb::stage::global_search);
     if (request.engine) {
@@ -166,6 +166,8 @@ void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
     if (request.geometry) require_no_engine(request.engine);
+    // What makes no sense is refused before anything is read.
+    static_cast<void>(stages_of(request, {}));
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.motion, 1});
@@ -175,7 +177,7 @@ void find_contacts(const contacts_request& request) {
         table.emplace(*request.out, columns);
     }
     scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
-    both_stages both = stages_of(request, scene);
+    both_stages both = stages_of(request, outlook_of(scene));
     const contacts_result result = detect_all(scene, both, table);
     if (table) table->commit();
     if (request.json)

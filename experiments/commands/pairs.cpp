@@ -53,7 +53,7 @@ struct search_result {
     std::vector<double> milliseconds;  ///< of update and search, by frame
 };
 
-search_method method_of(const pairs_request& request, const scene_play& scene) {
+search_method method_of(const pairs_request& request, const aabb::scene_outlook& outlook) {
     if (request.engine) {
         if (request.global.any())
             throw aabb::input_error("--engine stands in for " + request.global.names() + ", so give it alone");
@@ -61,7 +61,7 @@ search_method method_of(const pairs_request& request, const scene_play& scene) {
     }
     aabb::named_strategies named;
     request.global.add_to(named);
-    const aabb::composition composition = composed_of(select_strategies(named, outlook_of(scene)));
+    const aabb::composition composition = composed_of(select_strategies(named, outlook));
     return {aabb::to_text(composition, aabb::stage::global_search),
             aabb::is_exact(composition, aabb::stage::global_search),
             aabb::compose_global_search(composition, aabb::instrumentation::none)};
@@ -104,8 +104,10 @@ void print_text(const pairs_request& request, const search_method& method, const
 }
 
 void find_pairs(const pairs_request& request) {
+    // What makes no sense is refused before anything is read.
+    static_cast<void>(method_of(request, {}));
     scene_play scene(open_recording(request.recording));
-    search_method method = method_of(request, scene);
+    search_method method = method_of(request, outlook_of(scene));
     std::optional<number_table> table;
     if (request.out) {
         require_other_file(*request.out, {&request.recording, 1});

@@ -31,7 +31,7 @@ namespace {
         }
         if (written == text.size()) status = 0;
     } catch (...) {
-        // It has no answer.
+        status = 2;
     }
     _exit(status);
 }

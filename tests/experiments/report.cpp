@@ -195,10 +195,10 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
     rows.push_back(engine);
     const auto scenes = aabblab::summarise(rows);
     CHECK(aabblab::to_csv(aabblab::overall_table_of(scenes)) ==
-          "#,sort,ratio,least,greatest,scenes,fastest in\n"
-          "1,std,1.00,1.00,1.00,2,1\n"
-          "2,insertion,2.00,0.50,8.00,2,1\n"
-          "3,cgal,4.00,4.00,4.00,1,0\n");
+          "#,sort,ratio,least,greatest,scenes,fastest in,regret,worst\n"
+          "1,std,1.00,1.00,1.00,2,1,1.04,1.08\n"
+          "2,insertion,2.00,0.50,8.00,2,1,1.50,2.00\n"
+          "3,cgal,4.00,4.00,4.00,1,0,1.54,1.54\n");
 }
 
 TEST_CASE("Tables are written for programs too") {

@@ -98,18 +98,19 @@ TEST_CASE("without a margin of its own a list is kept where it pays, and nothing
     const auto plain = stage_of({}, 1000);
     const auto listed = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 1000);
     std::vector<box> boxes;
-    for (std::size_t i = 0; i < 1000; ++i)
-        boxes.push_back(
-            {{static_cast<float>(i % 10) * 1.5F, static_cast<float>(i / 10 % 10) * 1.5F, static_cast<float>(i / 100)},
-             {static_cast<float>(i % 10) * 1.5F + 1, static_cast<float>(i / 10 % 10) * 1.5F + 1,
-              static_cast<float>(i / 100) + 1}});
+    for (int x = 0; x < 10; ++x)
+        for (int y = 0; y < 10; ++y)
+            for (int z = 0; z < 10; ++z) {
+                const vec3f at{1.5F * static_cast<float>(x), 1.5F * static_cast<float>(y), static_cast<float>(z)};
+                boxes.push_back({at, at + vec3f{1, 1, 1}});
+            }
     // How often boxes are brought to their places while each moves by so much along x, some there and some back.
     std::uint32_t frame = 0;
     const auto searches = [&](float way) {
         std::uint64_t found = 0;
         for (int i = 0; i < 16; ++i, ++frame) {
             for (std::size_t id = 0; id < boxes.size(); ++id) {
-                const float by = id % 2 == 0 ? way : -way;
+                const float by = id / 100 % 2 == 0 ? way : -way;
                 boxes[id].min[0] += frame / 16 % 2 == 0 ? by : -by;
                 boxes[id].max[0] += frame / 16 % 2 == 0 ? by : -by;
             }
