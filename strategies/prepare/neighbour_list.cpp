@@ -213,7 +213,7 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
     if (motion_.size() < longest_history) motion_.push_back(moved.margin);
     if (!moved.any && margin_ == 0) from_ = source::whole;
     if (config_.every > 0) return age_ < config_.every;
-    came_to_rest_ = adapts() && moved.any && rest_.came_to_rest(boxes, moved.margin);
+    came_to_rest_ = adapts() && margin_ > 0 && rest_.came_to_rest(boxes, moved.margin);
     return moved.margin <= margin_ && !came_to_rest_;
 }
 
@@ -282,7 +282,7 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     search_->search(list_);
     if (foreseen_ > 0) {
         const double beside = static_cast<double>(list_.size()) - static_cast<double>(found_);
-        correction_ = std::clamp(correction_ * beside / foreseen_, 0.01, 1000.0);
+        correction_ = std::clamp(correction_ * beside / foreseen_, 0.5, 1000.0);
     }
     margin_ = margin;
     is_too_long_ = foreseen_ > 0 && !pays(objects_.size(), found_, list_.size());

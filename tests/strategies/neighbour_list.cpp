@@ -175,3 +175,26 @@ TEST_CASE("the margin is a number of at least 0, or auto") {
             Message("neighbour_list: margin must be a number of at least 0 or auto, not '" + text + "'"));
     CHECK_NOTHROW(require_known(strategy_kind::prepare, {"neighbour_list", {{"margin", "0"}}}));
 }
+
+TEST_CASE("boxes that came to rest are not tested again") {
+    const auto listed = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 1000);
+    std::vector<box> boxes;
+    for (int i = 0; i < 1000; ++i) boxes.push_back(cube(0.8F * static_cast<float>(i)));
+    // Frames, and how many of them took tests, with so many of the boxes moving on along y.
+    const auto work_in = [&](int frames, std::size_t moving) {
+        int tested = 0;
+        for (int frame = 0; frame < frames; ++frame) {
+            for (std::size_t i = 1; i <= moving; ++i) {
+                boxes[i].min[1] += 0.001F;
+                boxes[i].max[1] += 0.001F;
+            }
+            const std::uint64_t before = listed->counters()[work::box_tests];
+            CHECK(pairs_of(*listed, boxes).size() == 999);
+            tested += listed->counters()[work::box_tests] > before;
+        }
+        return tested;
+    };
+    CHECK(work_in(20, 900) > 10);
+    CHECK(work_in(10, 0) <= 5);
+    CHECK(work_in(10, 0) == 0);
+}
