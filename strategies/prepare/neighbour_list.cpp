@@ -196,7 +196,7 @@ std::vector<std::string> neighbour_list_stage::left_out() const {
 
 /// Whether nothing has moved since a search of boxes as they were, so that the list is the answer.
 bool neighbour_list_stage::rests(std::span<const box> boxes) {
-    if (!adapts() || margin_ > 0 || boxes.size() != kept_.size() ||
+    if (!adapts() || margin_ > 0 || boxes.empty() || boxes.size() != kept_.size() ||
         std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) != 0)
         return false;
     motion_.clear();
