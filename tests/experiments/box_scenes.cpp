@@ -145,7 +145,7 @@ TEST_CASE("boxes move by the displacement, in either unit") {
                 play(info.name, {{"unit", unit}, {"objects", objects}, {"frames", "3"}});
         }
     }
-    REQUIRE(moving == 11);
+    REQUIRE(moving == 12);
 }
 
 TEST_CASE("overlapping pairs grow with the number of boxes, not with its square") {
@@ -159,6 +159,17 @@ TEST_CASE("overlapping pairs grow with the number of boxes, not with its square"
         CHECK(many > 0.8 * few);
         CHECK(many < 1.3 * few);
     }
+}
+
+TEST_CASE("explosion creeps, flies and stands still, a third of the frames each") {
+    const auto frames = play("explosion", {{"frames", "9"}, {"displacement", "0.5"}});
+    REQUIRE(frames.size() == 10);
+    for (std::size_t f = 1; f < frames.size(); ++f) {
+        const double way = ways_in({frames[f - 1], frames[f]}).mean;
+        INFO("frame " << f);
+        CHECK(std::abs(way - (f <= 3 ? 0.005 : f <= 6 ? 0.5 : 0)) < 1e-4);
+    }
+    CHECK(neighbours_in(frames[9]) < neighbours_in(frames[0]));
 }
 
 TEST_CASE("free_fall comes down along z alone, bounces and gathers at the floor") {

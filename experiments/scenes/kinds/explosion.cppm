@@ -30,8 +30,8 @@ public:
         double displacement = 0.5;
         length_unit unit = length_unit::extent;
     };
-    static constexpr auto parameters =
-        std::tuple_cat(size_parameters, displacement_parameters<config>("the way of a box in a frame while it flies"));
+    static constexpr auto parameters = std::tuple_cat(
+        size_parameters, displacement_parameters<config>("the longest way of a box in a frame, while it flies"));
 
     explosion(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, sizeof(flying_box)), frames_(c.frames) {
