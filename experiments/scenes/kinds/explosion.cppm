@@ -26,17 +26,17 @@ public:
         "unit cubes heaped in a cube that creep outwards, then fly apart, then stand still, a third of the frames each";
 
     struct config : scene_size {
-        /// How far a box moves in a frame while it flies; before, a hundredth of that.
+        /// How far a cube moves in a frame while it flies, in edges; before, a hundredth of that.
         double displacement = 0.5;
-        length_unit unit = length_unit::extent;
     };
     static constexpr auto parameters = std::tuple_cat(
-        size_parameters, displacement_parameters<config>("the longest way of a box in a frame, while it flies"));
+        size_parameters, std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
+                                                           "the way of a cube in a frame while it flies, in edges"}});
 
     explosion(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, sizeof(flying_box)), frames_(c.frames) {
         const double side = cube_root(c.objects);
-        flight_ = step_of(c, 1, {side + 1, side + 1, side + 1});
+        flight_ = c.displacement;
         boxes_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             flying_box b{};
