@@ -61,9 +61,9 @@ function(aabblab_each result format separator)
     set(${result} "${all}" PARENT_SCOPE)
 endfunction()
 
-# aabblab_registry(): the modules aabb.registry, over all declared kinds and strategies, and aabb.selection. The first's interface names no strategy;
-# generated implementation units do, one for each strategy of a stage's first kind, so that a changed strategy rebuilds
-# few of them.
+# aabblab_registry(): the modules aabb.registry, over all declared kinds and strategies, and aabb.selection. Their
+# interfaces name no strategy; generated implementation units do, one for each strategy of a stage's first kind, so that
+# a changed strategy rebuilds few of them.
 function(aabblab_registry)
     set(from ${CMAKE_CURRENT_SOURCE_DIR}/registry)
     set(to ${CMAKE_CURRENT_BINARY_DIR}/registry)

@@ -27,7 +27,7 @@ namespace {
 
 /// "bucket, or std with another partition or sweep", "as it serves the scene"
 std::string usual_of(aabb::strategy_kind kind) {
-    if (aabb::hangs_on_scene(kind)) return "as it serves the scene";
+    if (aabb::depends_on_scene(kind)) return "as it serves the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
     std::string text(info.fallback);
     if (info.beside == info.fallback) return text;

@@ -114,7 +114,7 @@ void print_overall(std::span<const scene_summary> scenes) {
 
 /// What takes several must not have them all on one processor.
 bool takes_several_threads(const experiment& e) {
-    return std::ranges::any_of(e.compositions, [](const aabb::composition& c) {
+    return std::ranges::any_of(every_composition(e), [](const aabb::composition& c) {
         return std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
             return std::ranges::any_of(c[kind].settings,
                                        [](const aabb::setting& s) { return s.name == "threads" && s.value != "1"; });

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +12,12 @@
 // Imports, so it comes last.
 #include "explain_savings.hpp"
 
-import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabblab.numbers;
 import aabblab.play;
+import aabblab.race;
 import aabblab.scenes;
-import aabblab.stopwatch;
 import aabblab.tables;
 
 namespace aabblab {
@@ -33,38 +31,18 @@ constexpr std::size_t most_objects_of_any = 20'000;
 
 struct cost {
     double build_ms = std::numeric_limits<double>::infinity();
-    double frame_ms = std::numeric_limits<double>::infinity();  ///< the mean over the frames after frame 0
-    std::size_t bytes = 0;
+    double frame_ms = std::numeric_limits<double>::infinity();  ///< after frame 0, a mean; of frame 0 if it is alone
+    std::uint64_t bytes = 0;
 };
-
-std::size_t bytes_of(const player& p) {
-    std::size_t all = p.buffer_bytes();
-    for (const aabb::part_bytes& part : p.global_bytes()) all += part.bytes;
-    for (const aabb::part_bytes& part : p.local_bytes())
-        if (part.part != "triangles" && part.part != "vertices") all += part.bytes;
-    return all;
-}
 
 /// The least of some repeats.
 cost cost_of(const scene_choice& choice, const contender& who) {
     cost least;
     for (std::size_t i = 0; i < repeats; ++i) {
-        scene_play scene(choice);
-        std::optional<player> p;
-        const double built = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
-        double sum = 0;
-        std::size_t frames = 0;
-        play(
-            scene, *p,
-            [&](const played_frame& frame) {
-                if (frame.number == 0 && scene.frames() > 1) return;
-                sum += frame.ms();
-                ++frames;
-            },
-            most_frames);
-        least.build_ms = std::min(least.build_ms, built);
-        if (frames > 0) least.frame_ms = std::min(least.frame_ms, sum / static_cast<double>(frames));
-        least.bytes = bytes_of(*p);
+        const race_time time = time_frames(choice, who, most_frames);
+        least.build_ms = std::min(least.build_ms, time.build_ms);
+        least.frame_ms = std::min(least.frame_ms, time.frames > 1 ? time.steady_ms() : time.first_ms);
+        least.bytes = time.bytes;
     }
     return least;
 }

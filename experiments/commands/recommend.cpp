@@ -36,10 +36,6 @@ struct recommend_request {
     double seconds = 60;
 };
 
-double whole_ms(const racer& r, double frames) {
-    return r.last->over(frames);
-}
-
 std::string ratio_text(const racer& r) {
     return fmt::format("{:.2f}", std::exp(r.log_ratio->value));
 }
@@ -63,7 +59,7 @@ table table_of(const race_result& race) {
     for (const racer& r : race.finalists) {
         const race_time& time = *r.last;
         t.rows.push_back({std::to_string(t.rows.size() + 1), r.name,
-                          fmt::format("{:.4g}", whole_ms(r, static_cast<double>(race.frames))), ratio_text(r),
+                          fmt::format("{:.4g}", time.over(static_cast<double>(race.frames))), ratio_text(r),
                           &r == &race.finalists.front() ? "-" : interval_of(r), fmt::format("{:.4g}", time.steady_ms()),
                           fmt::format("{:.3g}", time.first_ms), fmt::format("{:.3g}", time.build_ms),
                           grouped(time.bytes / 1024)});
@@ -111,7 +107,7 @@ std::string of_automatic(const race_result& race) {
 std::string sentence_of(const race_result& race) {
     const racer& winner = race.finalists.front();
     std::string text = fmt::format("Use {}: {:.4g} ms for all {} frames", winner.name,
-                                   whole_ms(winner, static_cast<double>(race.frames)), race.frames);
+                                   winner.last->over(static_cast<double>(race.frames)), race.frames);
     if (race.finalists.size() > 1) {
         const racer& next = race.finalists[1];
         text += next.log_ratio->range().low > 0 ? fmt::format("; {}, the next, takes {} times as long ({})", next.name,

@@ -73,6 +73,9 @@ struct experiment {
     [[nodiscard]] bool records(metric_group group) const { return recorded.contains(group); }
 };
 
+/// All of it, that of each `auto` as it is for a scene of which nothing is known.
+[[nodiscard]] std::vector<aabb::composition> every_composition(const experiment& e);
+
 /// `quick` takes what the config says under `quick`, for a first look.
 enum class experiment_size { full, quick };
 

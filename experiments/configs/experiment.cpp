@@ -24,6 +24,7 @@ import :document;
 import aabb.base;
 import aabb.policy;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
 import aabblab.metrics;
 import aabblab.results;
@@ -91,7 +92,8 @@ external_engine external_of(const document& doc, const node& table) {
     if (!name) doc.fail(table.line, "this [[external]] has no name; expected name = \"…\"");
     engine.name = doc.text_of("name", *name);
     require_plain_name(doc, *name);
-    if (std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
+    if (engine.name == contender_name::automatic ||
+        std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
         std::ranges::count(aabb::left_out_engines(), engine.name, &aabb::left_out_engine::name) > 0)
         doc.fail(name->line, "there is an engine '" + engine.name + "' already; give this one another name");
     const node* command = table.find("command");
@@ -249,6 +251,12 @@ std::string text_of_config(const std::filesystem::path& file) {
 
 experiment read_experiment(const std::filesystem::path& file, experiment_size size) {
     return parse_experiment(text_of_config(file), file.string(), size);
+}
+
+std::vector<aabb::composition> every_composition(const experiment& e) {
+    std::vector<aabb::composition> all = e.compositions;
+    for (const aabb::named_strategies& named : e.automatic) all.push_back(composed_of(select_strategies(named, {})));
+    return all;
 }
 
 std::string hash_of(const experiment& e) {

@@ -175,7 +175,7 @@ int line_naming(const node& in, const std::string& strategy) {
 void require_playable(const document& doc, const written_scene& scene, const experiment& e) {
     if (scene.info->has_meshes) return;
     const node* compose = doc.root().find("compose");
-    for (const aabb::composition& c : e.compositions)
+    for (const aabb::composition& c : every_composition(e))
         for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
             const auto strategy = std::ranges::find(aabb::strategies(kind), c[kind].name, &aabb::strategy_info::name);
             if (strategy->needs_meshes.empty()) continue;

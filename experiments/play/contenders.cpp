@@ -58,11 +58,11 @@ contender contender_of(const aabb::named_strategies& named, const scene_play& sc
 }
 
 aabb::scene_outlook outlook_of(const scene_play& scene) {
-    aabb::scene_outlook seen{scene.objects(), scene.frames()};
+    aabb::scene_outlook seen{.frames = scene.frames()};
     if (!scene.meshes()) return seen;
     for (const aabb::mesh& m : scene.meshes()->meshes) seen.triangles += m.triangle_count();
     // Each object is held against one other a frame, as a guess.
-    seen.queries = seen.frames * std::max<std::size_t>(seen.objects / 2, 1);
+    seen.queries = seen.frames * std::max<std::size_t>(scene.objects() / 2, 1);
     return seen;
 }
 

@@ -158,6 +158,14 @@ std::size_t player::buffer_bytes() const {
     return pipeline_ ? pipeline_->bytes() : aabb::bytes_of(pairs_);
 }
 
+std::size_t player::held_bytes() const {
+    std::size_t all = buffer_bytes();
+    for (const aabb::part_bytes& part : global_bytes()) all += part.bytes;
+    for (const aabb::part_bytes& part : local_bytes())
+        if (part.part != "triangles" && part.part != "vertices") all += part.bytes;
+    return all;
+}
+
 std::vector<std::string> player::left_out() const {
     std::vector<std::string> all = made_.global ? made_.global->left_out() : std::vector<std::string>{};
     if (!made_.local) all.emplace_back("no local detection: no meshes, no trees, no triangle test");

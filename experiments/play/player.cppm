@@ -126,6 +126,8 @@ public:
     [[nodiscard]] std::vector<aabb::part_bytes> global_bytes() const;
     [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
     [[nodiscard]] std::size_t buffer_bytes() const;
+    /// Of all parts but the meshes, which every composition reads.
+    [[nodiscard]] std::size_t held_bytes() const;
     [[nodiscard]] std::vector<std::string> left_out() const;
     /// The mean over the models of the tree's; empty where there is no tree to be seen.
     [[nodiscard]] std::optional<double> box_inflation() const;

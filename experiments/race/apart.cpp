@@ -1,6 +1,7 @@
 module;
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <array>
@@ -68,6 +69,8 @@ std::optional<std::string> done_apart(const std::function<std::string()>& work, 
         return std::nullopt;
     }
     if (child == 0) {
+        // It does not outlive this process, however that ends.
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
         close(ends[0]);
         answer(ends[1], work);
     }

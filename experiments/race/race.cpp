@@ -4,7 +4,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -37,33 +37,6 @@ constexpr std::size_t most_repeats = 15;
 constexpr double first_margin = 2;
 constexpr double last_margin = 1.25;
 
-std::uint64_t bytes_of(const player& p) {
-    std::uint64_t all = p.buffer_bytes();
-    for (const auto& parts : {p.global_bytes(), p.local_bytes()})
-        for (const aabb::part_bytes& part : parts)
-            if (part.part != "triangles" && part.part != "vertices") all += part.bytes;
-    return all;
-}
-
-race_time play_frames(const scene_choice& choice, const contender& who, std::size_t frames) {
-    scene_play scene(choice);
-    std::optional<player> p;
-    race_time time;
-    time.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
-    tally found(scene.meshes() != nullptr);
-    play(
-        scene, *p,
-        [&](const played_frame& frame) {
-            found.add(frame.pairs, frame.contacts);
-            (frame.number == 0 ? time.first_ms : time.rest_ms) += frame.ms();
-            ++time.frames;
-        },
-        frames);
-    time.bytes = bytes_of(*p);
-    time.digest = found.digest();
-    return time;
-}
-
 std::string to_line(const race_time& t) {
     std::ostringstream text;
     text.precision(17);
@@ -80,7 +53,7 @@ race_time from_line(const std::string& line) {
 
 std::optional<race_time> play_apart(const scene_choice& choice, const contender& who, std::size_t frames,
                                     double seconds) {
-    const auto line = done_apart([&] { return to_line(play_frames(choice, who, frames)); }, seconds);
+    const auto line = done_apart([&] { return to_line(time_frames(choice, who, frames)); }, seconds);
     return line ? std::optional(from_line(*line)) : std::nullopt;
 }
 
@@ -175,7 +148,10 @@ private:
                 }
             shown.at(repeat + 1);
         }
-        std::erase_if(running_, [](const racer& r) { return r.times.size() < fewest_repeats; });
+        const auto ends = [](const racer& r) { return r.times.size() >= fewest_repeats; };
+        const auto first_out = std::stable_partition(running_.begin(), running_.end(), ends);
+        std::move(first_out, running_.end(), std::back_inserter(result_.dropped));
+        running_.erase(first_out, running_.end());
         if (running_.empty()) throw aabb::input_error("nothing plays this scene to its end");
         const auto whole = [](const race_time& t) { return t.over(static_cast<double>(t.frames)); };
         for (racer& r : running_) {
@@ -202,6 +178,25 @@ private:
 };
 
 }  // namespace
+
+race_time time_frames(const scene_choice& choice, const contender& who, std::size_t frames) {
+    scene_play scene(choice);
+    std::optional<player> p;
+    race_time time;
+    time.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
+    tally found(scene.meshes() != nullptr);
+    play(
+        scene, *p,
+        [&](const played_frame& frame) {
+            found.add(frame.pairs, frame.contacts);
+            (frame.number == 0 ? time.first_ms : time.rest_ms) += frame.ms();
+            ++time.frames;
+        },
+        frames);
+    time.bytes = p->held_bytes();
+    time.digest = found.digest();
+    return time;
+}
 
 std::vector<racer> starters(const scene_choice& choice) {
     const scene_play scene(choice);

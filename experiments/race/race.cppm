@@ -32,6 +32,9 @@ struct race_time {
     [[nodiscard]] double steady_ms() const { return frames > 1 ? rest_ms / static_cast<double>(frames - 1) : 0; }
 };
 
+/// Plays the first frames of the scene.
+[[nodiscard]] race_time time_frames(const scene_choice& scene, const contender& who, std::size_t frames);
+
 struct racer {
     contender who;
     std::string name;

@@ -1,6 +1,5 @@
 module;
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -22,10 +21,9 @@ export namespace aabb {
 /// @param margin at least 0
 /// @param grown as many
 inline void grow(std::span<const box> boxes, double margin, std::span<box> grown) {
-    constexpr double most = std::numeric_limits<float>::max();
-    const auto wide =
-        static_cast<float>(std::min(margin * (1 + 0x1p-22) + double{std::numeric_limits<float>::min()}, most));
-    constexpr auto greatest = std::numeric_limits<float>::max();
+    constexpr float greatest = std::numeric_limits<float>::max();
+    const double with_rounding = margin * (1 + 0x1p-22) + double{std::numeric_limits<float>::min()};
+    const auto wide = static_cast<float>(std::min(with_rounding, double{greatest}));
     // Boxes lie in memory as rows of six numbers; three vectors hold whole rows, whatever their width.
     constexpr std::size_t block = simd::width / 2;
     constexpr std::size_t numbers = 3 * simd::width;

@@ -4,7 +4,6 @@ module;
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 export module aabb.prepare.list_plan;
 

@@ -111,15 +111,16 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     const bool comes_any = !objects_.arrivals().empty();
     const bool leaves_any = objects_.any_departures();
     frame_.change([&] { objects_.settle(); });
+    // At once: the frame may be refused yet, and who left is not told again.
+    if (leaves_any && is_kept_)
+        std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
     if (left_ > 0) {
         --left_;
         search_->update(boxes);
-    } else if (!is_kept_ || comes_any || leaves_any || !rests(boxes)) {
+    } else if (!is_kept_ || comes_any || !rests(boxes)) {
         const bool same_objects = !comes_any && boxes.size() == kept_.size();
         if (is_kept_ && !is_too_long_ && same_objects && serves(boxes)) {
             require_valid(boxes);
-            if (leaves_any)
-                std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
         } else if (const std::optional<double> margin = watches_ ? watched(boxes, same_objects) : next_margin(boxes)) {
             keep(boxes, *margin);
         } else {

@@ -19,6 +19,7 @@ import aabb.simd;
 namespace aabb::detail {
 
 /// The farthest that lower planes moved down, by its sign, and upper planes up; and whether any plane moved at all.
+/// What it begins with is finite, so that motions beyond the floats, all of them infinite, are infinitely far apart.
 struct plane_motion {
     vec3f least{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
                 std::numeric_limits<float>::max()};

@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -45,20 +46,14 @@ selected_strategy selected_build(const scene_outlook& scene) {
             std::to_string(scene.queries) + " queries repay a better tree, as " + std::to_string(repaid) + " would"};
 }
 
-std::string usual_rule(strategy_kind kind) {
-    switch (kind) {
-        case strategy_kind::sort: return "orders boxes within columns, by buckets";
-        case strategy_kind::partition: return "cuts first, and only as far as a sample of the boxes says that it pays";
-        case strategy_kind::sweep: return "tests a vector of boxes at a time";
-        case strategy_kind::tree: return "least bytes and fastest queries of the exact trees";
-        case strategy_kind::triangle: return "exact";
-        default: return "";
-    }
+/// What the strategy says of itself.
+std::string usual_rule(strategy_kind kind, const std::string& name) {
+    return "the usual one: " + std::ranges::find(strategies(kind), name, &strategy_info::name)->summary;
 }
 
 }  // namespace
 
-bool hangs_on_scene(strategy_kind kind) {
+bool depends_on_scene(strategy_kind kind) {
     return kind == strategy_kind::prepare || kind == strategy_kind::build;
 }
 
@@ -73,7 +68,7 @@ std::vector<selected_strategy> select_strategies(const named_strategies& named, 
         else if (kind == strategy_kind::build)
             all.push_back(selected_build(scene));
         else
-            all.push_back({kind, usual[kind], usual_rule(kind)});
+            all.push_back({kind, usual[kind], usual_rule(kind, usual[kind].name)});
     }
     return all;
 }

@@ -14,7 +14,6 @@ export namespace aabb {
 /// What is known of a scene before it is played. What boxes do from frame to frame is left to strategies that watch it:
 /// `neighbour_list`, and the plans of `columns`.
 struct scene_outlook {
-    std::size_t objects = 0;
     std::size_t frames = 1;
     std::size_t triangles = 0;  ///< of all meshes; 0 where there are boxes only
     std::size_t queries = 1;    ///< of two meshes, that a tree is to serve
@@ -27,8 +26,8 @@ struct selected_strategy {
     std::string rule;
 };
 
-/// Whether what is selected for the kind hangs on the scene.
-[[nodiscard]] bool hangs_on_scene(strategy_kind kind);
+/// Whether what is selected for the kind depends on the scene.
+[[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
 /// A strategy for each kind, in their order: what is named stays, the others are what costs least together with it.
 /// @throws input_error as `composition`.

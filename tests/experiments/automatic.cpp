@@ -68,6 +68,9 @@ TEST_CASE("What is wrong with auto in a config is said with its line") {
     CHECK(refusal_of("[[compose]]\nauto = 1") == "a.toml:3: auto is a number; expected true or false");
     CHECK(refusal_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
     CHECK(refusal_of("[[compose]]\nauto = true\nsort = \"shell\"\nsweep = \"incremental\"").starts_with("a.toml:2: "));
+    CHECK(refusal_of("[[compose]]\nauto = true\nprepare = \"split_mesh\"").starts_with("a.toml:4: pile: "));
+    CHECK(refusal_of("[[external]]\nname = \"auto\"\ncommand = \"true\"").find("there is an engine 'auto' already") !=
+          std::string::npos);
     CHECK(refusal_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
 }
 

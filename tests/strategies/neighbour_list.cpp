@@ -4,6 +4,7 @@
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -197,4 +198,54 @@ TEST_CASE("boxes that came to rest are not tested again") {
     CHECK(work_in(20, 900) > 10);
     CHECK(work_in(10, 0) <= 5);
     CHECK(work_in(10, 0) == 0);
+}
+
+TEST_CASE("a neighbour list is exact where boxes move by more than floats hold") {
+    const float far = 0.9F * std::numeric_limits<float>::max();
+    // In whole vectors and in what is left over.
+    for (const std::size_t n : {2U, 16U, 33U})
+        for (const std::string margin : {"auto", "1"}) {
+            const auto stage = stage_of(listing(margin, "0"), n);
+            std::vector<box> boxes(n);
+            const auto spread = [&](float at, float apart) {
+                for (std::size_t i = 0; i < n; ++i) {
+                    const float x = at + apart * static_cast<float>(i);
+                    boxes[i] = {{x, 0, 0}, {x, 1, 1}};
+                }
+                return pairs_of(*stage, boxes).size();
+            };
+            INFO(n << " boxes, margin " << margin);
+            CHECK(spread(-far, far / 100) == 0);
+            CHECK(spread(far, 0) == n * (n - 1) / 2);
+            CHECK(spread(-far, far / 100) == 0);
+        }
+}
+
+TEST_CASE("an object that leaves in a frame that is refused has left the neighbour list") {
+    for (const std::string margin : {"auto", "0.5"}) {
+        INFO(margin);
+        const auto stage = stage_of(listing(margin, "0"), 3);
+        std::vector<box> boxes{cube(0), cube(0.5F), cube(0.75F)};
+        CHECK(pairs_of(*stage, boxes).size() == 3);
+        stage->remove(1);
+        const box valid = boxes[2];
+        boxes[2].max[2] = boxes[2].min[2] - 1;
+        CHECK_THROWS_AS(stage->update(boxes), input_error);
+        boxes[2] = valid;
+        CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 2}});
+    }
+}
+
+TEST_CASE("a neighbour list ends just beyond its margin") {
+    // Two come upon each other, each by a little more than the margin of a half, from a little more than twice that.
+    for (const std::size_t others : {0U, 40U}) {
+        const auto stage = stage_of(listing("0.5", "0"), 2 + others);
+        std::vector<box> boxes{cube(0), cube(2.02F)};
+        for (std::size_t i = 0; i < others; ++i) boxes.push_back(cube(100 + 10 * static_cast<float>(i)));
+        INFO(others << " others");
+        CHECK(pairs_of(*stage, boxes).empty());
+        boxes[0] = cube(0.52F);
+        boxes[1] = cube(1.5F);
+        CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 1}});
+    }
 }
