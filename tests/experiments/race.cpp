@@ -73,14 +73,16 @@ bool holds(const std::vector<racer>& some, const std::string& name) {
 
 TEST_CASE("A race ends with the fastest, and those who are far behind or fail play no more") {
     using namespace std::chrono_literals;
-    std::vector<racer> all{delayed("slow", [] { std::this_thread::sleep_for(20ms); }),
-                           delayed("fast", [] {}),
+    // Long enough that a busy machine does not change who is far behind.
+    static constexpr auto frame = 5ms;
+    std::vector<racer> all{delayed("slow", [] { std::this_thread::sleep_for(20 * frame); }),
+                           delayed("fast", [] { std::this_thread::sleep_for(frame); }),
                            delayed("stuck", [] { std::this_thread::sleep_for(10min); }),
                            delayed("broken", [] { throw std::runtime_error("no"); }),
                            delayed("gone", [] { std::raise(SIGKILL); }),
                            delayed("late", [i = 0]() mutable {
                                // Slow for a frame, then as fast as any.
-                               if (i++ == 0) std::this_thread::sleep_for(40ms);
+                               std::this_thread::sleep_for(i++ == 0 ? 60 * frame : frame);
                            })};
     const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 2);
     REQUIRE(race.frames == 25);
