@@ -66,7 +66,8 @@ private:
     [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> watched(std::span<const box> boxes, bool same_objects);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
-    [[nodiscard]] growth_of_pairs growth_of(std::span<const box> boxes) const;
+    [[nodiscard]] std::span<const box> sample(std::span<const box> boxes, std::span<box> of);
+    [[nodiscard]] double pairs_in_reach(std::span<const box> boxes, double margin);
     void keep(std::span<const box> boxes, double margin);
 
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many.
@@ -74,6 +75,8 @@ private:
     static constexpr unsigned pause = 6;
     /// A list that costs so many times what a search does is not waited for.
     static constexpr double hopeless = 3;
+    /// Of fewer boxes any list is short.
+    static constexpr std::size_t fewest_boxes_of_long_list = 256;
     static constexpr std::size_t longest_history = 256;
 
     std::unique_ptr<global_stage> search_;
@@ -94,8 +97,10 @@ private:
     std::uint32_t age_ = 0;       // frames since
     std::size_t found_ = 0;       // pairs of the frame before
     growth_of_pairs growth_;
-    double foreseen_ = 0;    // pairs of the list beside those that overlap, as they were reckoned
-    double correction_ = 1;  // of that
+    double foreseen_ = 0;      // pairs of the list beside those that overlap, as they were reckoned
+    double correction_ = 1;    // of that
+    double looked_up_ = 0;     // the greatest margin for which a sample was asked how long the list would be
+    std::uint32_t drawn_ = 0;  // boxes, for samples
     rest_watch rest_;
     bool came_to_rest_ = false;
     double cost_ = 0;       // of the cheapest list that was thought of last, over that of a search
@@ -251,22 +256,51 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
 }
 
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
-    if (age_ <= 1) growth_ = growth_of(boxes);
-    const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
-    const list_plan plan = plan_list(seen);
-    cost_ = plan.cost;
-    if (plan.frames == 1) return std::nullopt;
-    foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
-    return plan.margin;
+    if (age_ <= 1) {
+        std::array<box, 16> some;
+        growth_ = growth_of_pairs(sample(boxes, some));
+    }
+    for (;;) {
+        const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
+        const list_plan plan = plan_list(seen);
+        cost_ = plan.cost;
+        if (plan.frames == 1) return std::nullopt;
+        foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
+        if (plan.margin <= looked_up_ || objects_.size() < fewest_boxes_of_long_list) return plan.margin;
+        // A list may hold each box with every other, and the few that the reckoning is made from may not tell.
+        looked_up_ = plan.margin;
+        const double beside = pairs_in_reach(boxes, plan.margin) - static_cast<double>(found_);
+        if (beside <= 2 * foreseen_ + static_cast<double>(objects_.size())) return plan.margin;
+        correction_ *= beside / foreseen_;
+    }
 }
 
-growth_of_pairs neighbour_list_stage::growth_of(std::span<const box> boxes) const {
-    std::array<box, 16> some;
+/// Boxes by chance: what stands at regular places may be of one kind. Fewer where some objects are absent.
+std::span<const box> neighbour_list_stage::sample(std::span<const box> boxes, std::span<box> of) {
     std::size_t count = 0;
-    const std::size_t step = (boxes.size() + some.size() - 1) / some.size();
-    for (std::size_t i = 0; i < boxes.size(); i += step)
-        if (objects_.contains(static_cast<std::uint32_t>(i))) some[count++] = boxes[i];
-    return growth_of_pairs(std::span(some).first(count));
+    for (std::size_t i = 0; i < of.size() && i < boxes.size(); ++i) {
+        // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4).
+        const std::uint32_t hash = ++drawn_ * 0x9e3779b1U;
+        const auto id = static_cast<std::uint32_t>(std::uint64_t{hash} * boxes.size() >> 32U);
+        if (objects_.contains(id)) of[count++] = boxes[id];
+    }
+    return of.first(count);
+}
+
+/// About how many pairs a list with that margin holds: as many as a sample of boxes has neighbours.
+double neighbour_list_stage::pairs_in_reach(std::span<const box> boxes, double margin) {
+    std::array<box, 8> some;
+    const std::span<const box> asked = sample(boxes, some);
+    if (asked.empty()) return 0;
+    std::array<box, 8> reach;
+    // Both boxes of a pair are grown.
+    grow(asked, 2 * margin, reach);
+    std::size_t neighbours = 0;
+    for (const box& b : boxes)
+        for (std::size_t i = 0; i < asked.size(); ++i) neighbours += static_cast<std::size_t>(meet(b, reach[i]));
+    // Each is a neighbour of itself.
+    return (static_cast<double>(neighbours) / static_cast<double>(asked.size()) - 1) / 2 *
+           static_cast<double>(objects_.size());
 }
 
 void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
