@@ -161,6 +161,30 @@ TEST_CASE("overlapping pairs grow with the number of boxes, not with its square"
     }
 }
 
+TEST_CASE("cloud has the density, the sizes, the clouds and the motion that are set, one by one") {
+    const std::vector<aabb::setting> settings{{"frames", "3"}, {"displacement", "0.2"}};
+    const auto with = [&](std::vector<aabb::setting> others) {
+        others.insert(others.end(), settings.begin(), settings.end());
+        return play("cloud", others);
+    };
+    const auto even = with({});
+    CHECK(std::abs(ways_in(even).mean - 0.2) < 0.02);
+    // A corner lies within 1 of another's on each axis: eight cubes' volumes at a density of 0.1.
+    CHECK(std::abs(neighbours_in(even[0]) - 0.8) < 0.25);
+    const double dense = neighbours_in(with({{"density", "0.4"}})[0]);
+    CHECK(dense > 2 * neighbours_in(even[0]));
+    const auto clouds = with({{"clouds", "20"}});
+    CHECK(edge(world_of({clouds[0]})) > 3 * edge(world_of({even[0]})));
+    CHECK(neighbours_in(clouds[0]) > neighbours_in(even[0]) / 2);
+    const auto sizes = with({{"ratio", "10"}});
+    const auto edges = std::ranges::minmax(sizes[0].boxes, {}, [](const aabb::box& b) { return edge(b); });
+    CHECK(std::abs(edge(edges.max) / edge(edges.min) - 10) < 0.01);
+    const auto some = with({{"moving", "0.25"}});
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < some[0].boxes.size(); ++i) moved += some[3].boxes[i] == some[0].boxes[i] ? 0 : 1;
+    CHECK(moved == some[0].boxes.size() / 4);
+}
+
 TEST_CASE("explosion creeps, flies and stands still, a third of the frames each") {
     const auto frames = play("explosion", {{"frames", "9"}, {"displacement", "0.5"}});
     REQUIRE(frames.size() == 10);

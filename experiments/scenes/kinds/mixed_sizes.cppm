@@ -16,6 +16,7 @@ import aabb.policy;
 import :boxes;
 import :drift;
 import :random;
+import :sizes;
 
 namespace aabblab {
 
@@ -37,27 +38,11 @@ public:
 
     mixed_sizes(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, drifting_points::bytes_each + sizeof(double)),
-          edges_(edges_of(c)),
+          edges_(spread_edges(c.objects, c.ratio)),
           width_(width_around(edges_)),
           centres_(drifting(c)) {}
 
 private:
-    /// The edge of object i is ratio^(i / (objects - 1)), multiplied from roots of the ratio, one for each binary digit
-    /// of the exponent: std::pow differs between libraries.
-    static std::vector<double> edges_of(const config& c) {
-        constexpr int digits = 32;
-        std::array<double, digits + 1> roots{};
-        roots[digits] = c.ratio;
-        for (std::size_t k = digits; k > 0; --k) roots[k - 1] = std::sqrt(roots[k]);
-        std::vector<double> edges(c.objects, 1);
-        for (std::uint64_t i = 1; i < c.objects; ++i) {
-            const std::uint64_t exponent = (i << digits) / (c.objects - 1);
-            for (std::size_t k = 0; k <= digits; ++k)
-                if (exponent >> k & 1) edges[i] *= roots[k];
-        }
-        return edges;
-    }
-
     /// The width in which each cube overlaps two others on average: cubes of edges a and b overlap where their centres
     /// differ by (a + b) / 2 at most on every axis, and (a + b)^3 is 2 a^3 + 6 a^2 b on average.
     static double width_around(const std::vector<double>& edges) {
