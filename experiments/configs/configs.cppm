@@ -64,6 +64,8 @@ struct experiment {
     std::vector<aabb::named_strategies> automatic;
     std::size_t repeats = 9;
     std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
+    /// Who takes so many times as long as the fastest in the first repeat is not repeated.
+    std::optional<std::uint64_t> patience;
     asking how;
     /// What rows hold beside the pairs and their digest; compute metrics later what they will.
     std::set<metric_group> recorded{metric_group::time, metric_group::counts, metric_group::bytes, metric_group::error};

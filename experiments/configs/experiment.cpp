@@ -205,11 +205,13 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
     doc.require_table("measure", *measure);
-    doc.require_keys(*measure, " of [measure]", {"repeats", "processes", "ask", "caches", "metrics", "quick"});
+    doc.require_keys(*measure, " of [measure]",
+                     {"repeats", "processes", "patience", "ask", "caches", "metrics", "quick"});
     const node* repeats = measure->find("repeats");
     if (repeats && !quick) e.repeats = doc.integer_of("repeats", *repeats, 1);
     if (e.repeats > most_repeats) doc.fail(repeats->line, "repeats must be at most " + std::to_string(most_repeats));
     if (const node* value = measure->find("metrics")) read_metrics(doc, *value, e);
+    if (const node* patience = measure->find("patience")) e.patience = doc.integer_of("patience", *patience, 2);
     const node* in_quick = measure->find("quick");
     if (!in_quick) return;
     doc.require_table("quick", *in_quick);
@@ -261,6 +263,7 @@ std::vector<aabb::composition> every_composition(const experiment& e) {
 
 std::string hash_of(const experiment& e) {
     std::string all = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
+    if (e.patience) all += " patience=" + std::to_string(*e.patience);
     for (std::size_t i = 0; i < metric_groups.size(); ++i) all += e.records(static_cast<metric_group>(i)) ? '+' : '-';
     for (const std::string& engine : e.engines) all += "\n" + engine;
     for (const external_engine& engine : e.externals) {

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,21 +75,50 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
     return found;
 }
 
+/// Who is not repeated, of the rows of a scene: those who took too long in the first repeat of the share.
+class hopeless {
+public:
+    hopeless(const experiment& e, const share_of_repeats& share, std::span<const row> rows) {
+        if (!e.patience) return;
+        const row_value& whole = measured("whole_ms");
+        double least = std::numeric_limits<double>::infinity();
+        for (const row& r : rows)
+            if (r.repeat == share.begin) least = std::min(least, whole(r).value_or(least));
+        for (const row& r : rows)
+            if (r.repeat == share.begin && whole(r).value_or(0) > static_cast<double>(*e.patience) * least)
+                names_.push_back(r.name);
+    }
+
+    [[nodiscard]] std::size_t size() const { return names_.size(); }
+    [[nodiscard]] bool contains(const contender_name& name) const {
+        return std::ranges::find(names_, name) != names_.end();
+    }
+
+private:
+    std::vector<contender_name> names_;
+};
+
 /// Ratios are formed within a repeat, so one that was interrupted is played again, whole. It can only be the last.
-void drop_interrupted_repeat(const scene_choice& scene, const share_of_repeats& share, std::size_t contenders,
-                             results_folder& results) {
+void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const share_of_repeats& share,
+                             std::size_t contenders, results_folder& results) {
     if (results.rows().empty()) return;
     const row last = results.rows().back();
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
+    if (last.repeat > share.begin) contenders -= hopeless(e, share, rows).size();
     const auto played = std::ranges::count(rows, last.repeat, &row::repeat);
     if (static_cast<std::size_t>(played) < contenders) results.drop(scene, last.repeat);
 }
 
-std::vector<contender> unfinished(std::span<const contender> contenders, const share_of_repeats& share,
-                                  std::span<const row> rows) {
+std::vector<contender> unfinished(const experiment& e, std::span<const contender> contenders,
+                                  const share_of_repeats& share, std::span<const row> rows) {
+    // The fastest is known once all have played the first repeat.
+    const bool all_played =
+        static_cast<std::size_t>(std::ranges::count(rows, share.begin, &row::repeat)) == contenders.size();
+    const hopeless given_up(e, share, all_played ? rows : std::span<const row>());
     std::vector<contender> left;
     for (const contender& who : contenders) {
+        if (given_up.contains(who.name)) continue;
         const auto finished = std::ranges::count_if(
             rows, [&](const row& r) { return r.name == who.name && r.repeat >= share.begin && r.repeat < share.end; });
         if (static_cast<std::size_t>(finished) < share.end - share.begin) left.push_back(who);
@@ -168,19 +198,20 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
                                    std::span<const contender> contenders, results_folder& results,
                                    std::size_t process) {
     const share_of_repeats share(e, process);
-    drop_interrupted_repeat(scene, share, contenders.size(), results);
+    drop_interrupted_repeat(e, scene, share, contenders.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
-    const std::vector<contender> left = unfinished(contenders, share, rows);
+    const std::vector<contender> left = unfinished(e, contenders, share, rows);
     if (left.empty()) return {};
     auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
-    for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat)
+    for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat) {
+        const hopeless given_up(e, share, repeat > share.begin ? rows_of(scene, results.rows()) : std::vector<row>());
         for (std::size_t i = 0; i < timed.size(); ++i, shown.at(++done)) {
             // Each repeat begins with another contender, so that none is always the first.
             timed_contender& turn = timed[(i + repeat) % timed.size()];
             turn.result.repeat = repeat;
             turn.result.process = process;
-            if (turn.strayed || results.has(turn.result)) continue;
+            if (turn.strayed || given_up.contains(turn.result.name) || results.has(turn.result)) continue;
             const std::string failure = e.records(metric_group::time) ? time_into(scene, e.how, turn) : std::string();
             if (failure.empty()) {
                 results.add(turn.result);
@@ -189,6 +220,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
             failures.push_back(failure);
             results.drop(scene, turn.result.name);
         }
+    }
     return failures;
 }
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -7,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -70,6 +73,25 @@ public:
 private:
     fault what_;
     int frame_ = 0;
+    std::unique_ptr<aabb::global_stage> right_ =
+        aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
+};
+
+/// A global search that waits in every frame.
+class slow_search final : public aabb::global_stage {
+public:
+    void insert(std::uint32_t id) override { right_->insert(id); }
+    void remove(std::uint32_t id) override { right_->remove(id); }
+    void update(std::span<const aabb::box> boxes) override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        right_->update(boxes);
+    }
+    void search(std::vector<aabb::index_pair>& pairs) override { right_->search(pairs); }
+    [[nodiscard]] aabb::work_counters counters() const override { return {}; }
+    [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
+    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+
+private:
     std::unique_ptr<aabb::global_stage> right_ =
         aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
 };
@@ -197,6 +219,30 @@ TEST_CASE("An interrupted run that is resumed ends like one that was not") {
     end = 0;
     for (int line = 0; line < 4; ++line) end = text.find('\n', end) + 1;
     REQUIRE(bytes_of_file(folder / "cut/results.csv").substr(0, end) == text.substr(0, end));
+}
+
+TEST_CASE("Who takes longer than patience has is played once, and not when the run is resumed") {
+    const temporary_folder folder;
+    experiment e = boxes(4);
+    e.patience = 10;
+    std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+    contender slow;
+    slow.name[aabb::strategy_kind::sort] = "slow";
+    slow.make_global = [](aabb::instrumentation) { return std::make_unique<slow_search>(); };
+    contenders.push_back(slow);
+    results_folder results(folder / "r", record_of(e), existing_results::refuse);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    const auto rows_of = [&](const std::string& sort) {
+        return std::ranges::count_if(results.rows(),
+                                     [&](const row& r) { return r.name[aabb::strategy_kind::sort] == sort; });
+    };
+    CHECK(rows_of("slow") == 1);
+    CHECK(rows_of("std") == 4);
+    const std::size_t all = results.rows().size();
+    const std::string text = bytes_of_file(folder / "r/results.csv");
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    CHECK(results.rows().size() == all);
+    CHECK(bytes_of_file(folder / "r/results.csv") == text);
 }
 
 TEST_CASE("Results of another config are not continued") {
