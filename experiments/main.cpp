@@ -74,6 +74,7 @@ int main_of(int argc, char** argv) {
         add_reproduce(program, status);
         add_run(program, status);
         add_validate(program, status);
+        add_atlas(program, status);
         add_compare(program, status);
         add_errors(program, status);
         add_explain(program, status);

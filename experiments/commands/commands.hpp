@@ -8,6 +8,7 @@ class App;
 /// 0, or 1 when a check failed. Bad input is thrown as aabb::input_error, which ends the program with status 2.
 namespace aabblab {
 
+void add_atlas(CLI::App& program, int& status);
 void add_classify(CLI::App& program, int& status);
 void add_collide(CLI::App& program, int& status);
 void add_compare(CLI::App& program, int& status);

@@ -287,25 +287,8 @@ std::string text_of(const factors& where) {
     return text;
 }
 
-std::string text_of(support found) {
-    switch (found) {
-        case support::favours: return "for";
-        case support::no_difference: return "no difference";
-        case support::contradicts: return "against";
-        case support::undecided: break;
-    }
-    return "undecided";
-}
-
 std::string text_of(const claim_result& claim) {
-    switch (claim.verdict) {
-        case verdict_kind::holds: return "holds";
-        case verdict_kind::in_part: return "holds in part";
-        case verdict_kind::no_difference: return "no difference";
-        case verdict_kind::does_not_hold: return "does not hold";
-        case verdict_kind::undecided: break;
-    }
-    return "undecided";
+    return text_of(claim.verdict);
 }
 
 table verdict_table(const reproduction& all) {

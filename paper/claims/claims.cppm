@@ -104,7 +104,6 @@ struct reproduction {
 
 /// "holds", "holds in part", "no difference", …
 [[nodiscard]] std::string text_of(const claim_result& claim);
-[[nodiscard]] std::string text_of(support found);
 /// "brownian, objects 10,000, displacement 0.1"
 [[nodiscard]] std::string text_of(const factors& where);
 /// "0.334 (0.328 to 0.341)"

@@ -5,6 +5,7 @@ module;
 #include <cstddef>
 #include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -105,6 +106,27 @@ verdict_kind verdict_of(std::span<const support> primary) {
     if (primary.empty() || any_is(primary, support::undecided)) return verdict_kind::undecided;
     if (all_are(primary, support::favours)) return verdict_kind::holds;
     return all_are(primary, support::no_difference) ? verdict_kind::no_difference : verdict_kind::does_not_hold;
+}
+
+std::string text_of(support found) {
+    switch (found) {
+        case support::favours: return "for";
+        case support::no_difference: return "no difference";
+        case support::contradicts: return "against";
+        case support::undecided: break;
+    }
+    return "undecided";
+}
+
+std::string text_of(verdict_kind verdict) {
+    switch (verdict) {
+        case verdict_kind::holds: return "holds";
+        case verdict_kind::in_part: return "holds in part";
+        case verdict_kind::no_difference: return "no difference";
+        case verdict_kind::does_not_hold: return "does not hold";
+        case verdict_kind::undecided: break;
+    }
+    return "undecided";
 }
 
 }  // namespace aabblab

@@ -3,6 +3,7 @@ module;
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 /// How claims are decided: intervals by a bootstrap over processes, seeds and repeats, and the rule that turns them
@@ -173,5 +174,10 @@ enum class verdict_kind : unsigned char { holds, in_part, no_difference, does_no
 /// - holds, or no difference, where all say so;
 /// - else does not hold.
 [[nodiscard]] verdict_kind verdict_of(std::span<const support> primary);
+
+/// "for", "no difference", "against", "undecided"
+[[nodiscard]] std::string text_of(support found);
+/// "holds", "holds in part", "no difference", "does not hold", "undecided"
+[[nodiscard]] std::string text_of(verdict_kind verdict);
 
 }  // namespace aabblab

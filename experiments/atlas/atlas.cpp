@@ -1,0 +1,104 @@
+module;
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.atlas;
+
+import aabb.policy;
+import aabb.registry;
+import aabblab.measures;
+import aabblab.metrics;
+import aabblab.results;
+import aabblab.scenes;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+std::string label_of(const contender_name& name) {
+    if (!name.engine.empty()) return name.engine;
+    std::string label;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string& choice = name[kind]; !choice.empty() && choice != "none")
+            label += (label.empty() ? "" : " + ") + choice;
+    return label;
+}
+
+double number_in(const std::string& text) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    return std::from_chars(text.data(), end, value).ptr == end ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+const std::vector<double>& atlas_line::times(span_of_time of) const {
+    return of == span_of_time::frame ? frame_ms : whole_ms;
+}
+
+double atlas_line::ms(span_of_time of) const {
+    return quartiles_of(times(of)).median;
+}
+
+const atlas_line* atlas_scene::find(std::string_view label) const {
+    const auto found = std::ranges::find(lines, label, &atlas_line::label);
+    return found != lines.end() ? &*found : nullptr;
+}
+
+const atlas_line& atlas_scene::fastest(span_of_time of) const {
+    const atlas_line* best = nullptr;
+    for (const atlas_line& line : lines)
+        if (!line.automatic && (!best || line.ms(of) < best->ms(of))) best = &line;
+    return *best;
+}
+
+double atlas_scene::number(std::string_view parameter) const {
+    const auto set = std::ranges::find(scene.settings, parameter, &aabb::setting::name);
+    if (set != scene.settings.end()) return number_in(set->value);
+    const auto kind = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
+    const auto info = std::ranges::find(kind->parameters, parameter, &aabb::parameter_info::name);
+    return info != kind->parameters.end() ? number_in(info->fallback) : std::numeric_limits<double>::quiet_NaN();
+}
+
+estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time of) {
+    cells ratios(1, 1);
+    const std::vector<double>& above = arm.times(of);
+    const std::vector<double>& below = base.times(of);
+    for (std::size_t repeat = 0; repeat < std::min(above.size(), below.size()); ++repeat)
+        ratios.add(0, 0, std::log(above[repeat] / below[repeat]));
+    return bootstrap(ratios);
+}
+
+std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool unseen) {
+    const row_value& frame = measured("frame_ms");
+    const row_value& whole = measured("whole_ms");
+    std::vector<atlas_scene> atlas;
+    std::map<scene_choice, std::size_t> places;
+    for (const row& r : read_rows(folder / "results.csv")) {
+        const std::optional<double> frame_ms = frame(r);
+        const std::optional<double> whole_ms = whole(r);
+        if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;
+        const auto [place, is_new] = places.emplace(r.scene, atlas.size());
+        if (is_new) atlas.push_back({r.scene, unseen, measure_scene(r.scene), {}});
+        std::vector<atlas_line>& lines = atlas[place->second].lines;
+        const std::string label = label_of(r.name);
+        auto line = std::ranges::find(lines, label, &atlas_line::label);
+        if (line == lines.end()) line = lines.insert(line, {label, r.name.is_automatic(), {}, {}});
+        line->frame_ms.push_back(*frame_ms);
+        line->whole_ms.push_back(*whole_ms);
+    }
+    std::erase_if(atlas, [](const atlas_scene& s) { return std::ranges::all_of(s.lines, &atlas_line::automatic); });
+    return atlas;
+}
+
+}  // namespace aabblab

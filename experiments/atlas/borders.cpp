@@ -1,0 +1,131 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+module aabblab.atlas;
+
+import aabb.policy;
+import aabblab.numbers;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> parameters{"objects", "displacement", "density", "ratio", "moving"};
+
+std::string without(const scene_choice& scene, std::string_view parameter) {
+    scene_choice others = scene;
+    std::erase_if(others.settings, [&](const aabb::setting& s) { return s.name == parameter || s.name == "frames"; });
+    return settings_text(others);
+}
+
+/// Where a line from one logarithm of a ratio to another is 0, as a share of the way, and its 95 % interval by draws
+/// from both ends.
+std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
+    const auto share = [](double a, double b) { return a == b ? 0.5 : std::clamp(a / (a - b), 0.0, 1.0); };
+    constexpr std::size_t draws = 2000;
+    std::mt19937_64 random(1);
+    const auto drawn = [&](const estimate& e) {
+        // The sum of twelve even draws is close to normal, and the same with every library.
+        double sum = -6;
+        for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11U) * 0x1p-53;
+        return e.value + sum * e.error;
+    };
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < draws; ++i) {
+        const double a = drawn(from);
+        const double b = drawn(to);
+        // Beyond an end, where one of them is ahead at both.
+        shares.push_back(a >= 0 ? 0 : b <= 0 ? 1 : share(a, b));
+    }
+    std::ranges::sort(shares);
+    return {share(from.value, to.value), {shares[draws / 40], shares[draws - 1 - draws / 40]}};
+}
+
+std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
+    const std::string& before = from.fastest(span_of_time::frame).label;
+    const std::string& after = to.fastest(span_of_time::frame).label;
+    const atlas_line* after_at_first = from.find(after);
+    const atlas_line* before_at_last = to.find(before);
+    if (before == after || !after_at_first || !before_at_last) return std::nullopt;
+    const double first = std::log(from.number(parameter));
+    const double way = std::log(to.number(parameter)) - first;
+    if (!std::isfinite(first)) return std::nullopt;
+    const auto [share, range] = crossing(log_ratio(*from.find(before), *after_at_first, span_of_time::frame),
+                                         log_ratio(*before_at_last, *to.find(after), span_of_time::frame));
+    return border{before,
+                  after,
+                  std::string(parameter),
+                  from.scene.kind + " " + without(from.scene, parameter),
+                  std::exp(first + share * way),
+                  {std::exp(first + range.low * way), std::exp(first + range.high * way)}};
+}
+
+}  // namespace
+
+std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
+    std::vector<border> all;
+    for (const std::string_view parameter : parameters) {
+        std::map<std::string, std::vector<const atlas_scene*>> lines;
+        for (const atlas_scene& scene : atlas)
+            if (!scene.unseen && !std::isnan(scene.number(parameter)))
+                lines[without(scene.scene, parameter)].push_back(&scene);
+        for (auto& [others, scenes] : lines) {
+            std::ranges::stable_sort(scenes, {}, [&](const atlas_scene* s) { return s->number(parameter); });
+            for (std::size_t i = 1; i < scenes.size(); ++i)
+                if (auto one = border_between(*scenes[i - 1], *scenes[i], parameter)) all.push_back(*std::move(one));
+        }
+    }
+    return all;
+}
+
+table borders_table(const std::vector<border>& all) {
+    table t{{{"before", false}, {"after", false}, {"along", false}, {"at"}, {"low"}, {"high"}, {"others", false}}, {}};
+    for (const border& one : all)
+        t.rows.push_back({one.before, one.after, one.parameter, fmt::format("{:.4g}", one.at),
+                          fmt::format("{:.4g}", one.range.low), fmt::format("{:.4g}", one.range.high), one.others});
+    return t;
+}
+
+table borders_summary(const std::vector<border>& all) {
+    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> alike;
+    for (const border& one : all) alike[{one.parameter, one.before, one.after}].push_back(&one);
+    std::vector<std::vector<const border*>> groups;
+    for (const auto& [what, group] : alike) groups.push_back(group);
+    std::ranges::stable_sort(groups, [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    table t{{{"along", false},
+             {"fastest before", false},
+             {"fastest after", false},
+             {"borders"},
+             {"median at"},
+             {"from"},
+             {"to"}},
+            {}};
+    for (const std::vector<const border*>& group : groups) {
+        std::vector<double> places;
+        for (const border* one : group) places.push_back(one->at);
+        const auto [low, high] = std::ranges::minmax(places);
+        const border& any = *group.front();
+        t.rows.push_back({any.parameter, any.before, any.after, grouped(group.size()),
+                          fmt::format("{:.3g}", quartiles_of(places).median), fmt::format("{:.3g}", low),
+                          fmt::format("{:.3g}", high)});
+    }
+    return t;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,145 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+module aabblab.atlas;
+
+import :map;
+import aabblab.figures;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+constexpr span_of_time frame = span_of_time::frame;
+
+/// The map's scenes are those of this kind.
+constexpr const char* kind_of_map = "cloud";
+
+/// The parameters that a panel shares.
+using panel_key = std::tuple<double, double, double>;  // clouds, density, ratio
+
+/// So many are told apart in a figure; the others are "another".
+std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
+    constexpr std::size_t most = 7;
+    std::map<std::string, std::size_t> wins;
+    for (const atlas_scene& scene : atlas) ++wins[scene.fastest(frame).label];
+    std::vector<std::string> labels;
+    for (const auto& [label, count] : wins) labels.push_back(label);
+    std::ranges::stable_sort(labels, [&](const auto& a, const auto& b) { return wins[a] > wins[b]; });
+    if (labels.size() > most) labels.resize(most);
+    return labels;
+}
+
+/// A series a winner, all winners in every panel, so that they look the same in all.
+std::vector<series> empty_series(const std::vector<std::string>& winners) {
+    std::vector<series> all;
+    for (const std::string& label : winners) all.push_back({label, series_style::points, {}});
+    all.push_back({"another", series_style::points, {}});
+    return all;
+}
+
+void add_point(std::vector<series>& to, const std::string& winner, double x, double y) {
+    const auto found = std::ranges::find(to, winner, &series::label);
+    series& one = found != to.end() ? *found : to.back();
+    one.points.push_back({x, y, y, y});
+}
+
+figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds) {
+    figure f{.name = fmt::format("map_{:g}", clouds),
+             .caption = fmt::format("The fastest in a frame after the first, in {}: each point is a scene, of so many "
+                                    "objects that move by so much a frame.",
+                                    clouds > 1 ? fmt::format("{:g} clouds apart", clouds) : "one cloud"),
+             .x = {"objects", true, {}},
+             .y = {"displacement a frame (mean extents)", true, {}},
+             .lines = {},
+             .marks = {}};
+    std::map<panel_key, figure_panel> panels;
+    for (const atlas_scene& scene : atlas) {
+        if (scene.scene.kind != kind_of_map || scene.number("clouds") != clouds || scene.number("moving") != 1)
+            continue;
+        const panel_key key{clouds, scene.number("density"), scene.number("ratio")};
+        const auto [place, is_new] = panels.try_emplace(key);
+        if (is_new)
+            place->second = {fmt::format("density {:g}, sizes 1 to {:g}", std::get<1>(key), std::get<2>(key)),
+                             empty_series(winners),
+                             {}};
+        add_point(place->second.lines, scene.fastest(frame).label, scene.number("objects"),
+                  scene.number("displacement"));
+    }
+    for (auto& [key, panel] : panels) f.panels.push_back(std::move(panel));
+    return f;
+}
+
+/// All scenes that move, by what every one of them has.
+figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners) {
+    figure f{.name = "map_inversions",
+             .caption =
+                 "The fastest in a frame after the first, of all scenes in which anything moves: objects, and "
+                 "inversions an object and frame on the axis on which boxes overlap least.",
+             .x = {"objects", true, {}},
+             .y = {"inversions an object and frame", true, {}},
+             .lines = empty_series(winners),
+             .marks = {}};
+    for (const atlas_scene& scene : atlas)
+        if (scene.measures.motion && scene.measures.motion->inversions > 0)
+            add_point(f.lines, scene.fastest(frame).label, static_cast<double>(scene.measures.objects),
+                      scene.measures.motion->inversions);
+    return f;
+}
+
+/// Regrets in ascending order, of `auto` and of those who have the least.
+figure regret_figure(const std::vector<atlas_scene>& atlas) {
+    constexpr std::size_t most = 7;
+    constexpr std::size_t least_scenes = 2;
+    figure f{.name = "regret",
+             .caption =
+                 "Time of a frame over that of the fastest, scene by scene in ascending order: what it costs to "
+                 "use one composition or engine everywhere.",
+             .x = {"share of the scenes", false, {}},
+             .y = {"regret", true, {}},
+             .lines = {},
+             .marks = {}};
+    for (const std::string& label : labels_of(atlas)) {
+        std::vector<double> regrets;
+        for (const atlas_scene& scene : atlas)
+            if (const atlas_line* line = scene.find(label))
+                regrets.push_back(std::max(1.0, line->ms(frame) / scene.fastest(frame).ms(frame)));
+        if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;
+        std::ranges::sort(regrets);
+        series one{label, series_style::line, {}};
+        for (std::size_t i = 0; i < regrets.size(); ++i)
+            one.points.push_back({(static_cast<double>(i) + 0.5) / static_cast<double>(regrets.size()), regrets[i],
+                                  regrets[i], regrets[i]});
+        f.lines.push_back(std::move(one));
+    }
+    std::ranges::stable_sort(f.lines, {}, [](const series& s) { return s.points[s.points.size() / 2].y; });
+    if (f.lines.size() > most) f.lines.resize(most);
+    return f;
+}
+
+}  // namespace
+
+std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
+    const std::vector<std::string> winners = most_frequent_winners(atlas);
+    std::vector<double> clouds;
+    for (const atlas_scene& scene : atlas)
+        if (const double n = scene.number("clouds");
+            scene.scene.kind == kind_of_map && std::ranges::find(clouds, n) == clouds.end())
+            clouds.push_back(n);
+    std::vector<figure> all;
+    for (const double n : clouds) all.push_back(map_of(atlas, winners, n));
+    all.push_back(inversions_map(atlas, winners));
+    all.push_back(regret_figure(atlas));
+    return all;
+}
+
+}  // namespace aabblab

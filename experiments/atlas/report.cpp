@@ -1,0 +1,103 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <vector>
+
+module aabblab.atlas;
+
+import aabblab.figures;
+import aabblab.files;
+import aabblab.numbers;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+struct section {
+    std::string title;
+    std::string text;
+    std::string file;  ///< of the table as CSV
+    table content;
+    bool shown = true;  ///< in the page; else in its file alone
+};
+
+std::vector<atlas_scene> of_map(const std::vector<atlas_scene>& atlas, bool unseen) {
+    std::vector<atlas_scene> some;
+    std::ranges::copy_if(atlas, std::back_inserter(some), [&](const atlas_scene& s) { return s.unseen == unseen; });
+    return some;
+}
+
+std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
+    const std::vector<border> borders = borders_of(atlas);
+    const std::vector<judged_statement> judged = judged_statements(atlas);
+    std::vector<section> all{
+        {"Who wins",
+         "Of a frame after the first. Shown: the interval of the ratio of the next fastest lies above 1. As fast: not "
+         "shown to be slower than the fastest.",
+         "winners", winners_table(atlas)},
+        {"What it costs to use one everywhere",
+         "The time of a frame over that of the fastest of each scene; who was not repeated has one repeat.", "regrets",
+         regrets_table(atlas, span_of_time::frame)},
+        {"The same with the first frame and the making",
+         "Of all frames, as short as the scenes are; sorting by insertion takes quadratic time in the first.",
+         "regrets_whole", regrets_table(atlas, span_of_time::whole)}};
+    if (const auto unseen = of_map(atlas, true); !unseen.empty())
+        all.push_back({"The same of a frame, in the scenes that the map does not hold", "", "regrets_unseen",
+                       regrets_table(unseen, span_of_time::frame)});
+    all.push_back({"Borders",
+                   "Along one parameter, all others equal: where the fastest of one scene and that of the next take "
+                   "the same time, on a line between the logarithms of their ratios. Each has its interval in "
+                   "borders.csv.",
+                   "borders_summary", borders_summary(borders)});
+    all.push_back({"", "", "borders", borders_table(borders), false});
+    all.push_back({"", "", "cells", cells_table(atlas), false});
+    all.push_back({"Statements of others",
+                   "Judged as the paper's claims are: each ratio is a geometric mean over scenes, its interval widens "
+                   "where they disagree, and all are decided together. Below 1 favours the statement.",
+                   "statements", statements_table(judged)});
+    all.push_back({"Their ratios", "", "statement_ratios", ratios_table(judged)});
+    return all;
+}
+
+std::string heading_of(const std::vector<atlas_scene>& atlas) {
+    const auto unseen = static_cast<std::size_t>(std::ranges::count_if(atlas, &atlas_scene::unseen));
+    return fmt::format("{} scenes of the map, {} others", grouped(atlas.size() - unseen), grouped(unseen));
+}
+
+}  // namespace
+
+void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas) {
+    const std::vector<section> sections = sections_of(atlas);
+    const std::vector<figure> figures = atlas_figures(atlas);
+    std::filesystem::create_directories(folder);
+    draw(folder / "figures", figures);
+    std::string markdown = "# Atlas of global search\n\n" + heading_of(atlas) + ".\n";
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Atlas of global search</title>\n"
+        "<style>body{font-family:sans-serif;max-width:70em;margin:2em auto}td,th{padding:0 .6em;text-align:left}"
+        "td.number,th.number{text-align:right}img{max-width:100%}</style></head><body>\n<h1>Atlas of global "
+        "search</h1>\n<p>" +
+        heading_of(atlas) + ".</p>\n";
+    for (const figure& f : figures) {
+        markdown += fmt::format("\n![{}](figures/{}.svg)\n\n{}\n", f.name, f.name, f.caption);
+        html += fmt::format("<p><img src=\"figures/{}.svg\" alt=\"{}\"></p>\n<p>{}</p>\n", f.name, f.name,
+                            html_text(f.caption));
+    }
+    for (const section& s : sections) {
+        write_file(folder / (s.file + ".csv"), to_csv(s.content));
+        if (!s.shown) continue;
+        markdown +=
+            fmt::format("\n## {}\n\n{}{}", s.title, s.text.empty() ? "" : s.text + "\n\n", to_markdown(s.content));
+        html += fmt::format("<h2>{}</h2>\n<p>{}</p>\n{}", html_text(s.title), html_text(s.text), to_html(s.content));
+    }
+    write_file(folder / "atlas.md", markdown);
+    write_file(folder / "atlas.html", html + "</body></html>\n");
+}
+
+}  // namespace aabblab

@@ -1,0 +1,118 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+module aabblab.atlas;
+
+import :map;
+import aabblab.numbers;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+constexpr span_of_time frame = span_of_time::frame;
+
+/// Who follows the fastest; none where nobody does.
+const atlas_line* second_of(const atlas_scene& scene) {
+    const atlas_line& best = scene.fastest(frame);
+    const atlas_line* second = nullptr;
+    for (const atlas_line& line : scene.lines)
+        if (&line != &best && !line.automatic && (!second || line.ms(frame) < second->ms(frame))) second = &line;
+    return second;
+}
+
+/// Whether the interval of the ratio to the fastest lies above 1.
+bool is_slower(const atlas_line& line, const atlas_line& best) {
+    return log_ratio(line, best, frame).range().low > 0;
+}
+
+}  // namespace
+
+table winners_table(const std::vector<atlas_scene>& atlas) {
+    table t{{{row_number}, {"who", false}, {"scenes"}, {"fastest in"}, {"shown in"}, {"as fast in"}}, {}};
+    struct standing {
+        std::string label;
+        std::size_t scenes = 0, fastest = 0, shown = 0, as_fast = 0;
+    };
+    std::vector<standing> all;
+    for (const std::string& label : labels_of(atlas)) {
+        standing& one = all.emplace_back();
+        one.label = label;
+        for (const atlas_scene& scene : atlas) {
+            const atlas_line* line = scene.find(label);
+            if (!line) continue;
+            ++one.scenes;
+            const atlas_line& best = scene.fastest(frame);
+            if (line != &best) {
+                if (!is_slower(*line, best)) ++one.as_fast;
+                continue;
+            }
+            ++one.fastest;
+            const atlas_line* second = second_of(scene);
+            if (!second || is_slower(*second, best)) ++one.shown;
+        }
+    }
+    std::ranges::stable_sort(all, [](const standing& a, const standing& b) {
+        return a.fastest > b.fastest || (a.fastest == b.fastest && a.as_fast > b.as_fast);
+    });
+    for (const standing& one : all)
+        t.rows.push_back({std::to_string(t.rows.size() + 1), one.label, grouped(one.scenes), grouped(one.fastest),
+                          grouped(one.shown), grouped(one.as_fast)});
+    return t;
+}
+
+table cells_table(const std::vector<atlas_scene>& atlas) {
+    table t{{{"scene", false},
+             {"parameters", false},
+             {"pairs_an_object"},
+             {"inversions"},
+             {"at_rest"},
+             {"clustering"},
+             {"size_ratio"},
+             {"fastest", false},
+             {"frame_ms"},
+             {"second", false},
+             {"second_ratio"},
+             {"second_low"},
+             {"second_high"},
+             {"auto_regret"}},
+            {}};
+    for (const atlas_scene& scene : atlas) {
+        const atlas_line& best = scene.fastest(frame);
+        const atlas_line* second = second_of(scene);
+        const auto automatic = std::ranges::find_if(scene.lines, &atlas_line::automatic);
+        const scene_measures& m = scene.measures;
+        const auto text = [](double value) { return fmt::format("{:.4g}", value); };
+        std::vector<std::string> cells{scene.scene.kind,
+                                       settings_text(scene.scene),
+                                       text(m.pairs_an_object),
+                                       m.motion ? text(m.motion->inversions) : "",
+                                       m.motion ? text(m.motion->at_rest) : "",
+                                       text(m.clustering),
+                                       text(m.boxes.size_ratio),
+                                       best.label,
+                                       text(best.ms(frame)),
+                                       second ? second->label : ""};
+        if (second) {
+            const estimate ratio = log_ratio(*second, best, frame);
+            for (const double one : {ratio.value, ratio.range().low, ratio.range().high})
+                cells.push_back(text(std::exp(one)));
+        } else {
+            cells.resize(cells.size() + 3);
+        }
+        cells.push_back(automatic != scene.lines.end() ? text(automatic->ms(frame) / best.ms(frame)) : "");
+        t.rows.push_back(std::move(cells));
+    }
+    return t;
+}
+
+}  // namespace aabblab

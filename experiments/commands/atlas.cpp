@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "output.hpp"
+
+#include "experiments.hpp"
+
+import aabb.base;
+import aabblab.atlas;
+import aabblab.configs;
+import aabblab.results;
+import aabblab.statistics;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+struct atlas_request {
+    std::optional<std::string> out;
+    bool quick = false;
+    bool judge = false;
+
+    [[nodiscard]] std::filesystem::path folder() const {
+        return out.value_or(quick ? "results/atlas-quick" : "results/atlas");
+    }
+};
+
+/// Its experiments, in the order in which they are played.
+struct part {
+    std::string_view name;
+    bool unseen;
+};
+constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {"atlas_unseen", true}}};
+
+/// @returns a sentence for each composition that is wrong
+std::vector<std::string> measure(const std::filesystem::path& folder, bool quick) {
+    std::vector<experiment> experiments;
+    for (const part& one : parts)
+        experiments.push_back(open_experiment(fmt::format("{}/{}.toml", AABBLAB_ATLAS_CONFIGS, one.name), quick));
+    std::vector<std::string> failures;
+    for (const experiment& e : experiments) {
+        note(fmt::format("experiment {} of {}: {}, {} scenes", &e - experiments.data() + 1, experiments.size(), e.name,
+                         e.scenes.size()));
+        std::vector<std::string> found =
+            play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
+        std::ranges::move(found, std::back_inserter(failures));
+    }
+    return failures;
+}
+
+int run(const atlas_request& request) {
+    outlive_reader();
+    const std::filesystem::path folder = request.folder();
+    std::vector<std::string> failures;
+    if (!request.judge) failures = measure(folder, request.quick);
+    std::vector<atlas_scene> atlas;
+    for (const part& one : parts)
+        if (std::filesystem::exists(folder / one.name / "results.csv"))
+            std::ranges::move(read_atlas(folder / one.name, one.unseen), std::back_inserter(atlas));
+    if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + folder.string());
+    write_atlas(folder, atlas);
+    print(to_text(winners_table(atlas), output_width()) + "\n");
+    print(to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
+    for (const judged_statement& s : judged_statements(atlas))
+        print(fmt::format("{:<4} {}\n     {} ({}).\n", s.id, s.says, text_of(s.verdict), s.source));
+    print("\nMaps, borders and every ratio are in " + visible((folder / "atlas.html").string()) + "\n");
+    return failures.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_atlas(CLI::App& program, int& status) {
+    auto* command = program.add_subcommand(
+        "atlas", "Which composition or engine wins in which scene, and what it costs to use one everywhere");
+    auto request = std::make_shared<atlas_request>();
+    command->add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
+    command->add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
+    command->add_option("--out", request->out, "Folder of results and maps (default results/atlas)")->type_name("DIR");
+    command->callback([request, &status] { status = run(*request); });
+}
+
+}  // namespace aabblab

@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+import aabb.policy;
+import aabb.registry;
+import aabblab.atlas;
+import aabblab.configs;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.tables;
+
+using aabblab::atlas_line;
+using aabblab::atlas_scene;
+using aabblab::span_of_time;
+
+namespace {
+
+atlas_line line(const std::string& label, double ms, bool automatic = false) {
+    return {label, automatic, {ms, ms * 1.01, ms * 0.99}, {2 * ms, 2 * ms, 2 * ms}};
+}
+
+atlas_scene cloud(const std::string& displacement, std::vector<atlas_line> lines, bool unseen = false) {
+    return {{"cloud", {{"objects", "1000"}, {"displacement", displacement}}, {}, 1}, unseen, {}, std::move(lines)};
+}
+
+std::string cell(const aabblab::table& t, const std::string& who, const std::string& column) {
+    const auto k = std::ranges::find(t.columns, column, &aabblab::column::name) - t.columns.begin();
+    for (const auto& cells : t.rows)
+        if (cells[1] == who) return cells[static_cast<std::size_t>(k)];
+    return "none";
+}
+
+/// a is as fast as b at 0.1: (log 2 below, log 2 above) half way between 0.01 and 1.
+std::vector<atlas_scene> two_scenes() {
+    return {cloud("0.01", {line("a", 1), line("b", 2), line("auto", 1.5, true)}),
+            cloud("1", {line("a", 2), line("b", 1), line("auto", 1, true)})};
+}
+
+}  // namespace
+
+TEST_CASE("The atlas counts who wins, and what it costs to use one everywhere") {
+    const std::vector<atlas_scene> atlas = two_scenes();
+    const aabblab::table winners = winners_table(atlas);
+    for (const char* who : {"a", "b"}) {
+        CHECK(cell(winners, who, "fastest in") == "1");
+        CHECK(cell(winners, who, "shown in") == "1");
+    }
+    // auto is as fast as the fastest of the second scene, but is no composition that could be the fastest.
+    CHECK(cell(winners, "auto", "fastest in") == "0");
+    CHECK(cell(winners, "auto", "as fast in") == "1");
+    const aabblab::table regrets = regrets_table(atlas, span_of_time::frame);
+    CHECK(cell(regrets, "a", "worst") == "2.00");
+    CHECK(cell(regrets, "a", "median") == "1.50");
+    CHECK(cell(regrets, "auto", "worst") == "1.50");
+    CHECK(cell(regrets, "auto", "over 1.3") == "1");
+}
+
+TEST_CASE("A border lies where two take the same time, between two scenes that differ in one parameter") {
+    std::vector<atlas_scene> atlas = two_scenes();
+    const std::vector<aabblab::border> borders = borders_of(atlas);
+    REQUIRE(borders.size() == 1);
+    CHECK(borders[0].parameter == "displacement");
+    CHECK(borders[0].before == "a");
+    CHECK(borders[0].after == "b");
+    CHECK(std::abs(borders[0].at - 0.1) < 1e-3);
+    CHECK(borders[0].range.low < 0.1);
+    CHECK(borders[0].range.high > 0.1);
+    CHECK(borders[0].range.high < 0.2);
+    atlas[1].scene.settings[0].value = "5000";
+    CHECK(borders_of(atlas).empty());
+    atlas[1].scene.settings[0].value = "1000";
+    atlas[1].unseen = true;
+    CHECK(borders_of(atlas).empty());
+}
+
+TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided without them") {
+    std::vector<atlas_scene> atlas;
+    for (const char* objects : {"1000", "10000"})
+        for (const char* displacement : {"0.001", "0.1", "1"})
+            for (const char* density : {"0.1", "1"})
+                atlas.push_back(
+                    {{"cloud", {{"objects", objects}, {"displacement", displacement}, {"density", density}}, {}, 1},
+                     false,
+                     {},
+                     {line("embree", 2), line("embree_refit", 1)}});
+    const auto verdict = [&](const std::string& id) {
+        const auto all = judged_statements(atlas);
+        return std::ranges::find(all, id, &aabblab::judged_statement::id)->verdict;
+    };
+    CHECK(verdict("B9") == aabblab::verdict_kind::does_not_hold);
+    CHECK(verdict("B1") == aabblab::verdict_kind::undecided);
+    for (atlas_scene& scene : atlas) std::swap(scene.lines[0].frame_ms, scene.lines[1].frame_ms);
+    CHECK(verdict("B9") == aabblab::verdict_kind::holds);
+}
+
+TEST_CASE("Whoever a statement speaks of plays in the map") {
+    std::set<std::string> players;
+    const aabblab::experiment e =
+        aabblab::read_experiment(AABBLAB_CONFIGS "/atlas/atlas.toml", aabblab::experiment_size::full);
+    for (const std::string& engine : e.engines) players.insert(engine);
+    for (const aabb::composition& c : e.compositions) {
+        std::string label;
+        for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+            if (info_of(kind).stage == aabb::stage::global_search && to_text(c[kind]) != "none")
+                label += (label.empty() ? "" : " + ") + to_text(c[kind]);
+        players.insert(label);
+    }
+    for (const std::string& label : aabblab::labels_in_statements()) {
+        INFO(label);
+        CHECK(players.contains(label));
+    }
+}
+
+TEST_CASE("atlas --judge makes maps of results that are there, and says where there are none") {
+    const temporary_folder folder;
+    const program_result nothing = run_program({"atlas", "--judge", "--out", (folder / "none").string()});
+    CHECK(nothing.status == 2);
+    CHECK(nothing.err.find("there are no results of an atlas in") != std::string::npos);
+    folder.write("small.toml",
+                 "name = \"atlas\"\n[[scene]]\nkind = \"cloud\"\nobjects = 50\ndisplacement = [0.01, 1]\n"
+                 "frames = 3\n[[compose]]\nauto = true\n[[compose]]\nsort = [\"std\", \"radix\"]\n"
+                 "[measure]\nrepeats = 2\n");
+    REQUIRE(run_program({"run", (folder / "small.toml").string(), "--out", (folder / "map/atlas").string()}).status ==
+            0);
+    const program_result made = run_program({"atlas", "--judge", "--out", (folder / "map").string()});
+    CHECK(made.status == 0);
+    for (const char* file : {"atlas.html", "atlas.md", "cells.csv", "borders.csv", "statement_ratios.csv",
+                             "figures/map_1.svg", "figures/regret.svg"}) {
+        INFO(file);
+        CHECK(std::filesystem::exists(folder / "map" / file));
+    }
+}
