@@ -61,8 +61,8 @@ function(aabblab_each result format separator)
     set(${result} "${all}" PARENT_SCOPE)
 endfunction()
 
-# aabblab_registry(): the modules aabb.registry, over all declared kinds and strategies, and aabb.selection. Their
-# interfaces name no strategy; generated implementation units do, one for each strategy of a stage's first kind, so that
+# aabblab_registry(): the modules aabb.registry, over all declared kinds and strategies, aabb.selection and
+# aabb.auto_detector. Their interfaces name no strategy; generated implementation units do, one for each strategy of a stage's first kind, so that
 # a changed strategy rebuilds few of them.
 function(aabblab_registry)
     set(from ${CMAKE_CURRENT_SOURCE_DIR}/registry)
@@ -118,8 +118,9 @@ function(aabblab_registry)
                      registry/composed.cppm
                      registry/composed_global_search.cppm
                      registry/composed_local_detection.cppm
+                     selection/auto_detector.cppm
                      selection/selection.cppm
                      ${to}/kinds.cppm
-        PRIVATE registry/registry.cpp selection/selection.cpp ${to}/catalog.cpp ${units})
+        PRIVATE registry/registry.cpp selection/auto_detector.cpp selection/selection.cpp ${to}/catalog.cpp ${units})
     target_link_libraries(aabblab_registry PUBLIC aabblab_core PRIVATE aabblab_strategies)
 endfunction()

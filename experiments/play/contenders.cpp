@@ -58,12 +58,8 @@ contender contender_of(const aabb::named_strategies& named, const scene_play& sc
 }
 
 aabb::scene_outlook outlook_of(const scene_play& scene) {
-    aabb::scene_outlook seen{.frames = scene.frames()};
-    if (!scene.meshes()) return seen;
-    for (const aabb::mesh& m : scene.meshes()->meshes) seen.triangles += m.triangle_count();
-    // Each object is held against one other a frame, as a guess.
-    seen.queries = seen.frames * std::max<std::size_t>(scene.objects() / 2, 1);
-    return seen;
+    if (!scene.meshes()) return {.frames = scene.frames()};
+    return aabb::outlook_of(scene.meshes()->meshes, scene.objects(), scene.frames());
 }
 
 std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes) {

@@ -49,6 +49,14 @@ struct work_counters {
     }
 };
 
+/// What was counted, whatever the policy.
+[[nodiscard]] constexpr work_counters work_of(const work_counters& counters) noexcept {
+    return counters;
+}
+[[nodiscard]] constexpr work_counters work_of(const no_counters& /*counters*/) noexcept {
+    return {};
+}
+
 /// A policy that receives the work done.
 template <class C>
 concept CounterPolicy = requires(C counters, work what) {

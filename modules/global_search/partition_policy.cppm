@@ -46,6 +46,10 @@ concept ColumnPartition =
         { policy.threads() } -> std::same_as<unsigned>;
     };
 
+/// Whether there are subsets at all.
+template <PartitionPolicy P>
+inline constexpr bool really_cuts = CuttingPartition<P> || ColumnPartition<P>;
+
 /// Into how many segments axes were to be cut, and were; summed over the axes.
 struct segment_counts {
     std::uint64_t wanted;

@@ -63,6 +63,12 @@ divided_scene::part divided_scene::part_of(const mesh& m, std::vector<std::uint3
     return made;
 }
 
+std::pair<std::uint32_t, std::uint32_t> divided_scene::pieces_of(std::uint32_t object) const noexcept {
+    const auto own = std::ranges::equal_range(pieces_, object, {}, &piece::object);
+    return {static_cast<std::uint32_t>(own.begin() - pieces_.begin()),
+            static_cast<std::uint32_t>(own.end() - pieces_.begin())};
+}
+
 const mesh& divided_scene::mesh_of(std::uint32_t model) const noexcept {
     const auto& [source, part, bounds] = models_[model];
     return part == whole ? scene_.meshes[source] : parts_[part].own;

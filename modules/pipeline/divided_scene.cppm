@@ -2,6 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 export module aabb.pipeline:divided_scene;
@@ -29,6 +30,8 @@ public:
     [[nodiscard]] std::uint32_t pieces() const noexcept { return static_cast<std::uint32_t>(pieces_.size()); }
     [[nodiscard]] std::uint32_t object_of(std::uint32_t piece) const noexcept { return pieces_[piece].object; }
     [[nodiscard]] std::uint32_t model_of(std::uint32_t piece) const noexcept { return pieces_[piece].model; }
+    /// From the first one to behind the last one.
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> pieces_of(std::uint32_t object) const noexcept;
 
     [[nodiscard]] std::uint32_t models() const noexcept { return static_cast<std::uint32_t>(models_.size()); }
     /// Stays where it is as long as this does.

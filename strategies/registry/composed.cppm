@@ -65,14 +65,6 @@ template <class Result, class... Strategies, class Make>
     return result;
 }
 
-/// The counters of a stage, whatever its policy.
-[[nodiscard]] inline work_counters counted(const work_counters& counters) {
-    return counters;
-}
-[[nodiscard]] inline work_counters counted(const no_counters&) {
-    return {};
-}
-
 /// Calls `make` with the counters that are asked for.
 template <class Make>
 [[nodiscard]] auto with_counters(instrumentation wanted, Make make) {

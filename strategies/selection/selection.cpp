@@ -2,11 +2,13 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 module aabb.selection;
 
+import aabb.geometry;
 import aabb.policy;
 import aabb.registry;
 
@@ -52,6 +54,12 @@ std::string usual_rule(strategy_kind kind, const std::string& name) {
 }
 
 }  // namespace
+
+scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames) {
+    scene_outlook scene{.frames = frames, .queries = frames * std::max<std::size_t>(objects / 2, 1)};
+    for (const mesh& m : meshes) scene.triangles += m.triangle_count();
+    return scene;
+}
 
 bool depends_on_scene(strategy_kind kind) {
     return kind == strategy_kind::prepare || kind == strategy_kind::build;

@@ -1,11 +1,13 @@
 module;
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 /// What serves a scene: `auto`, by rules that say why.
 export module aabb.selection;
 
+import aabb.geometry;
 import aabb.policy;
 import aabb.registry;
 
@@ -18,6 +20,9 @@ struct scene_outlook {
     std::size_t triangles = 0;  ///< of all meshes; 0 where there are boxes only
     std::size_t queries = 1;    ///< of two meshes, that a tree is to serve
 };
+
+/// Of moving meshes: each object is held against one other a frame, as a guess.
+[[nodiscard]] scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames);
 
 /// What one kind of strategy gets, and the rule that says so, a sentence.
 struct selected_strategy {

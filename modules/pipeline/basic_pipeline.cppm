@@ -1,0 +1,302 @@
+module;
+#include <algorithm>
+#include <cassert>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+export module aabb.pipeline:basic_pipeline;
+
+import aabb.base;
+import aabb.geometry;
+import :divided_scene;
+import :posed_boxes;
+import :scene;
+import :stage;
+
+namespace aabb::detail {
+
+struct no_division {};
+struct no_pieces {};
+
+}  // namespace aabb::detail
+
+export namespace aabb {
+
+/// Global search that may have meshes divided, as any may that is chosen at run time (`global_stage::divide`).
+template <class Global>
+concept DividingSearch = requires(Global& global, const mesh_scene& scene) {
+    { global.divide(scene) } -> std::same_as<mesh_division>;
+};
+
+static_assert(DividingSearch<global_stage>);
+
+/// Both stages together on a scene of moving meshes: global search proposes pairs of objects, local detection decides.
+/// Neither stage knows the other; the buffer of candidate pairs is all there is between them. Where global search asks
+/// for it (`DividingSearch`) both see parts of objects in place of whole ones; contacts are those of objects all the
+/// same. Of a search whose type says that it divides nothing, nothing is there for parts.
+template <class Global, class Local>
+class basic_pipeline {
+    static constexpr bool may_divide = DividingSearch<Global>;
+
+public:
+    /// Takes the objects, all of which are present, and builds the models of the scene. Scene and stages must outlive
+    /// the pipeline.
+    basic_pipeline(const mesh_scene& scene, Global& global, Local& local)
+        : scene_(scene), global_(&global), local_(local) {
+        if constexpr (may_divide)
+            if (mesh_division division = global.divide(scene); !division.empty())
+                divided_.emplace(scene, std::move(division));
+        add_models();
+        if (!is_divided()) world_.emplace(scene);
+        for (std::uint32_t id = 0; id < pieces(); ++id) global.insert(id);
+    }
+    /// Without global search every two objects are candidates, and no boxes are made of them in the world, so that they
+    /// may lie anywhere.
+    basic_pipeline(const mesh_scene& scene, Local& local)
+        requires may_divide
+        : scene_(scene), local_(local) {
+        add_models();
+    }
+
+    /// An object that was removed comes back, or one goes, from the next frame on; there must be global search.
+    /// @throws input_error where there is no such object, where it is present already, or is not.
+    void insert(std::uint32_t object) {
+        for_pieces_of(
+            object, [&](std::uint32_t id) { global_->insert(id); }, [&](std::uint32_t id) { global_->remove(id); });
+    }
+    void remove(std::uint32_t object) {
+        for_pieces_of(
+            object, [&](std::uint32_t id) { global_->remove(id); }, [&](std::uint32_t id) { global_->insert(id); });
+    }
+
+    /// One frame, in three steps that can be timed apart. The first takes the poses, one an object, and fits the trees
+    /// of meshes that have deformed.
+    /// @throws input_error on a pose that is not rigid or takes an object beyond the range of float, by its number.
+    void update(std::span<const pose> poses) {
+        frame_.begin();
+        searched_ = false;
+        require_ieee_arithmetic();
+        follow_meshes();
+        place(poses);
+        poses_.assign(poses.begin(), poses.end());
+        if (searches()) global_->update(boxes());
+        frame_.taken();
+    }
+    /// @throws input_error when the last update did not succeed, or there was none.
+    void search() {
+        frame_.require_taken();
+        searched_ = false;
+        candidates_.clear();
+        if (is_divided())
+            search_pieces();
+        else if (searches())
+            global_->search(candidates_);
+        else
+            take_every_two();
+        searched_ = true;
+    }
+    /// @throws input_error when the last search did not succeed, or there was none since the last update.
+    void detect() {
+        contacts_.clear();
+        require_searched();
+        append_whole(contacts_, [&] {
+            for (std::size_t i = 0; i < candidates_.size(); ++i) {
+                const auto [a, b] = models_of(i);
+                triangle_pairs_.clear();
+                local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
+                for (const index_pair found : triangle_pairs_) contacts_.push_back(contact_of(i, found));
+            }
+        });
+    }
+
+    /// In place of `detect`: any one contact, how many there are.
+    /// @throws input_error as `detect`.
+    [[nodiscard]] std::optional<contact> first_contact() {
+        require_searched();
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            const auto [a, b] = models_of(i);
+            if (const auto found = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b]))
+                return contact_of(i, *found);
+        }
+        return std::nullopt;
+    }
+    [[nodiscard]] std::uint64_t count_contacts() {
+        require_searched();
+        std::uint64_t count = 0;
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            const auto [a, b] = models_of(i);
+            count += local_.count_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b]);
+        }
+        return count;
+    }
+
+    /// In the world, by object; by piece where meshes are divided; empty without global search.
+    [[nodiscard]] std::span<const box> boxes() const noexcept {
+        if constexpr (may_divide)
+            if (divided_) return divided_->boxes();
+        return world_ ? world_->boxes() : std::span<const box>();
+    }
+    /// Pairs of objects whose boxes overlap, in no particular order; where meshes are divided, one for each two pieces
+    /// of two objects whose boxes do.
+    [[nodiscard]] std::span<const index_pair> candidates() const noexcept { return candidates_; }
+    /// In no particular order.
+    [[nodiscard]] std::span<const contact> contacts() const noexcept { return contacts_; }
+    /// Of local detection: the meshes, or what they are divided into.
+    [[nodiscard]] std::uint32_t models() const noexcept {
+        if constexpr (may_divide)
+            if (divided_) return divided_->models();
+        return static_cast<std::uint32_t>(scene_.meshes.size());
+    }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all = (world_ ? world_->bytes() : 0) + bytes_of(poses_) + bytes_of(candidates_) +
+                          bytes_of(triangle_pairs_) + bytes_of(contacts_);
+        if constexpr (may_divide) all += bytes_of(pieces_);
+        return all;
+    }
+    /// What the division of meshes takes beside that.
+    [[nodiscard]] std::size_t division_bytes() const noexcept {
+        if constexpr (may_divide)
+            if (divided_) return divided_->bytes();
+        return 0;
+    }
+
+private:
+    /// A candidate as local detection sees it.
+    struct model_pair {
+        std::uint32_t a;
+        std::uint32_t b;
+    };
+
+    [[nodiscard]] bool is_divided() const noexcept {
+        if constexpr (may_divide)
+            return divided_.has_value();
+        else
+            return false;
+    }
+    [[nodiscard]] bool searches() const noexcept {
+        if constexpr (may_divide)
+            return global_ != nullptr;
+        else
+            return true;
+    }
+    /// As global search sees them.
+    [[nodiscard]] std::uint32_t pieces() const noexcept {
+        if constexpr (may_divide)
+            if (divided_) return divided_->pieces();
+        return static_cast<std::uint32_t>(scene_.mesh_of.size());
+    }
+
+    void add_models() {
+        assert(std::ranges::all_of(scene_.mesh_of, [&](std::uint32_t m) { return m < scene_.meshes.size(); }));
+        for (std::uint32_t m = 0; m < models(); ++m) local_.add_model(mesh_of(m));
+    }
+    [[nodiscard]] const mesh& mesh_of(std::uint32_t model) const noexcept {
+        if constexpr (may_divide)
+            if (divided_) return divided_->mesh_of(model);
+        return scene_.meshes[model];
+    }
+    [[nodiscard]] bool deforms(std::uint32_t model) const {
+        if constexpr (may_divide)
+            if (divided_) return divided_->deforms(model);
+        return scene_.deforms(model);
+    }
+
+    /// Calls `change` with all pieces of an object, and `undo` with those that it was called with when it throws.
+    template <class Change, class Undo>
+    void for_pieces_of(std::uint32_t object, Change change, Undo undo) {
+        assert(searches());
+        if (object >= scene_.mesh_of.size())
+            throw input_error("there is no object " + std::to_string(object) + ": the scene has " +
+                              std::to_string(scene_.mesh_of.size()));
+        if constexpr (may_divide)
+            if (divided_) {
+                const auto [first, last] = divided_->pieces_of(object);
+                for (std::uint32_t id = first; id < last; ++id) {
+                    try {
+                        change(id);
+                    } catch (...) {
+                        while (id-- > first) undo(id);
+                        throw;
+                    }
+                }
+                return;
+            }
+        change(object);
+    }
+
+    /// Refitting refuses a mesh of which no box could be made.
+    void follow_meshes() {
+        if constexpr (may_divide)
+            if (divided_) divided_->follow();
+        for (std::uint32_t m = 0; m < models(); ++m)
+            if (deforms(m)) local_.refit(m);
+    }
+    void place(std::span<const pose> poses) {
+        if constexpr (may_divide)
+            if (divided_) return divided_->place(poses);
+        if (world_)
+            world_->update(poses);
+        else
+            require_poses(scene_, poses);
+    }
+
+    void search_pieces() {
+        if constexpr (may_divide) {
+            pieces_.clear();
+            global_->search(pieces_);
+            // Parts of one object never meet.
+            std::erase_if(pieces_, [&](index_pair p) { return divided_->object_of(p.a) == divided_->object_of(p.b); });
+            for (const auto [a, b] : pieces_) candidates_.push_back({divided_->object_of(a), divided_->object_of(b)});
+        }
+    }
+    void take_every_two() {
+        for (std::uint32_t b = 0; b < poses_.size(); ++b)
+            for (std::uint32_t a = 0; a < b; ++a) candidates_.push_back({a, b});
+    }
+
+    void require_searched() const {
+        if (!searched_)
+            throw input_error("there are no candidates to decide on: search was not called, or did not succeed");
+        assert(poses_.size() == scene_.mesh_of.size());
+    }
+    [[nodiscard]] model_pair models_of(std::size_t candidate) const noexcept {
+        if constexpr (may_divide)
+            if (divided_) return {divided_->model_of(pieces_[candidate].a), divided_->model_of(pieces_[candidate].b)};
+        return {scene_.mesh_of[candidates_[candidate].a], scene_.mesh_of[candidates_[candidate].b]};
+    }
+    /// @param triangles of the two models
+    [[nodiscard]] contact contact_of(std::size_t candidate, index_pair triangles) const noexcept {
+        const auto [a, b] = candidates_[candidate];
+        if constexpr (may_divide)
+            if (divided_) {
+                const model_pair models = models_of(candidate);
+                return {a, b, divided_->triangle_of(models.a, triangles.a),
+                        divided_->triangle_of(models.b, triangles.b)};
+            }
+        return {a, b, triangles.a, triangles.b};
+    }
+
+    const mesh_scene& scene_;
+    Global* global_ = nullptr;
+    Local& local_;
+    // With global search that asks for it.
+    [[no_unique_address]] std::conditional_t<may_divide, std::optional<divided_scene>, detail::no_division> divided_;
+    std::optional<posed_boxes> world_;  // with any other
+    std::vector<pose> poses_;
+    std::vector<index_pair> candidates_;
+    // By candidate, where meshes are divided.
+    [[no_unique_address]] std::conditional_t<may_divide, std::vector<index_pair>, detail::no_pieces> pieces_;
+    std::vector<index_pair> triangle_pairs_;
+    std::vector<contact> contacts_;
+    frame_state frame_;
+    bool searched_ = false;
+};
+
+}  // namespace aabb

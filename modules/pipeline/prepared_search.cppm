@@ -1,0 +1,40 @@
+module;
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+export module aabb.pipeline:prepared_search;
+
+import aabb.geometry;
+import :prepare_policy;
+import :scene;
+import :searched_by;
+import :stage;
+
+export namespace aabb {
+
+/// A global search behind a strategy that prepares its boxes: what `global_stage` says of its functions holds here. The
+/// two know each other as stages, at one call a frame.
+template <PreparePolicy Prepare, class Search>
+class prepared_search {
+public:
+    explicit prepared_search(const Prepare& prepare = {}, Search search = Search())
+        : stage_(prepare.before(std::make_unique<searched_by<Search>>(std::move(search)), instrumentation::none)) {}
+
+    [[nodiscard]] mesh_division divide(const mesh_scene& scene) { return stage_->divide(scene); }
+    void insert(std::uint32_t id) { stage_->insert(id); }
+    void remove(std::uint32_t id) { stage_->remove(id); }
+    void update(std::span<const box> boxes) { stage_->update(boxes); }
+    void search(std::vector<index_pair>& pairs) { stage_->search(pairs); }
+
+    [[nodiscard]] friend std::vector<part_bytes> bytes_by_part(const prepared_search& search) {
+        return search.stage_->bytes();
+    }
+
+private:
+    std::unique_ptr<global_stage> stage_;
+};
+
+}  // namespace aabb

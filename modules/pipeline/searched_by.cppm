@@ -1,0 +1,59 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+export module aabb.pipeline:searched_by;
+
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import :stage;
+
+export namespace aabb {
+
+/// What a global search whose type is known holds on the heap, part by part; what it is made without is no part.
+template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters>
+[[nodiscard]] std::vector<part_bytes> bytes_by_part(const global_search<Sort, Partition, Sweep, Counters>& search) {
+    std::vector<part_bytes> parts{{"projections", search.projection_bytes()}, {"sort", search.sort_bytes()}};
+    if constexpr (really_cuts<Partition>) parts.push_back({"partition", search.partition_bytes()});
+    parts.push_back({"sweep", search.sweep_bytes()});
+    return parts;
+}
+
+template <class Search>
+class searched_by;
+
+/// A global search whose type is known, as a stage.
+template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters>
+class searched_by<global_search<Sort, Partition, Sweep, Counters>> final : public global_stage {
+public:
+    explicit searched_by(global_search<Sort, Partition, Sweep, Counters> search) : search_(std::move(search)) {}
+
+    void insert(std::uint32_t id) override { search_.insert(id); }
+    void remove(std::uint32_t id) override { search_.remove(id); }
+    void update(std::span<const box> boxes) override { search_.update(boxes); }
+    void search(std::vector<index_pair>& pairs) override { search_.search(pairs); }
+    [[nodiscard]] work_counters counters() const override { return work_of(search_.counters()); }
+    [[nodiscard]] std::vector<part_bytes> bytes() const override { return bytes_by_part(search_); }
+
+    [[nodiscard]] std::vector<std::string> left_out() const override {
+        std::vector<std::string> absent;
+        if constexpr (!really_cuts<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
+        if constexpr (CoherentSweep<Sweep>)
+            absent.emplace_back("no projection lists beside those that the sweep keeps for itself");
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!has_axis(search_.sorted_axes(), k))
+                absent.push_back(std::string("no projection list of the ") + "xyz"[k] + " axis");
+        if constexpr (!Counters::enabled) absent.emplace_back("no work counters");
+        return absent;
+    }
+
+private:
+    global_search<Sort, Partition, Sweep, Counters> search_;
+};
+
+}  // namespace aabb

@@ -1,0 +1,145 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabb.auto_detector;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.policy;
+import aabb.registry;
+import aabb.selection;
+
+namespace aabb {
+
+namespace {
+
+strategy_kind kind_named(std::string_view name) {
+    std::vector<std::string> names;
+    for (const strategy_kind kind : strategy_kinds) {
+        if (name_of(kind) == name) return kind;
+        names.emplace_back(name_of(kind));
+    }
+    throw input_error(unknown_name("kind of strategy", name, names));
+}
+
+named_strategies named_in(const std::vector<std::string>& texts) {
+    named_strategies named;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos)
+            throw input_error("'" + text + "' is not of the form kind=strategy, as in sort=shell");
+        auto& choice = named[kind_named(std::string_view(text).substr(0, equals))];
+        if (choice) throw input_error(text.substr(0, equals) + " is named twice");
+        choice = parse_strategy(std::string_view(text).substr(equals + 1));
+    }
+    return named;
+}
+
+named_strategies named_for_boxes(const std::vector<std::string>& texts) {
+    named_strategies named = named_in(texts);
+    for (const strategy_kind kind : strategy_kinds)
+        if (named[kind] && info_of(kind).stage == stage::local_detection)
+            throw input_error(std::string(name_of(kind)) + " is named, but objects are boxes");
+    return named;
+}
+
+}  // namespace
+
+struct auto_detector::mesh_part {
+    mesh_part(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of, global_stage& global,
+              std::unique_ptr<local_stage> detection)
+        : scene(std::move(meshes), std::move(mesh_of)), local(std::move(detection)), both(scene, global, *local) {}
+
+    given_scene scene;
+    std::unique_ptr<local_stage> local;
+    pipeline both;
+};
+
+auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t frames)
+    : auto_detector(named_for_boxes(named), scene_outlook{.frames = frames}) {
+    if (const std::string sentence = needs_meshes(composed_of(selected_)); !sentence.empty())
+        throw input_error(sentence);
+    std::erase_if(selected_,
+                  [](const selected_strategy& one) { return info_of(one.kind).stage == stage::local_detection; });
+}
+
+auto_detector::auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
+                             const std::vector<std::string>& named, std::size_t frames)
+    : auto_detector(named_in(named), outlook_of(meshes, mesh_of.size(), frames)) {
+    meshes_ = std::make_unique<mesh_part>(std::move(meshes), std::move(mesh_of), *global_,
+                                          compose_local_detection(composed_of(selected_), instrumentation::none));
+}
+
+auto_detector::auto_detector(const named_strategies& named, const scene_outlook& scene)
+    : selected_(select_strategies(named, scene)),
+      global_(compose_global_search(composed_of(selected_), instrumentation::none)) {}
+
+auto_detector::~auto_detector() = default;
+
+void auto_detector::insert(std::uint32_t object) {
+    meshes_ ? meshes_->both.insert(object) : global_->insert(object);
+}
+
+void auto_detector::remove(std::uint32_t object) {
+    meshes_ ? meshes_->both.remove(object) : global_->remove(object);
+}
+
+std::span<const index_pair> auto_detector::pairs(std::span<const box> boxes) {
+    if (meshes_) throw input_error("this detector is of meshes: ask for contacts, with their poses");
+    global_->update(boxes);
+    pairs_.clear();
+    global_->search(pairs_);
+    return pairs_;
+}
+
+pipeline& auto_detector::searched(std::span<const pose> poses) {
+    if (!meshes_) throw input_error("this detector is of boxes: make one with meshes to ask for contacts");
+    meshes_->both.update(poses);
+    meshes_->both.search();
+    return meshes_->both;
+}
+
+std::span<const contact> auto_detector::contacts(std::span<const pose> poses) {
+    pipeline& both = searched(poses);
+    both.detect();
+    return both.contacts();
+}
+
+std::optional<contact> auto_detector::first_contact(std::span<const pose> poses) {
+    return searched(poses).first_contact();
+}
+
+std::uint64_t auto_detector::count_contacts(std::span<const pose> poses) {
+    return searched(poses).count_contacts();
+}
+
+std::vector<part_bytes> auto_detector::bytes() const {
+    std::vector<part_bytes> parts = global_->bytes();
+    std::size_t buffers = bytes_of(pairs_);
+    if (meshes_) {
+        for (part_bytes& part : meshes_->local->bytes()) parts.push_back(std::move(part));
+        buffers += meshes_->both.bytes() + meshes_->both.division_bytes();
+    }
+    parts.push_back({"buffers", buffers});
+    return parts;
+}
+
+std::vector<std::string> auto_detector::left_out() const {
+    std::vector<std::string> absent = global_->left_out();
+    if (!meshes_) absent.emplace_back("no local detection: no meshes, no trees, no triangle test");
+    for (std::string& sentence : meshes_ ? meshes_->local->left_out() : std::vector<std::string>{})
+        if (std::ranges::find(absent, sentence) == absent.end()) absent.push_back(std::move(sentence));
+    return absent;
+}
+
+}  // namespace aabb

@@ -1,0 +1,308 @@
+// Detection composed at compile time and at run time, and that what is left out takes no room.
+
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_exception.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../compositions.hpp"
+
+import aabb.auto_detector;
+import aabb.build.median;
+import aabb.partition.axial_cut;
+import aabb.partition.columns;
+import aabb.partition.none;
+import aabb.prepare.split_large;
+import aabb.prepare.split_mesh;
+import aabb.selection;
+import aabb.sort.bucket;
+import aabb.sort.insertion;
+import aabb.sweep.incremental;
+import aabb.sweep.one_axis;
+import aabb.sweep.simd;
+import aabb.tree.canonical;
+import aabb.tree.implicit;
+import aabb.triangle.exact;
+
+using namespace aabb;
+using Catch::Matchers::Message;
+
+namespace {
+
+using bare_search = global_search<insertion_sort, none_partition, one_axis_sweep>;
+using counted_search = global_search<insertion_sort, none_partition, one_axis_sweep, work_counters>;
+using cut_search = global_search<insertion_sort, axial_cut_partition, one_axis_sweep>;
+using column_search_of_all = global_search<bucket_sort, columns_partition, simd_sweep>;
+using bare_detection = mesh_detection<median_build, canonical_tree, exact_triangle>;
+using counted_detection = mesh_detection<median_build, canonical_tree, exact_triangle, work_counters>;
+
+/// What a search without partition and counters cannot be without.
+struct needed_by_search {
+    one_axis_sweep sweep;
+    std::span<const box> boxes;
+    membership objects;
+    projection_lists<no_counters> lists;
+    frame_state frame;
+};
+/// The same of both stages where nothing is divided.
+struct needed_by_pipeline {
+    const mesh_scene* scene;
+    bare_search* global;
+    bare_detection* local;
+    std::optional<posed_boxes> world;
+    std::vector<pose> poses;
+    std::vector<index_pair> candidates;
+    std::vector<index_pair> triangle_pairs;
+    std::vector<contact> contacts;
+    frame_state frame;
+    bool searched;
+};
+
+// What is left out takes no byte, and what is put back takes all that it is.
+static_assert(sizeof(bare_search) == sizeof(needed_by_search));
+static_assert(sizeof(detector<bare_search>) == sizeof(bare_search) + sizeof(std::vector<index_pair>));
+static_assert(sizeof(counted_search) >= sizeof(bare_search) + sizeof(work_counters));
+static_assert(sizeof(cut_search) >= sizeof(bare_search) + sizeof(subset_lists));
+static_assert(sizeof(counted_detection) >= sizeof(bare_detection) + sizeof(work_counters));
+static_assert(sizeof(basic_pipeline<bare_search, bare_detection>) == sizeof(needed_by_pipeline));
+static_assert(sizeof(pipeline) >= sizeof(needed_by_pipeline) + sizeof(std::optional<divided_scene>));
+
+mesh tetrahedron(float edge) {
+    return {{{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+/// A strip of triangles, much longer than the tetrahedra.
+mesh strip() {
+    mesh m;
+    for (std::uint32_t i = 0; i <= 40; ++i) {
+        m.vertices.push_back({static_cast<float>(i), 0, 0.4F});
+        m.vertices.push_back({static_cast<float>(i), 1, 0.4F});
+    }
+    for (std::uint32_t i = 0; i < 40; ++i) {
+        m.triangles.push_back({2 * i, 2 * i + 1, 2 * i + 2});
+        m.triangles.push_back({2 * i + 1, 2 * i + 3, 2 * i + 2});
+    }
+    return m;
+}
+
+const std::vector<mesh> meshes{tetrahedron(1), strip()};
+const std::vector<std::uint32_t> mesh_of{0, 1, 0, 0, 1};
+
+std::vector<pose> poses_of(int frame) {
+    std::vector<pose> poses(mesh_of.size());
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        poses[i].translation = {static_cast<double>(i) * 0.3 * frame, 0.25 * static_cast<double>(i), 0.1 * frame};
+    return poses;
+}
+
+/// What two stages find that are made by name, whole objects held against each other; without the contacts of `away`.
+std::vector<contact> expected_contacts(const std::vector<pose>& poses, std::optional<std::uint32_t> away = {}) {
+    const given_scene scene(meshes, mesh_of);
+    const auto local = local_of(composed({{strategy_kind::tree, "canonical"}}));
+    pipeline every_two(scene, *local);
+    every_two.update(poses);
+    every_two.search();
+    every_two.detect();
+    std::vector<contact> found(every_two.contacts().begin(), every_two.contacts().end());
+    std::erase_if(found, [&](const contact& c) { return c.a == away || c.b == away; });
+    std::ranges::sort(found);
+    return found;
+}
+
+template <class T>
+std::vector<T> sorted(std::span<const T> found) {
+    std::vector<T> all(found.begin(), found.end());
+    std::ranges::sort(all);
+    return all;
+}
+
+/// Boxes of which some overlap, others in each frame.
+std::vector<box> boxes_of(int frame) {
+    std::vector<box> boxes;
+    for (int i = 0; i < 40; ++i) {
+        const vec3f at{static_cast<float>((i * 7 + frame * (i % 3)) % 23), static_cast<float>(i * 5 % 11),
+                       static_cast<float>(i * 3 % 7)};
+        boxes.push_back({at, at + vec3f{3, 3, 3}});
+    }
+    return boxes;
+}
+
+std::vector<index_pair> expected_pairs(const std::vector<box>& boxes, std::optional<std::uint32_t> away = {}) {
+    std::vector<index_pair> pairs;
+    for (std::uint32_t a = 0; a < boxes.size(); ++a)
+        for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
+            if (overlaps(boxes[a], boxes[b]) && a != away && b != away) pairs.push_back({a, b});
+    return pairs;
+}
+
+template <class Detector>
+void find_pairs(Detector& detector) {
+    CHECK_THROWS_AS(detector.pairs(boxes_of(0)), input_error);  // nothing was inserted
+    for (std::uint32_t id = 0; id < 40; ++id) detector.insert(id);
+    CHECK_THROWS_MATCHES(detector.insert(3), input_error, Message("object 3 is inserted twice"));
+    for (int frame = 0; frame < 6; ++frame) {
+        const std::vector<box> boxes = boxes_of(frame);
+        const std::vector<index_pair> all = expected_pairs(boxes);
+        REQUIRE_FALSE(all.empty());
+        CHECK(sorted(detector.pairs(boxes)) == all);
+        detector.remove(7);
+        CHECK(sorted(detector.pairs(boxes)) == expected_pairs(boxes, 7));
+        detector.insert(7);
+        std::vector<box> inverted = boxes;
+        std::swap(inverted[5].min, inverted[5].max);
+        CHECK_THROWS_AS(detector.pairs(inverted), input_error);
+        CHECK(sorted(detector.pairs(boxes)) == all);
+    }
+}
+
+template <class Detector>
+void find_contacts(Detector& detector) {
+    for (int frame = 0; frame < 6; ++frame) {
+        const std::vector<pose> poses = poses_of(frame);
+        const std::vector<contact> all = expected_contacts(poses);
+        REQUIRE_FALSE(all.empty());
+        CHECK(sorted(detector.contacts(poses)) == all);
+        CHECK(detector.count_contacts(poses) == all.size());
+        CHECK(std::ranges::find(all, detector.first_contact(poses).value()) != all.end());
+        // One that is divided where anything is.
+        detector.remove(1);
+        CHECK_THROWS_AS(detector.remove(1), input_error);
+        CHECK(sorted(detector.contacts(poses)) == expected_contacts(poses, 1));
+        detector.insert(1);
+        CHECK_THROWS_AS(detector.insert(1), input_error);
+        CHECK_THROWS_MATCHES(detector.remove(5), input_error, Message("there is no object 5: the scene has 5"));
+        CHECK_THROWS_AS(detector.contacts(std::span(poses).first(4)), input_error);
+        CHECK(sorted(detector.contacts(poses)) == all);
+    }
+}
+
+std::vector<std::string> names(const std::vector<part_bytes>& parts) {
+    std::vector<std::string> all;
+    for (const part_bytes& part : parts) all.push_back(part.part);
+    return all;
+}
+
+std::size_t bytes_of_part(const std::vector<part_bytes>& parts, const std::string& name) {
+    return std::ranges::find(parts, name, &part_bytes::part)->bytes;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a detector of boxes finds the pairs that overlap, of whoever is present, and goes on after a refused frame") {
+    detector<bare_search> bare;
+    find_pairs(bare);
+    detector<counted_search> counted;
+    find_pairs(counted);
+    CHECK(counted.global().counters()[work::box_tests] > 0);
+    axial_cut_partition::config one_axis;
+    one_axis.axes = 1;
+    detector<cut_search> cut(cut_search({}, axial_cut_partition(one_axis), {}));
+    find_pairs(cut);
+    detector<column_search_of_all> columns;
+    find_pairs(columns);
+    detector<global_search<insertion_sort, none_partition, incremental_sweep>> coherent;
+    find_pairs(coherent);
+    detector<prepared_search<split_large_prepare, bare_search>> prepared;
+    find_pairs(prepared);
+    auto_detector selected;
+    find_pairs(selected);
+    auto_detector named({"prepare=none", "sort=shell:gaps=ciura", "partition=none"});
+    find_pairs(named);
+}
+
+TEST_CASE("a detector of meshes finds the contacts of whoever is present, and goes on after a refused frame") {
+    detector<bare_search, bare_detection> bare(meshes, mesh_of);
+    find_contacts(bare);
+    detector<counted_search, counted_detection> counted(meshes, mesh_of);
+    find_contacts(counted);
+    CHECK(counted.local().counters()[work::triangle_tests] > 0);
+    detector<column_search_of_all, mesh_detection<median_build, implicit_tree, exact_triangle>> usual(meshes, mesh_of);
+    find_contacts(usual);
+    detector<prepared_search<split_mesh_prepare, bare_search>, bare_detection> parted(
+        meshes, mesh_of, prepared_search<split_mesh_prepare, bare_search>(split_mesh_prepare({.size = 1})));
+    find_contacts(parted);
+    // Pairs of parts, of which one object pair may have several.
+    CHECK(parted.candidates().size() != bare.candidates().size());
+    auto_detector selected(meshes, mesh_of);
+    find_contacts(selected);
+    auto_detector named(meshes, mesh_of, {"prepare=split_mesh:size=1", "tree=compressed"}, 1);
+    find_contacts(named);
+}
+
+TEST_CASE("the bytes of a detector have no part that it is not made of") {
+    const std::vector<std::string> bare_parts{"projections", "sort", "sweep", "buffers"};
+    detector<bare_search> bare;
+    CHECK(names(bare.bytes()) == bare_parts);
+    for (const part_bytes& part : bare.bytes()) CHECK(part.bytes == 0);
+    find_pairs(bare);
+    CHECK(names(bare.bytes()) == bare_parts);
+    CHECK(bytes_of_part(bare.bytes(), "projections") > 0);
+    CHECK(bytes_of_part(bare.bytes(), "buffers") > 0);
+    detector<cut_search> cut;
+    find_pairs(cut);
+    CHECK(bytes_of_part(cut.bytes(), "partition") > 0);
+    // Counters stand in the search itself, so both hold the same of the rest.
+    detector<counted_search> counted;
+    find_pairs(counted);
+    CHECK(bytes_of_part(counted.bytes(), "sweep") == bytes_of_part(bare.bytes(), "sweep"));
+
+    const detector<bare_search, bare_detection> both(meshes, mesh_of);
+    CHECK(names(both.bytes()) ==
+          std::vector<std::string>{"projections", "sort", "sweep", "nodes", "indices", "stack", "refit", "buffers"});
+    CHECK(names(auto_detector({"prepare=none", "sort=insertion", "partition=none"}).bytes()) == bare_parts);
+    const auto_detector prepared;
+    CHECK(std::ranges::count(names(prepared.bytes()), "prepare") == 1);
+    CHECK(std::ranges::count(names(prepared.bytes()), "nodes") == 0);
+    CHECK(std::ranges::count(names(auto_detector(meshes, mesh_of).bytes()), "nodes") == 1);
+}
+
+TEST_CASE("an auto_detector says what it selected and by which rule, and what it does without") {
+    const auto_detector boxes({"sort=shell:gaps=ciura"}, 1);
+    const auto rule_of = [](const auto_detector& detector, strategy_kind kind) {
+        const auto& all = detector.selected();
+        const auto one = std::ranges::find(all, kind, &selected_strategy::kind);
+        return one == all.end() ? "" : to_text(one->choice) + ", " + one->rule;
+    };
+    CHECK(rule_of(boxes, strategy_kind::sort) == "shell:gaps=ciura, as it is named");
+    CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than four frames"));
+    CHECK(rule_of(boxes, strategy_kind::tree).empty());
+    CHECK(std::ranges::count(boxes.left_out(), "no local detection: no meshes, no trees, no triangle test") == 1);
+    CHECK(std::ranges::count(boxes.left_out(), "no work counters") == 1);
+    const auto_detector many(meshes, mesh_of);
+    CHECK(rule_of(many, strategy_kind::prepare).starts_with("neighbour_list, frames follow each other"));
+    CHECK(rule_of(many, strategy_kind::build).starts_with("sah, "));
+    CHECK(rule_of(auto_detector(meshes, mesh_of, {}, 1), strategy_kind::build).starts_with("median, "));
+    CHECK(std::ranges::count(many.left_out(), "no work counters") == 1);
+}
+
+TEST_CASE("a detector refuses what it cannot be made of, or asked for, in one sentence") {
+    const auto missing = Message("object 1 is mesh 2, but there are 2 meshes");
+    using both = detector<bare_search, bare_detection>;
+    CHECK_THROWS_MATCHES(both(meshes, {0, 2}), input_error, missing);
+    CHECK_THROWS_MATCHES(auto_detector(meshes, {0, 2}), input_error, missing);
+    CHECK_THROWS_MATCHES(auto_detector({"sort"}), input_error,
+                         Message("'sort' is not of the form kind=strategy, as in sort=shell"));
+    CHECK_THROWS_MATCHES(auto_detector({"srt=shell"}), input_error,
+                         Message("unknown kind of strategy 'srt'; did you mean 'sort'?"));
+    CHECK_THROWS_MATCHES(auto_detector({"sort=shel"}), input_error,
+                         Message("unknown sort 'shel'; did you mean 'shell'?"));
+    CHECK_THROWS_MATCHES(auto_detector({"sort=shell", "sort=std"}), input_error, Message("sort is named twice"));
+    CHECK_THROWS_MATCHES(auto_detector({"tree=implicit"}), input_error,
+                         Message("tree is named, but objects are boxes"));
+    CHECK_THROWS_AS(auto_detector({"prepare=split_mesh"}), input_error);
+    CHECK_THROWS_AS(auto_detector({"sort=shell", "sweep=incremental"}), input_error);
+    auto_detector boxes;
+    CHECK_THROWS_MATCHES(boxes.contacts({}), input_error,
+                         Message("this detector is of boxes: make one with meshes to ask for contacts"));
+    auto_detector moving(meshes, mesh_of);
+    CHECK_THROWS_MATCHES(moving.pairs({}), input_error,
+                         Message("this detector is of meshes: ask for contacts, with their poses"));
+}
