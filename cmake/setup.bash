@@ -26,6 +26,8 @@ needs=(
 # The same of what each engine and integrator needs, as its own line says. Where that is not to be had it is left out.
 mapfile -t optional_needs < <(sed -nE 's/^aabblab_(engine|integrator)\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\2 \3 \4/p' \
     "$root/validation/engines/CMakeLists.txt" "$root/experiments/stepping/CMakeLists.txt")
+# What only a test needs, which is skipped without it.
+optional_needs+=('valgrind valgrind valgrind')
 [[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=(
     'clang-format-19   -  clang-format-19'
     'clang-tidy-19     -  clang-tidy-19'
@@ -247,7 +249,7 @@ find_tools() {
     essential=${#lacking[@]}
     for need in "${optional_needs[@]}"; do note_lacking "$need"; done
     ((essential == 0)) || fail_lacking "$(no_installing) here is missing" "${lacking[@]}"
-    ((${#lacking[@]} == 0)) || say "engines and integrators that need $(listed "${lacking[@]}") are left out"
+    ((${#lacking[@]} == 0)) || say "engines, integrators and tests that need $(listed "${lacking[@]}") are left out"
 }
 
 # ----------------------------------------------------------------------------------------------------------------------

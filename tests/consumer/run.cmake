@@ -1,6 +1,6 @@
 # cmake -DBUILD=<our build folder> -DSOURCE=<this folder> -DWORK=<scratch folder> -DCOMPILER=<c++> -DFLAGS=<flags> -P run.cmake
-# Installs the package, builds the consumer against it in several ways, runs it, looks at what reaches it and what is
-# linked into it, and tries what must be refused.
+# Installs the package, builds the consumer against it in several ways, runs it, looks at what reaches it and tries what must
+# be refused. zero_cost/ looks at what is in these programs.
 function(run)
     execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
     if(NOT status EQUAL 0)
@@ -29,7 +29,13 @@ function(builds name flags)
     run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/${name} -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix
         -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} ${flags}" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON ${ARGN})
     run(${CMAKE_COMMAND} --build ${WORK}/${name})
-    prints(${WORK}/${name}/boxes_only "9 pairs\n")
+    prints(${WORK}/${name}/boxes_only "frame 0: 0 overlaps 1\nframe 1: 0 overlaps 1\nframe 1: 0 overlaps 2\nframe 2: 0 overlaps 2\n")
+    set(counts "frame 0: 6 contacts\nframe 1: 3 contacts\nframe 2: 0 contacts\n")
+    prints(${WORK}/${name}/both_stages "${counts}")
+    run(${WORK}/${name}/selected)
+    if(NOT output MATCHES "\nsort shell: as it is named\n.*\n${counts}$")
+        message(FATAL_ERROR "selected prints\n${output}")
+    endif()
     prints(${WORK}/${name}/by_name "3 triangle pairs\n")
     prints(${WORK}/${name}/meshes_by_type "${answers}")
 endfunction()
@@ -103,24 +109,12 @@ if(targets MATCHES "[^\n]*COMPILE_(OPTIONS|DEFINITIONS)[^\n]*[^\n\" ]\"")
     message(FATAL_ERROR "these options reach the interfaces: ${CMAKE_MATCH_0}")
 endif()
 
-foreach(program boxes_only by_name)
-    run(nm --demangle ${WORK}/strict_20/${program})
-    set(${program}_symbols "${output}")
-endforeach()
-
-# What a consumer of boxes does not need, in the names that the symbols have; the last word is only to see that the
-# search finds something where it is.
-if(NOT boxes_only_symbols MATCHES "one_axis_sweep")
-    message(FATAL_ERROR "boxes_only: the symbols do not show what is in it; this check would see nothing")
-endif()
-foreach(absent _tree local_detection mesh pipeline digest triangle uniform_grid all_axes CGAL:: fcl:: ccdGJK rtcCollide
-               boost::geometry btDbvt dSpaceCollide)
-    if(boxes_only_symbols MATCHES "[^\n]*${absent}[^\n]*")
-        message(FATAL_ERROR "boxes_only links what it does not need: ${CMAKE_MATCH_0}")
-    endif()
-endforeach()
-foreach(absent CGAL:: fcl:: ccdGJK rtcCollide boost::geometry btDbvt dSpaceCollide)
-    if(by_name_symbols MATCHES "[^\n]*${absent}[^\n]*")
-        message(FATAL_ERROR "by_name links what it does not need: ${CMAKE_MATCH_0}")
+# The README has these programs.
+file(READ ${SOURCE}/../../README.md readme)
+foreach(program boxes_only both_stages selected)
+    file(READ ${SOURCE}/${program}.cpp text)
+    string(FIND "${readme}" "```cpp\n${text}```" place)
+    if(place EQUAL -1)
+        message(FATAL_ERROR "README.md does not have ${program}.cpp as it is")
     endif()
 endforeach()

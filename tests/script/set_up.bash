@@ -51,11 +51,11 @@ everything='clang\+\+ 19 or newer, clang-scan-deps, CMake 3.28 or newer, ninja, 
 everything+=' <rapidcheck.h>, <benchmark/benchmark.h>, <CGAL/version.h>,'
 everything+=' <boost/math/distributions/students_t.hpp>, <toml\+\+/toml.h>, <CLI/CLI.hpp>, <fmt/core.h>,'
 everything+=' <nlohmann/json.hpp>, <xxhash.h>, <oneapi/tbb/task_arena.h>, <openssl/evp.h>, <archive.h>, <fcl/config.h>, <ccd/ccd.h>,'
-everything+=' <embree4/rtcore.h>, <bullet/LinearMath/btScalar.h>, <ode/ode.h>, <cvode/cvode.h>'
+everything+=' <embree4/rtcore.h>, <bullet/LinearMath/btScalar.h>, <ode/ode.h>, <cvode/cvode.h>, valgrind'
 tools='clang-19 libclang-rt-19-dev clang-tools-19'
 libraries='librapidcheck-dev libbenchmark-dev libcgal-dev libboost-dev'
 libraries+=' libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libssl-dev libarchive-dev'
-libraries+=' libfcl-dev libeigen3-dev libccd-dev libembree-dev libbullet-dev libode-dev libsundials-dev'
+libraries+=' libfcl-dev libeigen3-dev libccd-dev libembree-dev libbullet-dev libode-dev libsundials-dev valgrind'
 all="$tools cmake ninja-build gnuplot-nox catch2 $libraries"
 install='apt-get update && apt-get install -y --no-install-recommends'
 
@@ -64,7 +64,7 @@ install='apt-get update && apt-get install -y --no-install-recommends'
 here='aabblab: packages are installed on Debian 12 and 13 only, and here is missing:'
 fedora='clang compiler-rt clang-tools-extra cmake ninja-build gnuplot catch-devel google-benchmark-devel CGAL-devel'
 fedora+=' boost-devel tomlplusplus-devel cli11-devel fmt-devel json-devel xxhash-devel tbb-devel openssl-devel'
-fedora+=' libarchive-devel libccd-devel embree-devel bullet-devel sundials-devel'
+fedora+=' libarchive-devel libccd-devel embree-devel bullet-devel sundials-devel valgrind'
 unpackaged='Fedora has no package of <rapidcheck.h>, <fcl/config.h>, <ode/ode.h>'
 on ID=fedora
 expect 'a bare Fedora' 2 "^$here $everything; $unpackaged; as root, this installs the rest:$" aabblab list
@@ -93,7 +93,7 @@ case "$*" in
 *rapidcheck.h* | *xxhash.h*) exit 1 ;;
 esac
 SH
-for tool in clang-scan-deps-20 ninja gnuplot; do printf '#!/bin/sh\n' | program "$tool"; done
+for tool in clang-scan-deps-20 ninja gnuplot valgrind; do printf '#!/bin/sh\n' | program "$tool"; done
 printf '#!/bin/sh\necho cmake version 3.27.9\n' | program cmake
 on ID=fedora
 expect 'some is there' 2 "here is missing: CMake 3.28 or newer, <rapidcheck.h>, <xxhash.h>; Fedora has no package of <rapidcheck.h>; " aabblab list
@@ -105,9 +105,9 @@ expect 'nothing that Fedora has is missing' 2 'here is missing: <rapidcheck.h>; 
 sed -i 's| nothing| *fcl/config.h*|' bin/clang++-20
 expect 'an engine and more cannot be had' 2 'here is missing: <rapidcheck.h>, <fcl/config.h>; Fedora has no package' aabblab list
 sed -i 's/^\*rapidcheck.h\*/nothing/' bin/clang++-20
-expect 'an engine is left out' 127 '^aabblab: engines and integrators that need <fcl/config.h> are left out$' aabblab list
+expect 'an engine is left out' 127 '^aabblab: engines, integrators and tests that need <fcl/config.h> are left out$' aabblab list
 rm -r checkout/build
-rm bin/clang++-20 bin/clang-scan-deps-20 bin/ninja bin/gnuplot bin/cmake
+rm bin/clang++-20 bin/clang-scan-deps-20 bin/ninja bin/gnuplot bin/valgrind bin/cmake
 
 # ---- Debian ----
 

@@ -1,0 +1,148 @@
+# cmake -DCHECK=<symbols|bytes|instructions> -DCOSTS=<folder of stage_costs> -DCONSUMER=<scratch folder of consumer/run.cmake> \
+#       -P zero_cost.cmake
+# A stage or a counter that is left out costs nothing. Beside each check stands what has it, where the same check finds it.
+
+# ---- symbols ---------------------------------------------------------------------------------------------------------
+
+# Names in a program: unoptimised, where every function that is compiled has one, and optimised, as it is linked.
+function(symbols_of program result)
+    if(program STREQUAL "stage_costs")
+        set(files ${COSTS}/stage_costs)
+    else()
+        set(files ${CONSUMER}/readme/${program} ${CONSUMER}/strict_20/${program})
+    endif()
+    set(all "")
+    foreach(file IN LISTS files)
+        execute_process(COMMAND nm --demangle ${file} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+        string(APPEND all "${symbols}")
+    endforeach()
+    set(${result} "${all}" PARENT_SCOPE)
+endfunction()
+
+# left_out(PROGRAM CONTROL NAMES…): none of these stands in a symbol of the program, and each in one of the control, so that
+# a name that nothing has any more does not pass.
+function(left_out program control)
+    symbols_of(${program} own)
+    symbols_of(${control} others)
+    foreach(name IN LISTS ARGN)
+        string(FIND "${own}" ${name} place)
+        if(NOT place EQUAL -1)
+            string(SUBSTRING "${own}" ${place} 200 there)
+            message(SEND_ERROR "${program} has what it does not need: ${there}")
+        endif()
+        string(FIND "${others}" ${name} place)
+        if(place EQUAL -1)
+            message(SEND_ERROR "${control} has no symbol with ${name}; this check would see nothing")
+        endif()
+    endforeach()
+endfunction()
+
+function(check_symbols)
+    # Of meshes.
+    left_out(boxes_only both_stages local_detection mesh _tree triangle posed_boxes model contact basic_pipeline)
+    # Of other ways to search, and of what is made by name.
+    left_out(boxes_only both_stages column simd_sweep bucket_sort worker_threads)
+    left_out(boxes_only stage_costs axial_cut subset_lists work_counters global_stage prepared_search)
+    left_out(boxes_only selected uniform_grid all_axes incremental_sweep strategy_choice)
+    # Of both stages, composed when they are compiled: neither division nor counters nor other strategies.
+    left_out(both_stages stage_costs work_counters global_stage prepared_search axial_cut one_axis)
+    left_out(both_stages selected divided_scene local_stage neighbour_list split_mesh canonical_tree depth_first_walk
+             strategy_choice)
+    # The engines, which nothing of the library has.
+    foreach(program boxes_only both_stages selected by_name)
+        symbols_of(${program} own)
+        foreach(name CGAL:: fcl:: ccdGJK rtcCollide boost::geometry btDbvt dSpaceCollide)
+            string(FIND "${own}" ${name} place)
+            if(NOT place EQUAL -1)
+                message(SEND_ERROR "${program} has an engine in it: ${name}")
+            endif()
+        endforeach()
+    endforeach()
+endfunction()
+
+# ---- bytes -----------------------------------------------------------------------------------------------------------
+
+# held(WAY): what it holds in itself and on the heap, of a row of 1000 boxes.
+function(held way)
+    execute_process(COMMAND ${COSTS}/stage_costs ${way} 1000 OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+    if(NOT output MATCHES "^([1-9][0-9]*) pairs, ([0-9]+) bytes, ([0-9]+) on the heap\n$")
+        message(FATAL_ERROR "stage_costs ${way} prints\n${output}")
+    endif()
+    set(${way}_pairs ${CMAKE_MATCH_1} PARENT_SCOPE)
+    set(${way}_itself ${CMAKE_MATCH_2} PARENT_SCOPE)
+    set(${way}_heap ${CMAKE_MATCH_3} PARENT_SCOPE)
+    message(STATUS "${way}: ${CMAKE_MATCH_2} bytes, ${CMAKE_MATCH_3} on the heap")
+endfunction()
+
+function(check_bytes)
+    foreach(way by_hand composed counted cut prepared)
+        held(${way})
+        if(NOT ${way}_pairs EQUAL by_hand_pairs)
+            message(SEND_ERROR "${way} finds ${${way}_pairs} pairs, and by hand there are ${by_hand_pairs}")
+        endif()
+    endforeach()
+    foreach(where itself heap)
+        if(NOT composed_${where} EQUAL by_hand_${where})
+            message(SEND_ERROR "${where}: ${composed_${where}} bytes composed, ${by_hand_${where}} by hand")
+        endif()
+    endforeach()
+    # What is there is seen: a counter in the search itself, the others on the heap.
+    foreach(seen counted_itself cut_itself counted_heap cut_heap prepared_heap)
+        string(REGEX REPLACE ".*_" "" where ${seen})
+        if(NOT ${seen} GREATER by_hand_${where})
+            message(SEND_ERROR "${seen}: ${${seen}} bytes, no more than by hand; this check would see nothing")
+        endif()
+    endforeach()
+endfunction()
+
+# ---- instructions ----------------------------------------------------------------------------------------------------
+
+# counted(WAY OBJECTS): sets instructions and branches, conditional ones, that its eight measured frames execute.
+function(counted way objects)
+    execute_process(
+        COMMAND ${valgrind} --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect=*measured_frames* --branch-sim=yes
+                ${COSTS}/stage_costs ${way} ${objects}
+        OUTPUT_QUIET ERROR_VARIABLE output RESULT_VARIABLE status)
+    if(NOT status EQUAL 0 OR NOT output MATCHES "Collected : ([1-9][0-9]*) ([1-9][0-9]*)")
+        message(FATAL_ERROR "callgrind counts nothing of stage_costs ${way} ${objects}:\n${output}")
+    endif()
+    set(instructions ${CMAKE_MATCH_1} PARENT_SCOPE)
+    set(branches ${CMAKE_MATCH_2} PARENT_SCOPE)
+endfunction()
+
+# What eight frames take more than by hand: with 2000 boxes, and how much more with 4000. A frame may take some, which
+# looks whether it is in order; each box, of which there are 16000 more, must take less than a sixteenth.
+function(check_instructions)
+    find_program(valgrind valgrind)
+    if(NOT valgrind)
+        message("not tried, for want of valgrind: instructions")
+        return()
+    endif()
+    foreach(objects 2000 4000)
+        counted(by_hand ${objects})
+        set(hand_instructions_${objects} ${instructions})
+        set(hand_branches_${objects} ${branches})
+    endforeach()
+    foreach(way composed counted cut prepared)
+        foreach(objects 2000 4000)
+            counted(${way} ${objects})
+            foreach(kind instructions branches)
+                math(EXPR more_${kind}_${objects} "${${kind}} - ${hand_${kind}_${objects}}")
+            endforeach()
+        endforeach()
+        foreach(kind instructions branches)
+            math(EXPR grown "${more_${kind}_4000} - ${more_${kind}_2000}")
+            set(found "${way}: with 2000 boxes ${more_${kind}_2000} ${kind} more than the ${hand_${kind}_2000} by hand, with 4000 ${grown} more again")
+            message(STATUS "${found}")
+            if(way STREQUAL "composed")
+                if(more_${kind}_2000 GREATER 1600 OR grown GREATER 1000)
+                    message(SEND_ERROR "${found}: something is there that was left out")
+                endif()
+            elseif(NOT grown GREATER 16000)
+                message(SEND_ERROR "${found}; this check would not see it")
+            endif()
+        endforeach()
+    endforeach()
+endfunction()
+
+cmake_language(CALL check_${CHECK})
