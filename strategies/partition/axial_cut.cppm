@@ -18,6 +18,7 @@ module;
 export module aabb.partition.axial_cut;
 
 import aabb.base;
+import aabb.costs;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
@@ -220,7 +221,7 @@ private:
         return order;
     }
 
-    /// What a cut would cost, in box tests.
+    /// What a cut would cost a frame, in nanoseconds.
     struct candidate_cut {
         axis_set cut;
         std::uint32_t segments;  // an axis
@@ -228,11 +229,6 @@ private:
     };
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double preference = 0.9;
-
-    // Measured on five kinds of scenes of 1000 to 100,000 boxes, sorted by std and by radix.
-    static constexpr double list_cost = 6;  // of sorting one list, a box
-    static constexpr double copy_cost = 8;
-    static constexpr double subset_cost = 16;
 
     /// Of the boxes' width, how much a mean box takes; a uniform spread is sqrt(12) deviations wide.
     [[nodiscard]] static vec3d shares_of(const spread& along) {
@@ -247,7 +243,7 @@ private:
 
     /// Every axis that is cut or swept needs a list.
     [[nodiscard]] static double cost_of_lists(const spread& along, axis_set needed) {
-        return list_cost * static_cast<double>(along.objects) * std::popcount(needed);
+        return machine_costs().list_entry * static_cast<double>(along.objects) * std::popcount(needed);
     }
 
     [[nodiscard]] static double uncut_cost(const spread& along, axis_set swept) {
@@ -256,17 +252,19 @@ private:
         double swept_share = 1;
         for (int k = 0; k < 3; ++k)
             if (has_axis(swept, index(k))) swept_share = std::min(swept_share, 2 * share[k]);
-        return cost_of_lists(along, swept) + objects * objects / 2 * swept_share;
+        return cost_of_lists(along, swept) + machine_costs().cut_test * objects * objects / 2 * swept_share;
     }
 
     /// The number of segments an axis, if none is asked for, at which lists, copies, subsets and box tests together
     /// cost least, were n boxes of the mean size spread evenly: S segments of an axis make 1 + x copies of a box, x = S
     /// · extent / width, and within a subset each box is tested against those that it overlaps on the swept axis.
-    /// Beyond x = 1 the limit ends it.
+    /// Beyond x = 1 the limit ends it. More subsets than boxes are none's gain, whatever they cost, and no answer may
+    /// hang on costs: so many subsets are never refused.
     [[nodiscard]] candidate_cut cheapest(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);
         candidate_cut best{cut, 1, never};
+        const cost_model& ns = machine_costs();
         const double most = config_.segments.value_or(65'535);
         for (double s = config_.segments.value_or(1); s <= most; s = std::ceil(s * 1.1)) {
             double subsets = 1;
@@ -280,8 +278,9 @@ private:
                 }
                 if (has_axis(swept, index(k))) swept_share = std::min(swept_share, 2 * share[k] * (is_cut ? s : 1));
             }
+            if (!config_.segments && s > 1 && subsets > objects) break;
             const double tests = copies / subsets * copies / 2 * std::min(1.0, swept_share);
-            const double cost = copy_cost * copies + subset_cost * subsets + tests;
+            const double cost = ns.cut_entry * copies + ns.cut_subset * subsets + ns.cut_test * tests;
             if (cost <= best.cost) best = {cut, static_cast<std::uint32_t>(s), cost};
         }
         best.cost += cost_of_lists(along, cut | swept);

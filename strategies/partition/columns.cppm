@@ -13,6 +13,7 @@ module;
 export module aabb.partition.columns;
 
 import aabb.base;
+import aabb.costs;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
@@ -203,12 +204,10 @@ private:
         return seen.extent[k] > 0 ? std::max(1.0, columns_a_box * seen.width(k) / seen.extent[k]) : numbers.back();
     }
 
-    /// For a box, in tests of a vector: to bring its entries to their places, and to test each against those that it
-    /// meets along the column.
+    /// For a box, in nanoseconds: to bring its entries to their places, and to test each, a vector at a time, against
+    /// those that it meets along the column.
     [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
-        constexpr double entry_cost = 3;
-        constexpr double copy_cost = 3;
-        constexpr double column_cost = 16;
+        const cost_model& ns = machine_costs();
         const int u = p.axis_across(0);
         const int v = p.axis_across(1);
         const auto per = [&](int k, std::uint32_t n) { return n > 1 ? n * seen.per_width[k] : 0.0; };
@@ -220,7 +219,7 @@ private:
         const auto n = static_cast<double>(boxes);
         const double per_length = seen.per_width[p.axis];
         const double met = n * (per_length > 0 ? reach * per_length : entries) / columns;
-        return entries * (1 + entry_cost + met / simd::width) + (entries - 1) * copy_cost + columns * column_cost / n;
+        return entries * (ns.column_entry + ns.column_test * (1 + met / simd::width)) + ns.column * columns / n;
     }
 
     config config_;

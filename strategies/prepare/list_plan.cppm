@@ -7,6 +7,7 @@ module;
 
 export module aabb.prepare.list_plan;
 
+import aabb.costs;
 import aabb.geometry;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -83,17 +84,8 @@ struct list_plan {
     return a_little_more * (last + slope * static_cast<double>(frames - seen));
 }
 
-/// What a frame costs, in ns for each box or pair, fitted to scenes of a hundred to ten thousand boxes; only ratios
-/// matter.
-struct list_costs {
-    double search_box = 8;
-    double search_pair = 7.5;
-    double keep_box = 3;      ///< to grow it and to keep it
-    double watch_box = 0.75;  ///< to see how far it moved
-    double test_pair = 2;
-    /// A list must cost less than this part of a search: what it takes of the caches is not reckoned.
-    double worth_a_list = 0.87;
-};
+/// A list must cost less than this part of a search: what it takes of the caches is not reckoned.
+inline constexpr double worth_a_list = 0.87;
 
 /// How many pairs a list with that margin is to hold.
 [[nodiscard]] inline double pairs_listed(const list_outlook& seen, double margin) {
@@ -102,29 +94,30 @@ struct list_costs {
 }
 
 /// What a frame costs that is searched as it is, and one that a list serves.
-[[nodiscard]] inline double cost_of_search(double boxes, double pairs, const list_costs& cost) {
+[[nodiscard]] inline double cost_of_search(double boxes, double pairs, const cost_model& cost) {
     return boxes * cost.search_box + pairs * cost.search_pair;
 }
-[[nodiscard]] inline double cost_of_service(double boxes, double listed, const list_costs& cost) {
+[[nodiscard]] inline double cost_of_service(double boxes, double listed, const cost_model& cost) {
     return boxes * cost.watch_box + listed * cost.test_pair;
 }
 
 /// Whether a frame that a list of so many pairs serves costs less than one that is searched.
-[[nodiscard]] inline bool pays(std::size_t boxes, std::size_t pairs, std::size_t listed, const list_costs& cost = {}) {
+[[nodiscard]] inline bool pays(std::size_t boxes, std::size_t pairs, std::size_t listed,
+                               const cost_model& cost = machine_costs()) {
     const auto n = static_cast<double>(boxes);
     return cost_of_service(n, static_cast<double>(listed), cost) <
-           cost.worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
+           worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
 }
 
 /// The plan that costs least a frame.
-[[nodiscard]] inline list_plan plan_list(const list_outlook& seen, const list_costs& cost = {}) {
+[[nodiscard]] inline list_plan plan_list(const list_outlook& seen, const cost_model& cost = machine_costs()) {
     constexpr std::array<std::size_t, 19> lifetimes{2,  3,  4,  5,  6,  8,  10,  12,  16, 20,
                                                     24, 32, 40, 48, 64, 96, 128, 192, 256};
     const auto n = static_cast<double>(seen.boxes);
     list_plan best;
     if (seen.motion.empty()) return best;
     const double search = cost_of_search(n, pairs_listed(seen, 0), cost);
-    double least = cost.worth_a_list * search;
+    double least = worth_a_list * search;
     for (const std::size_t frames : lifetimes) {
         const double margin = margin_after(seen.motion, frames - 1);
         if (!(margin <= seen.growth.longest_margin())) break;
