@@ -46,16 +46,34 @@ selected_strategy selected_build(const scene_outlook& scene) {
     if (scene.queries < repaid)
         return {strategy_kind::build,
                 {"median", {}},
-                "built fastest: better trees are repaid from " + std::to_string(repaid) +
-                    " queries on, and there are " + std::to_string(scene.queries)};
+                "built fastest: queries are to be " + std::to_string(scene.queries) + ", and only from " +
+                    std::to_string(repaid) + " on they repay a better tree"};
     return {strategy_kind::build,
             {"sah", {}},
-            std::to_string(scene.queries) + " queries repay a better tree, as " + std::to_string(repaid) + " would"};
+            "queries are to be " + std::to_string(scene.queries) + ", and from " + std::to_string(repaid) +
+                " on they repay a better tree"};
 }
 
-/// What the strategy says of itself.
-std::string usual_rule(strategy_kind kind, const std::string& name) {
-    return "the usual one: " + std::ranges::find(strategies(kind), name, &strategy_info::name)->summary;
+/// Where the usual ones are refused beside what is named, the first that are not.
+composition completed(const named_strategies& named) {
+    composition c(named);
+    for (const stage of : {stage::global_search, stage::local_detection}) {
+        if (refusal_of(c, of).empty()) continue;
+        for (const composition& other : every_composition(of)) {
+            composition tried = c;
+            for (const strategy_kind kind : strategy_kinds)
+                if (info_of(kind).stage == of && !info_of(kind).apart && !named[kind]) tried[kind] = other[kind];
+            if (!refusal_of(tried, of).empty()) continue;
+            c = tried;
+            break;
+        }
+    }
+    return c;
+}
+
+/// @param why it is taken; what it says of itself follows
+std::string rule_of(const std::string& why, strategy_kind kind, const std::string& name) {
+    return why + ": " + std::ranges::find(strategies(kind), name, &strategy_info::name)->summary;
 }
 
 }  // namespace
@@ -72,6 +90,7 @@ bool depends_on_scene(strategy_kind kind) {
 
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
     const composition usual(named);
+    const composition whole = completed(named);
     std::vector<selected_strategy> all;
     for (const strategy_kind kind : strategy_kinds) {
         if (named[kind])
@@ -81,7 +100,10 @@ std::vector<selected_strategy> select_strategies(const named_strategies& named, 
         else if (kind == strategy_kind::build)
             all.push_back(selected_build(scene));
         else
-            all.push_back({kind, usual[kind], usual_rule(kind, usual[kind].name)});
+            all.push_back(
+                {kind, whole[kind],
+                 rule_of(whole[kind] == usual[kind] ? "the usual one" : "the first that goes with what is named", kind,
+                         whole[kind].name)});
     }
     return all;
 }

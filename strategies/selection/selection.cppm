@@ -34,8 +34,9 @@ struct selected_strategy {
 /// Whether what is selected for the kind depends on the scene.
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
-/// A strategy for each kind, in their order: what is named stays, the others are what costs least together with it.
-/// @throws input_error as `composition`.
+/// A strategy for each kind, in their order: what is named stays; `prepare` and `build` are what serves the scene; the
+/// others are the usual ones, or where these cannot be composed with it, the first of the registry that can.
+/// @throws input_error on an unknown name or parameter.
 [[nodiscard]] std::vector<selected_strategy> select_strategies(const named_strategies& named,
                                                                const scene_outlook& scene);
 

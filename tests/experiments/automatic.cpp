@@ -166,6 +166,9 @@ TEST_CASE("pairs and collide say what they selected") {
     CHECK(run_program({"pairs", file}).out.find("neighbour_list + bucket + columns + simd: ") != std::string::npos);
     CHECK(run_program({"pairs", file, "--prepare", "none"}).out.find("\nbucket + columns + simd: ") !=
           std::string::npos);
+    // The usual sort does not go with it.
+    CHECK(run_program({"pairs", file, "--sweep", "incremental"}).out.find("insertion + none + incremental: ") !=
+          std::string::npos);
     const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};
     CHECK(run_program({"collide", meshes[0], meshes[1]}).out.find("\nimplicit + exact: ") != std::string::npos);
     CHECK(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out.find("\nsah + implicit + exact: ") !=

@@ -4,6 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../compositions.hpp"
@@ -16,6 +17,26 @@ namespace {
 
 std::string selected(strategy_kind kind, const named_strategies& named, const scene_outlook& scene) {
     return to_text(composed_of(select_strategies(named, scene))[kind]);
+}
+
+std::vector<strategy_kind> kinds_of(enum stage of) {
+    std::vector<strategy_kind> kinds;
+    for (const strategy_kind kind : strategy_kinds)
+        if (info_of(kind).stage == of) kinds.push_back(kind);
+    return kinds;
+}
+
+/// Every combination of names that is not refused.
+std::vector<composition> accepted_by_name(enum stage of) {
+    std::vector<composition> all(1);
+    for (const strategy_kind kind : kinds_of(of)) {
+        std::vector<composition> longer;
+        for (const composition& c : all)
+            for (const strategy_info& info : strategies(kind)) longer.emplace_back(c)[kind] = {info.name, {}};
+        all = std::move(longer);
+    }
+    std::erase_if(all, [&](const composition& c) { return !refusal_of(c, of).empty(); });
+    return all;
 }
 
 /// From scenes of which nothing is known to those of meshes that are asked often.
@@ -39,18 +60,34 @@ TEST_CASE("auto selects a strategy of each kind with a reason, exact, of which n
 }
 
 TEST_CASE("auto keeps what is named, whatever it is, and completes it where it can be completed") {
-    for (const strategy_kind kind : strategy_kinds)
-        for (const strategy_choice& choice : all_choices(kind)) {
-            named_strategies named;
-            named[kind] = choice;
-            INFO(to_text(choice));
-            for (const scene_outlook& scene : scenes) {
-                const composition c = composed_of(select_strategies(named, scene));
-                CHECK(c[kind] == choice);
-                for (const enum stage of : {stage::global_search, stage::local_detection})
-                    CHECK(refusal_of(c, of) == refusal_of(composition(named), of));
-            }
-        }
+    for (const enum stage of : {stage::global_search, stage::local_detection}) {
+        const std::vector<composition> accepted = accepted_by_name(of);
+        const auto can_be_completed = [&](const named_strategies& named) {
+            return std::ranges::any_of(accepted, [&](const composition& c) {
+                return std::ranges::all_of(strategy_kinds, [&](strategy_kind kind) {
+                    return !named[kind] || c[kind].name == named[kind]->name;
+                });
+            });
+        };
+        std::size_t refused = 0;
+        for (const strategy_kind first : kinds_of(of))
+            for (const strategy_choice& one : all_choices(first))
+                for (const strategy_kind second : kinds_of(of))
+                    for (const strategy_info& other : strategies(second)) {
+                        named_strategies named;
+                        named[second] = strategy_choice{other.name, {}};
+                        named[first] = one;
+                        const composition c = composed_of(select_strategies(named, {}));
+                        INFO(to_text(one) << " with " << other.name << ": " << to_text(c, of));
+                        for (const strategy_kind kind : {first, second}) REQUIRE(c[kind] == *named[kind]);
+                        REQUIRE(refusal_of(c, of).empty() == can_be_completed(named));
+                        refused += refusal_of(c, of).empty() ? 0 : 1;
+                    }
+        CHECK((refused > 0) == (of == stage::global_search));
+    }
+    named_strategies incremental;
+    incremental[strategy_kind::sweep] = strategy_choice{"incremental", {}};
+    CHECK(text_of_global(composed_of(select_strategies(incremental, {}))) == "insertion + none + incremental");
 }
 
 TEST_CASE("auto keeps lists where frames follow each other, and builds well what is asked often") {
