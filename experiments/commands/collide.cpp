@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,7 @@ import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;
+import aabblab.numbers;
 import aabblab.pair_output;
 import aabblab.play;
 import aabblab.stopwatch;
@@ -58,13 +61,19 @@ struct detection_method {
     std::optional<hit_geometry> geometry;  ///< with --geometry
 };
 
+/// What --first finds.
+struct found_pair {
+    aabb::index_pair triangles;
+    std::optional<aabb::triangle_intersection> common;  ///< with --geometry
+};
+
 struct detection_result {
-    std::vector<std::uint32_t> triangles;              ///< of each mesh
-    std::vector<aabb::index_pair> pairs;               ///< at the last pose
-    std::vector<std::uint64_t> counts;                 ///< by pose, of a mesh with itself those that share no vertex
-    std::optional<std::uint64_t> neighbours;           ///< of a mesh with itself: pairs that share a vertex
-    std::optional<aabb::triangle_intersection> first;  ///< of the one pair that --first found, with --geometry
-    std::optional<std::string> digest;                 ///< of all pairs that are kept; none where they are counted only
+    std::vector<std::uint32_t> triangles;          ///< of each mesh
+    std::vector<aabb::index_pair> pairs;           ///< at the last pose
+    std::vector<std::uint64_t> counts;             ///< by pose, of a mesh with itself those that share no vertex
+    std::optional<std::uint64_t> neighbours;       ///< of a mesh with itself: pairs that share a vertex
+    std::vector<std::optional<found_pair>> first;  ///< by pose, with --first
+    std::optional<std::string> digest;             ///< of all pairs that are kept; none where they are counted only
     double build_ms = 0;
     std::vector<double> query_ms;  ///< by pose, and so again for each repeat
     std::vector<aabb::part_bytes> bytes;
@@ -163,13 +172,15 @@ std::uint64_t take_pairs(const collide_request& request, detection_method& metho
         neighbours = std::erase_if(result.pairs, [&](auto pair) { return shared_vertices(meshes[0], pair) > 0; });
     if (method.geometry)
         method.geometry->take(meshes.front(), scene.poses().front(), meshes.back(), scene.poses().back());
+    if (request.first) result.first.emplace_back();
     std::uint64_t count = 0;
     for (const aabb::index_pair pair : result.pairs) {
+        if (request.first) result.first.back() = found_pair{pair, {}};
         const std::uint32_t shared = request.self == "together" ? shared_vertices(meshes[0], pair) : 0;
         std::string cells;
         if (method.geometry) {
             const aabb::triangle_intersection common = (*method.geometry)(pair);
-            if (request.first) result.first = common;
+            if (request.first) result.first.back()->common = common;
             if (table) cells = to_cells(common);
         }
         if (table) {
@@ -224,6 +235,13 @@ detection_result detect(const collide_request& request, detection_method& method
     return result;
 }
 
+nlohmann::ordered_json geometry_of(const aabb::triangle_intersection& common) {
+    nlohmann::ordered_json geometry{{"kind", name_of(common.kind)}};
+    for (std::uint32_t i = 0; i < common.size; ++i) geometry["corners"].push_back(common.corners[i].at);
+    geometry["error"] = common.error.at;
+    return geometry;
+}
+
 void print_json(const collide_request& request, const detection_method& method, const detection_result& result) {
     nlohmann::ordered_json summary = {
         {"triangles", result.triangles}, {"pairs", result.counts},      {"digest", nullptr},
@@ -233,12 +251,10 @@ void print_json(const collide_request& request, const detection_method& method, 
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
-    if (result.first) {
-        nlohmann::ordered_json& geometry = summary["geometry"];
-        geometry["kind"] = name_of(result.first->kind);
-        for (std::uint32_t i = 0; i < result.first->size; ++i)
-            geometry["corners"].push_back(result.first->corners[i].at);
-        geometry["error"] = result.first->error.at;
+    if (request.geometry && request.first) {
+        for (const std::optional<found_pair>& found : result.first)
+            summary["geometry"].push_back(found ? geometry_of(*found->common) : nlohmann::ordered_json());
+        if (!request.poses_of_b) summary["geometry"] = nlohmann::ordered_json(summary["geometry"].front());
     }
     summary["method"] = method.name;
     summary["exact"] = method.exact;
@@ -246,20 +262,31 @@ void print_json(const collide_request& request, const detection_method& method, 
     print(summary.dump() + "\n");
 }
 
+/// "triangles 3 and 5 intersect: segment 2 …"
+std::string text_of(const found_pair& found) {
+    return fmt::format("triangles {} and {} intersect{}", found.triangles.a, found.triangles.b,
+                       found.common ? ": " + to_text(*found.common) : "");
+}
+
 void print_text(const collide_request& request, const detection_method& method, const detection_result& result) {
-    print(fmt::format(
-        "{} ({} triangles) against {}\n", visible(request.a), result.triangles[0],
-        !request.self.empty() ? "itself" : fmt::format("{} ({} triangles)", visible(*request.b), result.triangles[1])));
+    const auto named = [&](const std::string& mesh, std::size_t i) {
+        return visible(mesh) + " (" + counted(result.triangles[i], "triangle") + ")";
+    };
+    print(named(request.a, 0) + " against " + (request.self.empty() ? named(*request.b, 1) : "itself") + "\n");
     const std::string digest = result.digest ? ", digest " + *result.digest : "";
-    if (request.first && !request.poses_of_b && !result.pairs.empty())
-        print(fmt::format("triangles {} and {} intersect{}\n", result.pairs[0].a, result.pairs[0].b,
-                          result.first ? ": " + to_text(*result.first) : ""));
-    else
-        print(fmt::format("{}{} intersecting pairs of triangles{}{}\n",
-                          request.poses_of_b ? fmt::format("{} poses of it: ", result.counts.size()) : "",
-                          std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}),
-                          !request.self.empty() ? " that share no vertex" : "", digest));
-    if (result.neighbours) print(fmt::format("{} more among triangles that share a vertex\n", *result.neighbours));
+    if (request.first && !request.poses_of_b && result.first[0]) {
+        print(text_of(*result.first[0]) + "\n");
+    } else {
+        if (request.first && request.geometry && request.poses_of_b)
+            for (std::size_t pose = 0; pose < result.first.size(); ++pose)
+                if (result.first[pose]) print(fmt::format("pose {}: {}\n", pose, text_of(*result.first[pose])));
+        print(fmt::format(
+            "{}{} of triangles{}{}\n", request.poses_of_b ? counted(result.counts.size(), "pose") + " of it: " : "",
+            counted(std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}), "intersecting pair"),
+            !request.self.empty() ? " that share no vertex" : "", digest));
+    }
+    if (result.neighbours)
+        print(fmt::format("{} more among triangles that share a vertex\n", grouped(*result.neighbours)));
     std::vector<double> ms = result.query_ms;
     std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
     print(fmt::format("{}{}: built in {:.3f} ms, searched in {:.3f} ms{}", method.name,
@@ -269,10 +296,20 @@ void print_text(const collide_request& request, const detection_method& method, 
     print("\nbytes:");
     const char* before = " ";
     for (const aabb::part_bytes& part : result.bytes) {
-        if (part.bytes > 0) print(fmt::format("{}{} {}", before, part.part, part.bytes));
+        if (part.bytes > 0) print(fmt::format("{}{} {}", before, part.part, grouped(part.bytes)));
         if (part.bytes > 0) before = ", ";
     }
     print("\n");
+}
+
+std::size_t repeats_of(const std::string& text) {
+    constexpr std::size_t most = 1'000'000;
+    std::size_t repeats = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), repeats);
+    if (error != std::errc{} || end != text.data() + text.size() || repeats < 1 || repeats > most)
+        throw aabb::input_error("--repeat is how often to search: a whole number from 1 to 1,000,000, not '" + text +
+                                "'");
+    return repeats;
 }
 
 /// What does not go together.
@@ -293,7 +330,6 @@ void require_sense(const collide_request& request) {
     }
     if (request.poses[1] && request.poses_of_b)
         throw aabb::input_error("--pose-b and --poses both say where B is; give one of them");
-    if (request.repeats == 0) throw aabb::input_error("--repeat is how often to search, so at least 1");
     if (request.first && request.count) throw aabb::input_error("--first and --count ask for different things");
     if (request.count && request.out) throw aabb::input_error("--count keeps no pairs, so there is nothing for --out");
     if (!request.geometry) return;
@@ -358,13 +394,17 @@ void add_collide(CLI::App& program, int&) {
     request->local.add_to(*command);
     command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
         ->type_name("E");
-    command->add_flag("--self{together}", request->self,
-                      "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left "
-                      "out of the pairs");
+    command
+        ->add_flag("--self", request->self,
+                   "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left "
+                   "out of the pairs")
+        ->option_text("[=apart]");
     command->add_flag("--first", request->first, "Stop at the first pair found");
     command->add_flag("--count", request->count, "Only count the pairs");
     command
-        ->add_option("--repeat", request->repeats, "Search so often, at all poses in turn; each time is told (--json)")
+        ->add_option_function<std::string>(
+            "--repeat", [request](const std::string& text) { request->repeats = repeats_of(text); },
+            "Search so often, at all poses in turn; each time is told (--json)")
         ->type_name("N");
     command
         ->add_option("--out", request->out,
@@ -374,7 +414,11 @@ void add_collide(CLI::App& program, int&) {
     command->add_flag("--geometry", request->geometry,
                       "Add to each pair what its triangles have in common, in the world: kind, corners, error");
     command->add_flag("--json", request->json, "Print the summary as JSON");
-    command->callback([request] { collide(*request); });
+    command->callback([request] {
+        // What the parser makes of a flag without a value.
+        if (request->self == "true") request->self = "together";
+        collide(*request);
+    });
 }
 
 }  // namespace aabblab

@@ -155,8 +155,9 @@ void print_text(const contacts_request& request, const both_stages& both, const 
     for (const double ms : result.milliseconds) all += ms;
     print(fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
                       counted(result.milliseconds.size(), "frame")));
-    print(fmt::format("{} contacts of triangles in {} contacts of objects ({} pairs of boxes), digest {}\n",
-                      result.contacts, result.object_pairs, result.candidates, result.digest));
+    print(fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
+                      counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
+                      counted(result.candidates, "pair"), result.digest));
     print(fmt::format("{}{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", both.name,
                       both.exact ? "" : " (inexact)", result.build_ms,
                       all / static_cast<double>(result.milliseconds.size())));

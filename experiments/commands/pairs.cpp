@@ -97,7 +97,7 @@ void print_json(const search_method& method, const search_result& result) {
 void print_text(const pairs_request& request, const search_method& method, const search_result& result) {
     print(fmt::format("{}: {}, {}\n", visible(request.recording), counted(result.objects, "object"),
                       counted(result.milliseconds.size(), "frame")));
-    print(fmt::format("{} overlapping pairs, digest {}\n", result.pairs, result.digest));
+    print(fmt::format("{}, digest {}\n", counted(result.pairs, "overlapping pair"), result.digest));
     if (!result.milliseconds.empty())
         print(fmt::format("{}{}: {:.3f} ms a frame (median)\n", method.name, method.exact ? "" : " (inexact)",
                           quartiles_of(result.milliseconds).median));

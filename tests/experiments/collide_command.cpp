@@ -174,6 +174,17 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
     CHECK(first.out.find(" intersect: " + json["geometry"]["kind"].get<std::string>() + " " +
                          std::to_string(json["geometry"]["corners"].size()) + " ") != std::string::npos);
     CHECK(json["geometry"]["error"].size() == 3);
+    // With poses, a line each where something intersects.
+    const std::string poses = folder.write("poses.txt", "1,0,0,-9,0,1,0,0,0,0,1,0\n1,0,0,0,0,1,0,0,0,0,1,0\n");
+    const std::vector<std::string> posed{"collide", a, b, "--first", "--geometry", "--poses", poses};
+    const std::string lines = run_program(posed).out;
+    const std::string line = first.out.substr(first.out.find('\n') + 1);
+    CHECK(lines.find("\npose 1: " + line.substr(0, line.find('\n') + 1)) != std::string::npos);
+    CHECK(lines.find("pose 0: ") == std::string::npos);
+    const auto by_pose = nlohmann::json::parse(run_program(joined(posed, {"--json"})).out)["geometry"];
+    REQUIRE(by_pose.size() == 2);
+    CHECK(by_pose[0].is_null());
+    CHECK(by_pose[1] == json["geometry"]);
     const std::string away = "1,0,0,-9,0,1,0,0,0,0,1,0";
     CHECK(run_program({"collide", a, b, "--first", "--geometry", "--pose-a", away}).out.find("0 intersecting") !=
           std::string::npos);
@@ -222,6 +233,17 @@ TEST_CASE("collide refuses questions that do not go together") {
         REQUIRE(result.err.find(said) != std::string::npos);
         REQUIRE(folder.files() == 1);
     }
+}
+
+TEST_CASE("pairs, collide and contacts speak of one as of one") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const std::string collided = run_program({"collide", mesh, mesh}).out;
+    CHECK(collided.find("one.off (1 triangle) against ") != std::string::npos);
+    CHECK(collided.find("\n1 intersecting pair of triangles, ") != std::string::npos);
+    CHECK(run_program({"contacts", motion, mesh})
+              .out.find("\n1 contact of triangles in 1 contact of objects (1 pair of boxes), ") != std::string::npos);
 }
 
 TEST_CASE("collide takes both poses") {
@@ -315,6 +337,7 @@ TEST_CASE("collide searches as often as it is asked to, and tells each time") {
     };
     hold_to_one({a});
     hold_to_one({"--self"});
+    CHECK(run_program({"collide", "--help"}).out.find("{together}") == std::string::npos);
     const std::string text = run_program({"collide", a, a, "--repeat", "5"}).out;
     CHECK(text.find(" ms (median of 5)") != std::string::npos);
 }
@@ -332,7 +355,12 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
         {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
         {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,0", "--poses", "nowhere.txt"}, "--pose-b and --poses both say where B is"},
         {{"--poses", "nowhere.txt"}, "nowhere.txt"},
-        {{"--repeat", "0"}, "--repeat is how often to search, so at least 1"},
+        {{"--repeat", "0"}, "--repeat is how often to search: a whole number from 1 to 1,000,000, not '0'"},
+        {{"--repeat", "-3"}, "a whole number from 1 to 1,000,000, not '-3'"},
+        {{"--repeat", "99999999999999999999999"}, "from 1 to 1,000,000, not '99999999999999999999999'"},
+        {{"--repeat", "1000001"}, "not '1000001'"},
+        {{"--repeat", "1.5"}, "not '1.5'"},
+        {{"--repeat", "x"}, "not 'x'"},
         {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
         {{"--engine", "cgl"}, "did you mean 'cgal'?"},
         {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --build, --tree and --triangle"},
