@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,17 +28,19 @@ double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
     return n * (n - 1) / 2 - apart;
 }
 
-double size_ratio_of(std::span<const aabb::box> boxes) {
-    std::vector<float> edges;
-    for (const aabb::box& b : boxes) {
-        const int k = longest_axis(b);
-        edges.push_back(b.max[k] - b.min[k]);
-    }
+double longest_edge(const aabb::box& b) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, double{b.max[k]} - double{b.min[k]});
+    return longest;
+}
+
+std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {
+    std::vector<double> edges;
+    for (const aabb::box& b : boxes) edges.push_back(longest_edge(b));
+    const double longest = *std::ranges::max_element(edges);
     const auto median = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
     std::ranges::nth_element(edges, median);
-    const double middle = *median;
-    const double longest = *std::ranges::max_element(edges);
-    return middle > 0 ? longest / middle : 1;
+    return *median > 0 ? std::optional(longest / *median) : std::nullopt;
 }
 
 }  // namespace

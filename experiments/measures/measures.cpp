@@ -13,6 +13,7 @@ module aabblab.measures;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;
+import aabblab.numbers;
 import aabblab.play;
 import aabblab.scenes;
 
@@ -103,14 +104,15 @@ scene_measures measure_scene(const scene_choice& choice) {
 }
 
 std::vector<told_measure> told(const scene_measures& m) {
-    std::vector<told_measure> all{{"objects", fmt::format("{}", m.objects)}, {"frames", fmt::format("{}", m.frames)}};
-    if (m.triangles) all.push_back({"triangles", fmt::format("{} in the meshes", *m.triangles)});
+    std::vector<told_measure> all{{"objects", grouped(m.objects)}, {"frames", grouped(m.frames)}};
+    if (m.triangles) all.push_back({"triangles", grouped(*m.triangles) + " in the meshes"});
     const auto& o = m.boxes.overlaps;
     all.push_back({"spread", fmt::format("on x, y, z a box overlaps {:.3g}, {:.3g}, {:.3g} others", o[0], o[1], o[2])});
     for (std::size_t k = 0; k < 3; ++k)
         if (m.objects > 2 && o[k] > 0.999 * static_cast<double>(m.objects - 1))
             all.push_back({"flat axis", std::string(1, "xyz"[k])});
-    all.push_back({"size ratio", fmt::format("{:.3g}, longest edge over the median one", m.boxes.size_ratio)});
+    all.push_back({"size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
+                                     ", longest edge over the median one"});
     all.push_back({"density", fmt::format("{:.3g} overlapping pairs an object", m.pairs_an_object)});
     all.push_back({"clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering)});
     if (!m.motion) return all;

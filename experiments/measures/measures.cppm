@@ -17,8 +17,10 @@ export namespace aabblab {
 
 /// Of the boxes of one frame.
 struct box_measures {
-    double mean_extent = 0;            ///< over boxes and axes
-    double size_ratio = 1;             ///< the longest edge of any box over the median of the boxes' longest edges
+    double mean_extent = 0;  ///< over boxes and axes
+    /// The longest edge of any box over the median of the boxes' longest edges; empty where that is 0, or there are no
+    /// boxes.
+    std::optional<double> size_ratio;
     std::array<double, 3> overlaps{};  ///< by axis: of how many others a box overlaps the projection, a mean
     double expected_pairs = 0;         ///< if boxes of the mean extents lay evenly spread over the bounds of all
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -97,15 +98,31 @@ TEST_CASE("Boxes are measured: spread, sizes, pairs expected") {
     const std::vector<aabb::box> boxes{cube(0, 0, 0), cube(0, 0.5F, 0), cube(0, 8, 0), cube(0, 9, 0)};
     const aabblab::box_measures m = aabblab::measure_boxes(boxes);
     CHECK(is_near(m.mean_extent, 1));
-    CHECK(is_near(m.size_ratio, 1));
+    CHECK(is_near(m.size_ratio.value(), 1));
     CHECK(is_near(m.overlaps[0], 3));
     CHECK(is_near(m.overlaps[1], 1));
     CHECK(is_near(m.overlaps[2], 3));
     CHECK(is_near(m.expected_pairs, 6 * 0.2));
     std::vector<aabb::box> one_long = boxes;
     one_long[3].max[2] = 5;
-    CHECK(is_near(aabblab::measure_boxes(one_long).size_ratio, 5));
+    CHECK(is_near(aabblab::measure_boxes(one_long).size_ratio.value(), 5));
     CHECK(aabblab::measure_boxes({}).expected_pairs == 0);
+    // Edges beyond the greatest float.
+    constexpr float most = std::numeric_limits<float>::max();
+    const std::vector<aabb::box> huge(3, {{-most, -most, 0}, {most, most, 0}});
+    CHECK(aabblab::measure_boxes(huge).size_ratio == 1);
+    const aabb::box point{{1, 1, 1}, {1, 1, 1}};
+    CHECK_FALSE(aabblab::measure_boxes(std::vector{point, point, boxes[0]}).size_ratio.has_value());
+}
+
+TEST_CASE("Measures are told with their digits grouped, and what cannot be told as a dash") {
+    aabblab::scene_measures m;
+    m.objects = 1200;
+    m.triangles = 12'345;
+    std::string text;
+    for (const aabblab::told_measure& one : aabblab::told(m)) text += one.name + " " + one.value + "\n";
+    for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, longest edge"})
+        CHECK(text.find(line) != std::string::npos);
 }
 
 TEST_CASE("Motion is measured: the way, what is not alike, rest, inversions") {
