@@ -72,8 +72,13 @@ std::string stage_options::names() const {
 }
 
 void stage_options::add_to(aabb::named_strategies& named) const {
-    for (const aabb::strategy_kind kind : kinds())
-        if (given_[kind]) named[kind] = aabb::parse_strategy(*given_[kind]);
+    for (const aabb::strategy_kind kind : kinds()) {
+        if (!given_[kind]) continue;
+        if (*given_[kind] == "auto")
+            throw aabb::input_error("--" + std::string(name_of(kind)) +
+                                    " auto: leave it out, since what is not named is selected");
+        named[kind] = aabb::parse_strategy(*given_[kind]);
+    }
 }
 
 std::vector<aabb::strategy_kind> stage_options::kinds() const {

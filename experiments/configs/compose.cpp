@@ -12,6 +12,7 @@ module aabblab.configs;
 
 import :choices;
 import :document;
+import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
@@ -25,8 +26,13 @@ std::vector<std::optional<aabb::strategy_choice>> strategies_of(const document& 
                                                                 const node* value) {
     if (!value) return {std::nullopt};
     const std::vector<aabb::strategy_choice> choices =
-        choices_of(doc, *value, aabb::strategies(kind)[0].name,
-                   [kind](const aabb::strategy_choice& choice) { aabb::require_known(kind, choice); });
+        choices_of(doc, *value, aabb::strategies(kind)[0].name, [kind](const aabb::strategy_choice& choice) {
+            if (choice.name == "auto")
+                throw aabb::input_error("auto is no " + std::string(name_of(kind)) + ": leave " +
+                                        std::string(name_of(kind)) +
+                                        " out, and write auto = true beside what is named");
+            aabb::require_known(kind, choice);
+        });
     return {choices.begin(), choices.end()};
 }
 

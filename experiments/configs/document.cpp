@@ -155,6 +155,10 @@ document::document(const std::string& text, std::string file, std::size_t most, 
         root_ = converted(toml::parse(text, file_));
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
+        if (error.description().find("redefine existing string 'compose'") != std::string_view::npos)
+            fail(static_cast<int>(at.line),
+                 "compose is a name already, so it cannot be a table too; write [[compose]] with auto = true in place "
+                 "of compose = \"auto\"");
         throw aabb::input_error(file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
                                 ": this is not TOML: " + std::string(error.description()));
     } catch (const failed_toml_assertion&) {

@@ -66,6 +66,12 @@ TEST_CASE("A config leaves all to auto, or what it does not name") {
 
 TEST_CASE("What is wrong with auto in a config is said with its line") {
     CHECK(refusal_of("compose = \"best\"") == "a.toml:2: compose must be a table or \"auto\", not \"best\"");
+    CHECK(
+        refusal_of("compose = \"auto\"\n[[compose]]\nsort = \"std\"") ==
+        "a.toml:3: compose is a name already, so it cannot be a table too; write [[compose]] with auto = true in place "
+        "of compose = \"auto\"");
+    CHECK(refusal_of("[[compose]]\nprepare = \"auto\"") ==
+          "a.toml:3: auto is no prepare: leave prepare out, and write auto = true beside what is named");
     CHECK(refusal_of("[[compose]]\nauto = 1") == "a.toml:3: auto is a number; expected true or false");
     CHECK(refusal_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
     CHECK(refusal_of("[[compose]]\nauto = true\nsort = \"shell\"\nsweep = \"incremental\"").starts_with("a.toml:2: "));
@@ -186,6 +192,7 @@ TEST_CASE("pairs and collide say what they selected") {
     // The usual sort does not go with it.
     CHECK(run_program({"pairs", file, "--sweep", "incremental"}).out.find("insertion + none + incremental: ") !=
           std::string::npos);
+    CHECK(run_program({"pairs", file, "--sort", "auto"}).err.find("--sort auto: leave it out") != std::string::npos);
     const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};
     CHECK(run_program({"collide", meshes[0], meshes[1]}).out.find("\nimplicit + exact: ") != std::string::npos);
     CHECK(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out.find("\nsah + implicit + exact: ") !=
