@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -23,6 +25,7 @@ import aabb.selection;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.measures;
+import aabblab.numbers;
 import aabblab.play;
 import aabblab.scenes;
 import aabblab.tables;
@@ -33,7 +36,8 @@ namespace {
 
 void print_parts(std::string_view stage, const std::string& made_of, const std::vector<aabb::part_bytes>& parts) {
     print(fmt::format("    {}{}{}\n", stage, made_of.empty() ? "" : ": ", made_of));
-    for (const aabb::part_bytes& part : parts) print(fmt::format("      {:<12}{:>12} bytes\n", part.part, part.bytes));
+    for (const aabb::part_bytes& part : parts)
+        print(fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes)));
 }
 
 /// What the stage is made of.
@@ -64,11 +68,13 @@ void explain_contender(const scene_choice& choice, const contender& who) {
     print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
-    print("    left out\n");
-    for (const std::string& sentence : p.left_out()) print("      " + sentence + "\n");
+    std::vector<std::string> left_out = p.left_out();
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (const std::string sentence = left_out_by(kind, name[kind]); !sentence.empty())
-            print("      " + sentence + "\n");
+        if (std::string sentence = left_out_by(kind, name[kind]); !sentence.empty())
+            left_out.push_back(std::move(sentence));
+    if (!left_out.empty()) print("    left out\n");
+    for (const std::string& sentence : left_out) print("      " + sentence + "\n");
+    flush_output();
 }
 
 /// Parts of the config that a scene has no use for.
@@ -87,34 +93,57 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
     print("  " + kinds + " have no part in this scene: it has no meshes\n");
 }
 
+/// What the scene is and what it is like; nothing is said of one that cannot be played.
 void explain_measures(const scene_choice& scene) {
     table t{{{"measured", false}, {"", false}}, {}};
     for (const told_measure& one : told(measure_scene(scene))) t.rows.push_back({one.name, one.value});
-    print(to_text(t, output_width()) + "\n");
+    print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n" + to_text(t, output_width()) + "\n");
+    flush_output();
+}
+
+/// Reasons are broken where they are longer than the output is wide.
+void print_selected(const std::vector<aabb::selected_strategy>& selected) {
+    std::size_t kinds = std::string_view("selected").size();
+    std::size_t choices = 0;
+    for (const aabb::selected_strategy& one : selected) {
+        kinds = std::max(kinds, name_of(one.kind).size());
+        choices = std::max(choices, to_text(one.choice).size());
+    }
+    const std::size_t before = kinds + 2 + choices + 2;
+    const std::size_t room = std::max(output_width(), before + 20) - before;
+    table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
+    for (const aabb::selected_strategy& one : selected) {
+        std::istringstream reason(wrapped(one.rule, room));
+        std::vector<std::string> cells{std::string(name_of(one.kind)), to_text(one.choice), {}};
+        while (std::getline(reason, cells[2])) {
+            t.rows.push_back(cells);
+            cells[0] = cells[1] = "";
+        }
+    }
+    print(to_text(t) + "\n");
 }
 
 /// What is selected and why, what comes of it, and what it saves.
 void explain_automatic(const scene_choice& choice, const aabb::named_strategies& named) {
     const scene_play scene(choice);
-    const std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene));
-    table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
-    for (const aabb::selected_strategy& one : selected)
-        if (scene.meshes() || info_of(one.kind).stage == aabb::stage::global_search)
-            t.rows.push_back({std::string(name_of(one.kind)), to_text(one.choice), one.rule});
-    print(to_text(t, output_width()) + "\n");
+    std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene));
     const aabb::composition c = composed_of(selected);
+    if (!scene.meshes())
+        std::erase_if(selected, [](const aabb::selected_strategy& one) {
+            return info_of(one.kind).stage == aabb::stage::local_detection;
+        });
+    print_selected(selected);
     explain_contender(choice, contender_of(c, scene.meshes() != nullptr));
     print("\n");
     print_savings(choice, c);
 }
 
 void explain_scene(const experiment& e, const scene_choice& scene) {
-    print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n");
     explain_measures(scene);
     if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
         print(
             fmt::format("  bytes are those after {} of {} frames; run tells those after the last, which may be more\n",
-                        explained_frames, frames));
+                        explained_frames, grouped(frames)));
     explain_unused(e, scene);
     for (const aabb::named_strategies& named : e.automatic) explain_automatic(scene, named);
     for (const contender& who : contenders_for(e, scene))
@@ -123,7 +152,7 @@ void explain_scene(const experiment& e, const scene_choice& scene) {
 }
 
 void explain(const std::vector<std::string>& what) {
-    if (!names_scene(what)) {
+    if (what.size() == 1 && names_config(what.front())) {
         const experiment e = open_experiment(what.front(), false);
         for (const scene_choice& scene : e.scenes) explain_scene(e, scene);
         return;

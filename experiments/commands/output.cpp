@@ -93,6 +93,24 @@ std::size_t output_width() {
     return std::max(width, least);
 }
 
+std::size_t paragraph_width() {
+    return std::min<std::size_t>(output_width(), 80);
+}
+
+std::string wrapped(std::string_view text, std::size_t most) {
+    std::string lines;
+    std::size_t width = 0;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t to = std::min(text.find(' ', from), text.size());
+        const std::string_view word = text.substr(from, to - from);
+        if (width > 0) lines += width + 1 + word.size() > most ? "\n" : " ";
+        width = width > 0 && width + 1 + word.size() <= most ? width + 1 + word.size() : word.size();
+        lines += word;
+        from = to + 1;
+    }
+    return lines;
+}
+
 void note(std::string_view text) {
     std::fprintf(stderr, "aabblab: %s\n", visible(text).c_str());
 }

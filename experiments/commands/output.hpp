@@ -27,6 +27,12 @@ void flush_output();
 /// Characters of a line on standard output: of the terminal, else COLUMNS in the environment, else 80.
 [[nodiscard]] std::size_t output_width();
 
+/// Of paragraphs: as wide as the output, at most 80.
+[[nodiscard]] std::size_t paragraph_width();
+
+/// The text in lines of at most so many bytes, as far as no word is longer.
+[[nodiscard]] std::string wrapped(std::string_view text, std::size_t most = paragraph_width());
+
 /// For commands whose work is not what they print: from now on, when whoever read standard output has gone, what is
 /// printed is lost and the work goes on.
 void outlive_reader();

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 // Imports, so it comes last.
@@ -24,12 +25,16 @@ bool names_mesh(const std::string& name) {
 
 }  // namespace
 
-bool names_scene(const std::vector<std::string>& arguments) {
-    return arguments.size() > 1 || arguments.front().ends_with(".aabbs") || names_mesh(arguments.front());
+bool names_config(const std::string& argument) {
+    return argument.ends_with(".toml");
 }
 
 scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
+    if (names_config(first))
+        throw aabb::input_error(first +
+                                " is a config, one of which explain and run take alone; expected a recording, "
+                                "meshes, or a motion file and its meshes");
     if (first.ends_with(".aabbs")) {
         if (arguments.size() > 1)
             throw aabb::input_error("a recording is a scene of its own, so give " + first + " alone");
@@ -37,6 +42,10 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     }
     if (!names_mesh(first) && arguments.size() > 1)
         return {"motion", {{"file", first}}, {arguments.begin() + 1, arguments.end()}, std::nullopt, {}};
+    if (std::error_code ignored; !names_mesh(first) && std::filesystem::is_regular_file(first, ignored))
+        throw aabb::input_error(first +
+                                " is neither a recording (.aabbs) nor a mesh; if it is a motion file, its "
+                                "meshes come after it");
     if (arguments.size() > 2)
         throw aabb::input_error("more than two meshes move by a motion file, which comes first; " + first +
                                 " is a mesh");

@@ -11,8 +11,8 @@ namespace aabblab {
 inline constexpr const char* scene_arguments_help =
     "A recording (.aabbs); one or two meshes, which pass through each other; or a motion file and its meshes";
 
-/// Whether these arguments name a scene, and not a config.
-[[nodiscard]] bool names_scene(const std::vector<std::string>& arguments);
+/// Whether it is the name of a config.
+[[nodiscard]] bool names_config(const std::string& argument);
 
 /// The scene that these arguments name.
 /// @throws aabb::input_error where they name none.

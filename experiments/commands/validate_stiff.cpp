@@ -39,22 +39,6 @@ std::string_view verdict_of(const stiff_row& r) {
     return r.holds ? "holds" : "FAILS";
 }
 
-/// In lines as wide as the terminal, at most 80.
-std::string wrapped(const std::string& text) {
-    const std::size_t most = std::min<std::size_t>(output_width(), 80);
-    std::string lines;
-    std::size_t width = 0;
-    for (std::size_t from = 0; from < text.size();) {
-        const std::size_t to = std::min(text.find(' ', from), text.size());
-        const std::string word = text.substr(from, to - from);
-        if (width > 0) lines += width + 1 + word.size() > most ? "\n" : " ";
-        width = width > 0 && width + 1 + word.size() <= most ? width + 1 + word.size() : word.size();
-        lines += word;
-        from = to + 1;
-    }
-    return lines;
-}
-
 /// A table for each quantity.
 std::vector<captioned_table> tables_of(const stiff_study& study, const stiff_result& result) {
     std::vector<captioned_table> all;

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program.hpp"
@@ -160,6 +162,10 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
           "as selected", "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
         CHECK(told.out.find(part) != std::string::npos);
     CHECK(told.out.find("canonical") == std::string::npos);
+    const std::size_t selected = told.out.find("\nselected ");
+    REQUIRE(selected != std::string::npos);
+    std::istringstream lines(told.out.substr(selected + 1, told.out.find("\n\n", selected) - selected));
+    for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 80);
     CHECK(run_program({"explain", file, file}).err.find("a recording is a scene of its own") != std::string::npos);
 }
 
@@ -180,6 +186,36 @@ TEST_CASE("explain takes meshes, and a motion with its meshes") {
     const program_result three = run_program({"explain", "icosphere", "icosphere", "icosphere"});
     CHECK(three.status == 2);
     CHECK(three.err.find("more than two meshes move by a motion file") != std::string::npos);
+}
+
+TEST_CASE("explain says what is wrong with a name before anything else") {
+    const temporary_folder folder;
+    const std::string text = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    const std::string cut = folder.write("cut.aabbs", "no recording");
+    for (const auto& [name, said] :
+         std::vector<std::pair<std::string, std::string>>{{"nope.off", "unknown mesh 'nope.off'"},
+                                                          {"icospher", "did you mean 'icosphere'?"},
+                                                          {text, "if it is a motion file, its meshes come after it"},
+                                                          {cut, cut}}) {
+        const program_result refused = run_program({"explain", name});
+        INFO(refused.err);
+        CHECK(refused.status == 2);
+        CHECK(refused.out.empty());
+        CHECK(is_one_sentence(refused.err));
+        CHECK(refused.err.find(said) != std::string::npos);
+    }
+}
+
+TEST_CASE("explain has no heading of what is left out where that is nothing") {
+    const temporary_folder folder;
+    const std::string config = folder.write("a.toml",
+                                            "name = \"a\"\nengines = [\"cgal\"]\n[[scene]]\nkind = \"mesh_pair\"\n"
+                                            "meshes = [\"icosphere:triangles=80\"]\nframes = 2\n");
+    const program_result told = run_program({"explain", config});
+    REQUIRE(told.status == 0);
+    CHECK(told.out.find("\n  cgal\n") != std::string::npos);
+    CHECK(told.out.find("left out\n      no ") != std::string::npos);
+    CHECK(told.out.find("left out\n\n") == std::string::npos);
 }
 
 TEST_CASE("pairs and collide say what they selected") {
