@@ -1,19 +1,18 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "commands.hpp"
+#include "number.hpp"
 #include "output.hpp"
+#include "told_times.hpp"
 
-// Imports, so it comes last.
+// Import, so they come last.
+#include "composing.hpp"
 #include "scene_arguments.hpp"
 
 import aabb.base;
@@ -23,7 +22,6 @@ import aabblab.numbers;
 import aabblab.race;
 import aabblab.results;
 import aabblab.scenes;
-import aabblab.statistics;
 import aabblab.tables;
 
 namespace aabblab {
@@ -35,15 +33,6 @@ struct recommend_request {
     std::optional<std::string> report;
     double seconds = 60;
 };
-
-std::string ratio_text(const racer& r) {
-    return fmt::format("{:.2f}", std::exp(r.log_ratio->value));
-}
-
-std::string interval_of(const racer& r) {
-    const auto [low, high] = r.log_ratio->range();
-    return fmt::format("{:.2f}-{:.2f}", std::exp(low), std::exp(high));
-}
 
 table table_of(const race_result& race) {
     table t{{{row_number},
@@ -58,11 +47,12 @@ table table_of(const race_result& race) {
             {}};
     for (const racer& r : race.finalists) {
         const race_time& time = *r.last;
-        t.rows.push_back({std::to_string(t.rows.size() + 1), r.name,
-                          fmt::format("{:.4g}", time.over(static_cast<double>(race.frames))), ratio_text(r),
-                          &r == &race.finalists.front() ? "-" : interval_of(r), fmt::format("{:.4g}", time.steady_ms()),
-                          fmt::format("{:.3g}", time.first_ms), fmt::format("{:.3g}", time.build_ms),
-                          grouped(time.bytes / 1024)});
+        const auto [low, high] = r.ratio_range();
+        t.rows.push_back({std::to_string(t.rows.size() + 1), r.name, fmt::format("{:.4g}", time.whole_ms()),
+                          fmt::format("{:.2f}", r.ratio()),
+                          &r == &race.finalists.front() ? "-" : fmt::format("{:.2f}-{:.2f}", low, high),
+                          fmt::format("{:.4g}", time.frame_ms()), fmt::format("{:.3g}", time.first_ms),
+                          fmt::format("{:.3g}", time.build_ms), grouped(time.bytes / 1024)});
     }
     return t;
 }
@@ -75,85 +65,62 @@ table dropped_table_of(const race_result& race) {
     return t;
 }
 
-/// From how many frames on, or below how many, somebody else is faster than the winner.
-std::string what_would_change_it(const race_result& race) {
-    const racer& winner = race.finalists.front();
+/// What the columns of the finalists mean.
+std::vector<std::string> legend() {
+    return {"all ms: build ms, first ms, which is frame 0, and all further frames; of the plays the median.",
+            "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %.",
+            ms_a_frame_text, build_ms_text};
+}
+
+std::string joined(const std::vector<std::string>& sentences) {
     std::string text;
-    for (const racer& r : race.finalists) {
-        const double sooner = r.last->over(1) - winner.last->over(1);
-        const double slower = r.last->steady_ms() - winner.last->steady_ms();
-        // Only what is more than noise.
-        if (&r == &winner || sooner * slower >= 0 || std::abs(slower) < 0.03 * winner.last->steady_ms()) continue;
-        const double frames = 1 - sooner / slower;
-        if (frames < 2 || frames > 1e6) continue;
-        text += fmt::format("With {} than about {:.0f} frames it would be {}. ", sooner < 0 ? "fewer" : "more", frames,
-                            r.name);
-        break;
-    }
-    if (text.empty()) text = "Of those that ended, none would be faster over fewer frames, nor over more. ";
+    for (const std::string& one : sentences) text += (text.empty() ? "" : " ") + one;
     return text;
 }
 
-/// How auto does, where it is neither first nor second, which is told already.
-std::string of_automatic(const race_result& race) {
-    for (std::size_t i = 0; i < race.finalists.size(); ++i) {
-        const racer& r = race.finalists[i];
-        if (!r.who.name.is_automatic()) continue;
-        return i < 2 ? "" : fmt::format("auto takes {} times as long ({}). ", ratio_text(r), interval_of(r));
-    }
-    return "auto was dropped. ";
-}
-
-std::string sentence_of(const race_result& race) {
-    const racer& winner = race.finalists.front();
-    std::string text = fmt::format("Use {}: {:.4g} ms for all {} frames", winner.name,
-                                   winner.last->over(static_cast<double>(race.frames)), race.frames);
-    if (race.finalists.size() > 1) {
-        const racer& next = race.finalists[1];
-        text += next.log_ratio->range().low > 0 ? fmt::format("; {}, the next, takes {} times as long ({})", next.name,
-                                                              ratio_text(next), interval_of(next))
-                                                : fmt::format("; {} is as fast, as far as {} plays tell ({})",
-                                                              next.name, winner.times.size(), interval_of(next));
-    }
-    return text + ". " + of_automatic(race) + what_would_change_it(race);
-}
-
-/// An answer that is not the others' is told, whoever gives it.
-std::string other_answers(const race_result& race) {
-    std::string text;
-    const std::string& digest = race.finalists.front().last->digest;
-    for (const racer& r : race.finalists)
-        if (r.last->digest != digest)
-            text += fmt::format("{} finds other pairs than {}. ", r.name, race.finalists.front().name);
-    return text;
-}
-
-void write_report(const std::string& file, const std::string& scene, const race_result& race,
-                  const std::vector<told_measure>& measured) {
+std::string page_of(const std::string& scene, const race_result& race, const std::vector<told_measure>& measured) {
     table measures{{{"measured", false}, {"", false}}, {}};
     for (const told_measure& one : measured) measures.rows.push_back({one.name, one.value});
-    write_file(file, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(scene) +
-                         "</title>\n<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:"
-                         "0 .6em;text-align:left}</style></head><body>\n<h1>" +
-                         html_text(scene) + "</h1>\n<p>" + html_text(sentence_of(race) + other_answers(race)) +
-                         "</p>\n" + to_html(table_of(race)) + to_html(measures) + to_html(dropped_table_of(race)) +
-                         "</body></html>\n");
+    return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(scene) +
+           "</title>\n<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:"
+           "0 .6em;text-align:left}</style></head><body>\n<h1>" +
+           html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
+           "<p>" + html_text(joined(legend())) + "</p>\n" + to_html(measures) + to_html(dropped_table_of(race)) +
+           "</body></html>\n";
+}
+
+double seconds_of(const std::string& text) {
+    constexpr double most = 1e6;
+    try {
+        if (const auto seconds = parse_number<double>(text); seconds > 0 && seconds <= most) return seconds;
+    } catch (const aabb::input_error&) {  // NOLINT(bugprone-empty-catch)
+        // What is expected says more.
+    }
+    throw aabb::input_error("--seconds is how long to race: a number above 0, at most 1,000,000, not '" + text + "'");
 }
 
 void recommend(const recommend_request& request) {
-    if (!(request.seconds > 0)) throw aabb::input_error("--seconds is how long to race, so a number above 0");
     const scene_choice scene = scene_of_arguments(request.what);
-    if (request.report) require_other_file(*request.report, request.what);
-    const std::vector<told_measure> measured = told(measure_scene(scene));
-    const race_result race = run_race(scene, starters(scene), request.seconds);
+    std::optional<output_file> page;
+    if (request.report) {
+        require_no_mesh(*request.report, request.what);
+        page.emplace(*request.report);
+    }
+    const scene_measures measured = measure_scene(scene);
     const std::string name = scene.kind + " (" + visible(parameters_text(scene)) + ")";
-    print(fmt::format("{}: {} objects, {} frames\n", name, race.objects, race.frames));
+    print(name + ": " + counted(measured.objects, "object") + ", " + counted(measured.frames, "frame") + "\n");
+    flush_output();
+    const race_result race = run_race(scene, starters(scene), request.seconds);
     print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
                       race.finalists.size(), race.finalists.size() + race.dropped.size(),
                       100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
     print(to_text(table_of(race), output_width()) + "\n");
-    print(sentence_of(race) + other_answers(race) + "\n");
-    if (request.report) write_report(*request.report, name, race, measured);
+    for (const std::string& line : legend()) print(wrapped(line) + "\n");
+    print("\n");
+    for (const std::string& sentence : advice_of(race)) print(wrapped(sentence) + "\n");
+    if (!page) return;
+    page->write(page_of(name, race, told(measured)));
+    page->commit();
 }
 
 }  // namespace
@@ -165,8 +132,9 @@ void add_recommend(CLI::App& program, int&) {
     auto request = std::make_shared<recommend_request>();
     command->add_option("WHAT", request->what, scene_arguments_help)->required()->type_name("");
     command
-        ->add_option("--seconds", request->seconds,
-                     "About how long to race (default 60); the last rounds may take longer")
+        ->add_option_function<std::string>(
+            "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text); },
+            "About how long to race (default 60); the last rounds may take longer")
         ->type_name("S");
     command->add_option("--report", request->report, "Write all of it as a page, too")->type_name("FILE.html");
     command->callback([request] { recommend(*request); });

@@ -1,10 +1,11 @@
 module;
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -18,7 +19,9 @@ import :apart;
 import aabb.base;
 import aabb.pipeline;
 import aabb.registry;
+import aabb.selection;
 import aabb.validation;
+import aabblab.numbers;
 import aabblab.play;
 import aabblab.progress;
 import aabblab.scenes;
@@ -33,6 +36,8 @@ constexpr std::size_t first_frames = 4;
 constexpr std::size_t most_finalists = 6;
 constexpr std::size_t fewest_repeats = 5;
 constexpr std::size_t most_repeats = 15;
+constexpr double least_patience = 1;  // seconds
+constexpr double final_patience = 600;
 /// Who takes so many times as long as the fastest, in the whole and a frame, is dropped; less in every round.
 constexpr double first_margin = 2;
 constexpr double last_margin = 1.25;
@@ -71,15 +76,22 @@ public:
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;
         play_round(frames, margin);
+        if (running_.empty())
+            throw aabb::input_error(fmt::format("nobody plays {} of this scene to the end in {:.4g} s",
+                                                counted(frames, "frame"), least_patience + seconds_));
         while (frames < result_.frames && running_.size() > most_finalists && left() > seconds_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
             margin = std::max(last_margin, std::sqrt(margin));
             play_round(frames, margin);
         }
-        drop_to(most_finalists);
+        for (; running_.size() > most_finalists; running_.pop_back())
+            result_.dropped.push_back(std::move(running_.back()));
         play_final();
+        rank(running_);
         std::ranges::reverse(result_.dropped);
         result_.finalists = std::move(running_);
+        for (const std::vector<racer>* some : {&result_.finalists, &result_.dropped})
+            for (const racer& r : *some) result_.played += r.frames;
         return std::move(result_);
     }
 
@@ -88,22 +100,30 @@ private:
         return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     }
 
+    /// For how long one may play frames that the fastest so far takes so many milliseconds for: far longer, but no
+    /// longer than the whole race may take, unless it stays within the margin.
+    [[nodiscard]] double patience(double least_ms, double margin) const {
+        const double least = least_ms / 1000;
+        const double longest =
+            std::isfinite(least) ? std::min(20 * least, std::max(seconds_, margin * least)) : seconds_;
+        return least_patience + reading_s_ + longest;
+    }
+
     /// Plays the first frames with all; who takes far longer than the fastest so far is stopped.
     void play_round(std::size_t frames, double margin) {
-        progress shown("racing over " + std::to_string(frames) + " frames", running_.size());
+        progress shown("racing over " + counted(frames, "frame"), running_.size());
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
         for (racer& one : running_) {
-            // Reading the scene takes time as well.
-            const double patience = std::isfinite(least) ? 1 + 20 * least / 1000 + reading_s_ : 600;
             const auto began = std::chrono::steady_clock::now();
-            one.last = play_apart(scene_, one.who, frames, patience);
+            one.last = play_apart(scene_, one.who, frames, patience(least, margin));
             const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
             if (one.last) {
-                const double own = one.last->over(static_cast<double>(frames));
+                const double own = one.last->whole_ms();
+                // Reading the scene takes time as well.
                 if (!std::isfinite(least)) reading_s_ = 2 * std::max(0.0, took - own / 1000);
                 least = std::min(least, own);
-                result_.played += frames;
+                one.frames = frames;
             }
             shown.at(++done);
         }
@@ -124,49 +144,35 @@ private:
         std::ranges::stable_sort(running_, [](const racer& a, const racer& b) {
             return a.last.has_value() && (!b.last || a.behind < b.behind);
         });
-        const auto stays = [&](const racer& r) {
+        keep([&](const racer& r) {
             return r.last &&
                    (r.behind <= margin || (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
-        };
+        });
+    }
+
+    template <class Stays>
+    void keep(Stays stays) {
         const auto first_out = std::stable_partition(running_.begin(), running_.end(), stays);
         for (auto last = running_.end(); last != first_out;) result_.dropped.push_back(std::move(*--last));
         running_.erase(first_out, running_.end());
     }
 
-    void drop_to(std::size_t most) {
-        for (; running_.size() > most; running_.pop_back()) result_.dropped.push_back(std::move(running_.back()));
-    }
-
-    /// The whole scene, in turn, as often as there is time for.
+    /// The whole scene, in turn, as often as there is time for. Each repeat begins with another one, since it matters
+    /// after whom one plays. Who does not come to the end each time is dropped.
     void play_final() {
         progress shown("racing to the end", most_repeats);
         for (std::size_t repeat = 0; repeat < most_repeats && (repeat < fewest_repeats || left() > 0); ++repeat) {
-            for (racer& r : running_)
-                if (const auto time = play_apart(scene_, r.who, result_.frames, 600)) {
+            for (std::size_t k = 0; k < running_.size(); ++k) {
+                racer& r = running_[(repeat + k) % running_.size()];
+                if (const auto time = play_apart(scene_, r.who, result_.frames, final_patience)) {
                     r.times.push_back(*time);
-                    result_.played += repeat == 0 ? result_.frames : 0;
+                    r.frames = result_.frames;
                 }
+            }
+            keep([&](const racer& r) { return r.times.size() > repeat; });
             shown.at(repeat + 1);
         }
-        const auto ends = [](const racer& r) { return r.times.size() >= fewest_repeats; };
-        const auto first_out = std::stable_partition(running_.begin(), running_.end(), ends);
-        std::move(first_out, running_.end(), std::back_inserter(result_.dropped));
-        running_.erase(first_out, running_.end());
         if (running_.empty()) throw aabb::input_error("nothing plays this scene to its end");
-        const auto whole = [](const race_time& t) { return t.over(static_cast<double>(t.frames)); };
-        for (racer& r : running_) {
-            std::vector<race_time> ordered = r.times;
-            std::ranges::sort(ordered, {}, whole);
-            r.last = ordered[ordered.size() / 2];
-        }
-        std::ranges::sort(running_, {}, [&](const racer& r) { return whole(*r.last); });
-        const std::vector<race_time>& winner = running_.front().times;
-        for (racer& r : running_) {
-            cells ratios(1, 1);
-            for (std::size_t i = 0; i < std::min(r.times.size(), winner.size()); ++i)
-                ratios.add(0, 0, std::log(whole(r.times[i]) / whole(winner[i])));
-            r.log_ratio = bootstrap(ratios);
-        }
     }
 
     const scene_choice& scene_;
@@ -202,17 +208,22 @@ std::vector<racer> starters(const scene_choice& choice) {
     const scene_play scene(choice);
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> all;
-    const auto add = [&](contender who) {
-        std::string name = text_of(who.name);
-        all.push_back({std::move(who), std::move(name), {}, {}, 0, {}});
+    const auto add = [&](contender who, std::string name) {
+        racer& one = all.emplace_back();
+        one.who = std::move(who);
+        one.name = std::move(name);
     };
-    add(contender_of(aabb::named_strategies(), scene));
+    const auto automatic = contender_of(composed_of(select_strategies({}, outlook_of(scene))), meshes).name;
+    add(contender_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");
     const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
-    for (const aabb::composition& c : aabb::every_composition(stage))
-        if (is_exact(c, stage) && (meshes || needs_meshes(c).empty())) add(contender_of(c, meshes));
+    for (const aabb::composition& c : aabb::every_composition(stage)) {
+        if (!is_exact(c, stage) || (!meshes && !needs_meshes(c).empty())) continue;
+        // It is the same twice.
+        if (contender who = contender_of(c, meshes); who.name != automatic) add(who, text_of(who.name));
+    }
     for (const aabb::engine_info& engine : aabb::engines())
         if (meshes ? engine.collides_meshes : engine.searches_boxes)
-            if (auto who = contender_of(engine, meshes)) add(*std::move(who));
+            if (const auto who = contender_of(engine, meshes)) add(*who, text_of(who->name));
     return all;
 }
 

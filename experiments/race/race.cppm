@@ -1,7 +1,9 @@
 module;
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,20 +30,55 @@ struct race_time {
     [[nodiscard]] double over(double all_frames) const {
         return build_ms + first_ms + (all_frames > 1 ? (all_frames - 1) * steady_ms() : 0);
     }
+    /// Of all frames that were played.
+    [[nodiscard]] double whole_ms() const { return build_ms + first_ms + rest_ms; }
     /// A frame after frame 0.
     [[nodiscard]] double steady_ms() const { return frames > 1 ? rest_ms / static_cast<double>(frames - 1) : 0; }
+    /// The same, or frame 0 where it is alone.
+    [[nodiscard]] double frame_ms() const { return frames > 1 ? steady_ms() : first_ms; }
 };
 
 /// Plays the first frames of the scene.
 [[nodiscard]] race_time time_frames(const scene_choice& scene, const contender& who, std::size_t frames);
 
+/// Of those who play in turn, who takes more than so many times as long a frame as the first, and so long in all that
+/// it matters, plays in one round only.
+inline constexpr double hopeless_ratio = 20;
+inline constexpr double hopeless_ms = 100;
+
+/// Plays the first frames of the scene with all in turn, round after round, each of which begins with another one.
+/// @returns by contender the times, by round
+[[nodiscard]] std::vector<std::vector<race_time>> play_in_turn(const scene_choice& scene,
+                                                               std::span<const contender> all, std::size_t frames,
+                                                               std::size_t rounds);
+
+/// Of the times of two in the same rounds, one's over the other's.
+struct paired_ratio {
+    double median = 1;
+    double least = 1;
+    double greatest = 1;
+
+    /// Whether the rounds leave it open which of the two is faster by more than 3 %.
+    [[nodiscard]] bool may_be_same() const { return least < 1.03 && greatest > 1 / 1.03; }
+};
+/// @param ms one or more, by round, as are those of the other
+[[nodiscard]] paired_ratio paired_ratio_of(std::span<const double> ms, std::span<const double> of_other);
+
 struct racer {
     contender who;
     std::string name;
-    std::vector<race_time> times;       ///< of the whole scene; empty where it was dropped before
-    std::optional<race_time> last;      ///< of the last round that it played to its end
-    double behind = 0;                  ///< how many times as long as the fastest it took there
-    std::optional<estimate> log_ratio;  ///< of the whole scene, to the winner
+    std::vector<race_time> times;       ///< of the whole scene, by repeat; of a finalist
+    std::optional<race_time> last;      ///< of the last round that it played to its end; of a finalist, the median
+    std::size_t frames = 0;             ///< of the scene, that it has played in any round
+    double behind = 0;                  ///< how many times as long as the fastest it took in the last round
+    std::optional<estimate> log_ratio;  ///< of the whole scene, to the winner in the same repeat: the median
+
+    [[nodiscard]] double ratio() const { return std::exp(log_ratio->value); }
+    /// Of 95 %.
+    [[nodiscard]] interval ratio_range() const {
+        const auto [low, high] = log_ratio->range();
+        return {std::exp(low), std::exp(high)};
+    }
 };
 
 struct race_result {
@@ -49,15 +86,24 @@ struct race_result {
     std::size_t frames = 0;
     std::vector<racer> finalists;  ///< from the fastest
     std::vector<racer> dropped;    ///< from those who came farthest
-    std::size_t played = 0;        ///< frames, by all
+    std::size_t played = 0;        ///< frames of the scene, summed over all; those played again do not count
     std::size_t of = 0;            ///< that all would have played
 };
 
-/// All that can play the scene: `auto`, every composition of the stage that matters there, every engine.
+/// All that can play the scene: `auto`, every composition of the stage that matters there but the one that `auto` is,
+/// every engine.
 [[nodiscard]] std::vector<racer> starters(const scene_choice& scene);
 
-/// @param seconds about how long the race may take
+/// @param seconds about how long the race may take, at most 1,000,000
 /// @throws aabb::input_error where the scene cannot be played.
 [[nodiscard]] race_result run_race(const scene_choice& scene, std::vector<racer> all, double seconds);
+
+/// Puts finalists, who have played equally often, in order from the fastest, and says how far each is behind. Nobody is
+/// ahead of the first in more than half of the repeats.
+void rank(std::vector<racer>& finalists);
+
+/// What follows from a race, sentence by sentence: what to use, how far the next is behind, and `auto`, with how many
+/// frames it would be another, and whose answer is not the winner's.
+[[nodiscard]] std::vector<std::string> advice_of(const race_result& race);
 
 }  // namespace aabblab

@@ -7,17 +7,21 @@
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
@@ -102,13 +106,200 @@ TEST_CASE("A race ends with the fastest, and those who are far behind or fail pl
     CHECK(race.dropped.front().name == "slow");
 }
 
+TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
+    std::vector<racer> all{delayed("one", [] {}), delayed("other", [] {})};
+    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 1);
+    REQUIRE(race.finalists.size() + race.dropped.size() == 2);
+    CHECK(race.of == 50);
+    CHECK(race.played == 25 * race.finalists.size() + 4 * race.dropped.size());
+}
+
+TEST_CASE("Each repeat of a race begins with another racer") {
+    const temporary_folder folder;
+    const std::string file = (folder / "order").string();
+    std::vector<racer> all;
+    for (const char* name : {"a", "b"}) {
+        // Long enough that both come to the end.
+        racer& r = all.emplace_back(delayed(name, [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }));
+        r.who.make_global = [file, name, make = r.who.make_global](aabb::instrumentation counted) {
+            std::ofstream(file, std::ios::app) << name;
+            return make(counted);
+        };
+    }
+    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 1);
+    REQUIRE(race.finalists.size() == 2);
+    const std::string order = bytes_of_file(file);
+    // A round, then at least five repeats.
+    REQUIRE(order.size() >= 2 + 2 * 5);
+    for (std::size_t i = 2; i + 2 < order.size(); i += 2) CHECK(order[i] != order[i + 2]);
+}
+
+TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
+    using namespace std::chrono_literals;
+    const auto hesitant = [] {
+        return delayed("hesitant", [i = 0]() mutable {
+            if (i++ == 0) std::this_thread::sleep_for(6s);
+        });
+    };
+    std::vector<racer> all{hesitant(), delayed("fast", [] { std::this_thread::sleep_for(1ms); })};
+    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 0.5);
+    REQUIRE(race.dropped.size() == 1);
+    CHECK(race.dropped.front().name == "hesitant");
+    CHECK_FALSE(race.dropped.front().last.has_value());
+    CHECK_THROWS_AS(aabblab::run_race(scene, {hesitant()}, 0.5), aabb::input_error);
+}
+
+namespace {
+
+/// A finalist who took so many milliseconds for a scene of two frames, repeat by repeat.
+racer finished(const std::string& name, std::initializer_list<double> all_ms) {
+    racer r;
+    r.name = name;
+    for (const double ms : all_ms) r.times.push_back({0, 0, ms, 2, 0, "answer"});
+    return r;
+}
+
+/// The same of a scene of 100 frames, with as little noise as machines have.
+racer finished(const std::string& name, double build_ms, double frame_ms, bool slow_and_fast = false) {
+    racer r;
+    r.name = name;
+    bool slow = false;
+    for (const double noise : {1.0, 1.02, 0.99, 1.01, 0.98, 1.0, 1.01}) {
+        slow = !slow;
+        const double ms = slow_and_fast ? frame_ms * (slow ? 1.1 : 0.9) : frame_ms;
+        r.times.push_back({build_ms * noise, ms * noise, 99 * ms * noise, 100, 0, "answer"});
+    }
+    return r;
+}
+
+aabblab::race_result ended(std::vector<racer> finalists, std::size_t frames = 100) {
+    aabblab::race_result race;
+    race.frames = frames;
+    rank(finalists);
+    race.finalists = std::move(finalists);
+    return race;
+}
+
+bool holds(const std::vector<std::string>& sentences, const std::string& one) {
+    return std::ranges::find(sentences, one) != sentences.end();
+}
+
+}  // namespace
+
+TEST_CASE("Order and ratio of finalists are of what they took in the same repeats") {
+    // The median of b is less, but it is slower in four repeats of five.
+    std::vector<racer> two{finished("b", {1.1, 2.2, 2.9, 4.4, 5.5}), finished("a", {1, 2, 3, 4, 5})};
+    aabblab::rank(two);
+    CHECK(two[0].name == "a");
+    CHECK(two[0].ratio() == 1);
+    CHECK(std::abs(two[1].ratio() - 1.1) < 1e-9);
+    CHECK(two[1].last->whole_ms() == 2.9);
+    // Each is ahead of the next in two repeats of three.
+    std::vector<racer> circle{finished("a", {1, 2, 3}), finished("b", {2, 3, 1}), finished("c", {3, 1, 2})};
+    aabblab::rank(circle);
+    CHECK(circle[0].ratio() == 1);
+    for (const racer& r : circle) CHECK(r.ratio() >= 1);
+}
+
+TEST_CASE("What would change the answer of a race is told where the repeats show it") {
+    const std::string nobody = "No other is shown to be faster over fewer frames, nor over more.";
+    const auto of = [](std::vector<racer> finalists, std::size_t frames = 100) {
+        return aabblab::advice_of(ended(std::move(finalists), frames));
+    };
+    const racer winner = finished("winner", 10, 1);
+    // Over n frames it takes 2 n, and the winner 10 + n.
+    CHECK(holds(of({winner, finished("quick", 0, 2)}), "With fewer than about 10 frames it would be quick."));
+    CHECK(holds(of({winner, finished("quick", 0, 2), finished("quicker", 5, 1.2)}),
+                "With fewer than about 25 frames it would be quicker."));
+    CHECK(holds(of({winner, finished("patient", 160, 0.5)}), "With more than about 300 frames it would be patient."));
+    CHECK(holds(of({winner, finished("patient", 160, 0.5), finished("sooner", 130, 0.2)}),
+                "With more than about 150 frames it would be sooner."));
+    CHECK(holds(of({winner, finished("slower", 20, 2)}), nobody));
+    // It may be slower a frame, or not.
+    CHECK(holds(of({winner, finished("noisy", 5, 1.07, true)}), nobody));
+    for (const auto& sentences : {of({winner, finished("quick", 0, 2)}, 1), of({winner})})
+        for (const std::string& one : sentences) {
+            CHECK(one.find("frames it would be") == std::string::npos);
+            CHECK(one != nobody);
+        }
+}
+
+TEST_CASE("How auto did in a race is told as far as the repeats tell") {
+    racer automatic = finished("auto (= x)", 10, 1.3, true);
+    automatic.who.name.engine = "auto";
+    const racer winner = finished("winner", 10, 1);
+    const racer second = finished("second", 10, 1.01);
+    const auto told = [](const aabblab::race_result& race, const std::string& begin) {
+        return std::ranges::any_of(aabblab::advice_of(race),
+                                   [&](const std::string& one) { return one.starts_with(begin); });
+    };
+    CHECK(told(ended({winner, second, automatic}), "auto (= x) takes 1."));
+    racer noisy = finished("auto (= x)", {1, 3, 1, 3, 1, 3, 2.1});
+    noisy.who.name = automatic.who.name;
+    const racer even = finished("even", {2, 2, 2, 2, 2, 2, 2});
+    const racer odd = finished("odd", {2.01, 2.01, 2.01, 2.01, 2.01, 2.01, 2.01});
+    CHECK(told(ended({even, odd, noisy}, 2), "auto (= x) is as fast, as far as 7 plays tell ("));
+    aabblab::race_result without = ended({winner, second});
+    automatic.last = automatic.times.front();
+    automatic.last->frames = 8;
+    automatic.behind = 1.5;
+    without.dropped.push_back(automatic);
+    CHECK(told(without, "auto (= x) was dropped after 8 frames: 1.50 times as long as the fastest."));
+    without.dropped.back().last.reset();
+    CHECK(told(without, "auto (= x) was stopped"));
+}
+
+TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once") {
+    std::string order;
+    std::vector<aabblab::contender> all;
+    for (const char* name : {"a", "b", "c"}) {
+        racer r = delayed(name, [wait = *name == 'c'] {
+            if (wait) std::this_thread::sleep_for(std::chrono::milliseconds(250));
+        });
+        all.push_back(r.who);
+        all.back().make_global = [&order, name, make = r.who.make_global](aabb::instrumentation counted) {
+            order += name;
+            return make(counted);
+        };
+    }
+    const auto times = aabblab::play_in_turn(scene, all, 4, 3);
+    CHECK(order == "abcbaab");
+    REQUIRE(times.size() == 3);
+    CHECK(times[0].size() == 3);
+    CHECK(times[1].size() == 3);
+    CHECK(times[2].size() == 1);
+}
+
+TEST_CASE("A ratio of times in the same rounds has a median, a least and a greatest") {
+    const auto of = [](const std::vector<double>& ms, const std::vector<double>& of_other) {
+        return aabblab::paired_ratio_of(ms, of_other);
+    };
+    const aabblab::paired_ratio ratio = of({2, 8, 4.5}, {1, 2, 3});
+    CHECK(ratio.median == 2);
+    CHECK(ratio.least == 1.5);
+    CHECK(ratio.greatest == 4);
+    CHECK_FALSE(ratio.may_be_same());
+    CHECK(of({1.02, 1.3}, {1, 1}).may_be_same());
+    CHECK(of({0.7, 0.98}, {1, 1}).may_be_same());
+    CHECK(of({0.7, 1.3}, {1, 1}).may_be_same());
+    CHECK_FALSE(of({1.04, 1.3}, {1, 1}).may_be_same());
+    CHECK_FALSE(of({0.7, 0.96}, {1, 1}).may_be_same());
+}
+
 TEST_CASE("All that is exact starts in a race, and every engine") {
     std::vector<racer> all = aabblab::starters(scene);
-    CHECK(all.front().name == "auto");
+    CHECK(all.front().name == "auto (= neighbour_list + bucket + columns + simd)");
+    CHECK_FALSE(holds(all, "neighbour_list + bucket + columns + simd"));
     for (const char* name : {"bucket + columns + simd", "insertion + none + incremental", "std + uniform_grid + simd"})
         CHECK(holds(all, name));
     CHECK_FALSE(holds(all, "split_mesh + bucket + columns + simd"));
     for (const aabb::engine_info& engine : aabb::engines()) CHECK(holds(all, engine.name) == engine.searches_boxes);
+    // What auto is does not race twice.
+    aabblab::scene_choice still = scene;
+    still.settings[1].value = "1";
+    all = aabblab::starters(still);
+    CHECK(all.front().name == "auto (= bucket + columns + simd)");
+    CHECK_FALSE(holds(all, "bucket + columns + simd"));
     const aabblab::scene_choice meshes{"mesh_pair", {}, {"icosphere:triangles=80"}, 1, {}};
     all = aabblab::starters(meshes);
     for (const char* name :
@@ -134,8 +325,45 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     const std::string html{std::istreambuf_iterator<char>(in), {}};
     for (const char* part : {"<p>Use ", "overlapping pairs an object", "dropped", "all_axes"})
         CHECK(html.find(part) != std::string::npos);
-    CHECK(run_program({"recommend", file, "--seconds", "0"}).err.find("--seconds is how long to race") !=
-          std::string::npos);
-    CHECK(run_program({"recommend", file, "--report", file}).status == 2);
+    for (const char* part : {"\nratio: all ms over", "\nms/frame: update, search", "\nbuild ms: the stages are made"})
+        CHECK(told.out.find(part) != std::string::npos);
+    std::istringstream sentences(told.out.substr(told.out.find("\nUse ") + 1));
+    for (std::string line; std::getline(sentences, line);) CHECK(line.size() <= 80);
+    for (const char* seconds : {"0", "-1", "inf", "nan", "1e7", "x", ""}) {
+        const program_result refused = run_program({"recommend", file, "--seconds", seconds});
+        CHECK(refused.status == 2);
+        CHECK(is_one_sentence(refused.err));
+        CHECK(refused.err.find("--seconds is how long to race: a number above 0, at most 1,000,000, not '" +
+                               std::string(seconds) + "'") != std::string::npos);
+    }
     CHECK(run_program({"recommend", (folder / "none.aabbs").string()}).status == 2);
+    const program_result of_config = run_program({"recommend", "still.toml"});
+    CHECK(of_config.status == 2);
+    CHECK(of_config.err.find("still.toml is a config, one of which explain and run take alone") != std::string::npos);
+}
+
+TEST_CASE("recommend writes its page over nothing that it reads, and says early where it cannot be") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("t.off", tetrahedron);
+    const std::string file = folder / "p.aabbs";
+    REQUIRE(run_program({"scene", "pile", "--n", "30", "--frames", "2", "--out", file}).status == 0);
+    const std::string recording = bytes_of_file(file);
+    const auto refused = [&](const std::vector<std::string>& what, const std::string& report) {
+        const program_result result = run_program(joined(joined({"recommend"}, what), {"--report", report}));
+        INFO(result.err);
+        CHECK(result.status == 2);
+        CHECK(result.out.empty());
+        CHECK(is_one_sentence(result.err));
+    };
+    refused({file}, file);
+    refused({mesh}, mesh);
+    refused({mesh + ":order=sah"}, mesh);
+    refused({file}, folder / "no" / "p.html");
+    setenv("AABBLAB_DATA", folder.path().c_str(), 1);
+    refused({"t.off"}, mesh);
+    refused({"icosphere:triangles=80", "t.off"}, mesh);
+    unsetenv("AABBLAB_DATA");
+    CHECK(bytes_of_file(mesh) == tetrahedron);
+    CHECK(bytes_of_file(file) == recording);
+    CHECK(folder.files() == 2);
 }

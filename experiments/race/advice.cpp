@@ -1,0 +1,112 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.race;
+
+import aabblab.numbers;
+import aabblab.statistics;
+
+namespace aabblab {
+
+namespace {
+
+/// "takes 1.31 times as long (1.25-1.36)"
+std::string beside_winner(const racer& one) {
+    const auto [low, high] = one.ratio_range();
+    const std::string range = fmt::format("({:.2f}-{:.2f})", low, high);
+    return low > 1 ? fmt::format("takes {:.2f} times as long {}", one.ratio(), range)
+                   : fmt::format("is as fast, as far as {} plays tell {}", one.times.size(), range);
+}
+
+/// How auto does, where it is neither first nor second, which is told already.
+std::string of_automatic(const race_result& race) {
+    const auto is_automatic = [](const racer& one) { return one.who.name.is_automatic(); };
+    if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
+        return ended - race.finalists.begin() < 2 ? "" : ended->name + " " + beside_winner(*ended) + ".";
+    const auto out = std::ranges::find_if(race.dropped, is_automatic);
+    if (out == race.dropped.end()) return "";
+    if (!out->last) return out->name + " was stopped: it took too long, or failed.";
+    return fmt::format("{} was dropped after {}: {:.2f} times as long as the fastest.", out->name,
+                       counted(out->last->frames, "frame"), out->behind);
+}
+
+/// The median over the repeats of what `value` is more of one than of the other; none where it may be either way.
+template <class Value>
+std::optional<double> shown_difference(const racer& one, const racer& other, Value value) {
+    cells differences(1, 1);
+    for (std::size_t i = 0; i < one.times.size(); ++i)
+        differences.add(0, 0, value(one.times[i]) - value(other.times[i]));
+    const estimate difference = bootstrap(differences);
+    const auto [low, high] = difference.range();
+    return low > 0 || high < 0 ? std::optional(difference.value) : std::nullopt;
+}
+
+/// Of how many frames two take equally long.
+struct crossing {
+    double frames;
+    bool sooner;  ///< the other is faster below
+};
+
+/// None where the repeats do not show it.
+std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
+    const auto begin = shown_difference(other, winner, [](const race_time& t) { return t.over(1); });
+    const auto steady = shown_difference(other, winner, [](const race_time& t) { return t.steady_ms(); });
+    if (!begin || !steady || (*begin > 0) == (*steady > 0)) return std::nullopt;
+    return crossing{1 - *begin / *steady, *begin < 0};
+}
+
+/// From how many frames on, or below how many, somebody else is faster than the winner: the first to overtake it.
+std::vector<std::string> what_would_change_it(const race_result& race) {
+    if (race.frames < 2 || race.finalists.size() < 2) return {};
+    const auto frames = static_cast<double>(race.frames);
+    double below = 1.5;  // fewer than two would be one
+    double above = 1e6;
+    const racer* with_fewer = nullptr;
+    const racer* with_more = nullptr;
+    for (const racer& other : race.finalists) {
+        if (&other == &race.finalists.front()) continue;
+        const std::optional<crossing> at = crossing_of(other, race.finalists.front());
+        if (!at) continue;
+        if (at->sooner && at->frames < frames && at->frames > below) {
+            below = at->frames;
+            with_fewer = &other;
+        }
+        if (!at->sooner && at->frames > frames && at->frames < above) {
+            above = at->frames;
+            with_more = &other;
+        }
+    }
+    std::vector<std::string> sentences;
+    if (with_fewer)
+        sentences.push_back(
+            fmt::format("With fewer than about {:.0f} frames it would be {}.", below, with_fewer->name));
+    if (with_more)
+        sentences.push_back(fmt::format("With more than about {:.0f} frames it would be {}.", above, with_more->name));
+    if (sentences.empty()) sentences.emplace_back("No other is shown to be faster over fewer frames, nor over more.");
+    return sentences;
+}
+
+}  // namespace
+
+std::vector<std::string> advice_of(const race_result& race) {
+    const racer& winner = race.finalists.front();
+    std::vector<std::string> sentences{
+        fmt::format("Use {}: {:.4g} ms for {}.", winner.name, winner.last->whole_ms(), counted(race.frames, "frame"))};
+    if (race.finalists.size() > 1)
+        sentences.push_back(fmt::format("The next, {}, {}.", race.finalists[1].name, beside_winner(race.finalists[1])));
+    if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
+    for (std::string& sentence : what_would_change_it(race)) sentences.push_back(std::move(sentence));
+    for (const racer& other : race.finalists)
+        if (other.last->digest != winner.last->digest)
+            sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));
+    return sentences;
+}
+
+}  // namespace aabblab
