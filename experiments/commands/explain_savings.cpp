@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "output.hpp"
+#include "told_times.hpp"
 
 // Imports, so it comes last.
 #include "explain_savings.hpp"
@@ -18,6 +18,7 @@ import aabblab.numbers;
 import aabblab.play;
 import aabblab.race;
 import aabblab.scenes;
+import aabblab.statistics;
 import aabblab.tables;
 
 namespace aabblab {
@@ -25,50 +26,56 @@ namespace aabblab {
 namespace {
 
 constexpr std::size_t most_frames = 40;
-constexpr std::size_t repeats = 3;
+constexpr std::size_t rounds = 5;
 /// With more objects, what sorts or sweeps all of them slowly would take minutes.
 constexpr std::size_t most_objects_of_any = 20'000;
 
-struct cost {
-    double build_ms = std::numeric_limits<double>::infinity();
-    double frame_ms = std::numeric_limits<double>::infinity();  ///< after frame 0, a mean; of frame 0 if it is alone
-    std::uint64_t bytes = 0;
+/// A composition that differs from the selected one in one kind.
+struct alternative {
+    aabb::strategy_kind kind;
+    aabb::composition composition;
 };
 
-/// The least of some repeats.
-cost cost_of(const scene_choice& choice, const contender& who) {
-    cost least;
-    for (std::size_t i = 0; i < repeats; ++i) {
-        const race_time time = time_frames(choice, who, most_frames);
-        least.build_ms = std::min(least.build_ms, time.build_ms);
-        least.frame_ms = std::min(least.frame_ms, time.frames > 1 ? time.steady_ms() : time.first_ms);
-        least.bytes = time.bytes;
-    }
-    return least;
-}
-
-/// Compositions that differ in this kind only, that make sense in the scene and are exact.
-std::vector<aabb::composition> others(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
-    std::vector<aabb::composition> all;
+/// Those that make sense in the scene and are exact.
+std::vector<alternative> others(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
+    std::vector<alternative> all;
     for (const aabb::strategy_info& info : aabb::strategies(kind)) {
         if (info.name == selected[kind].name) continue;
         aabb::composition c = selected;
         c[kind] = {info.name, {}};
         if (refusal_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
             (meshes || needs_meshes(c).empty()))
-            all.push_back(c);
+            all.push_back({kind, c});
     }
     return all;
 }
 
-std::vector<std::string> cells_of(const std::string& kind, const std::string& name, const cost& each,
-                                  const cost& selected) {
-    return {kind,
-            name,
-            fmt::format("{:.4g}", each.frame_ms),
-            fmt::format("{:.2f}", each.frame_ms / selected.frame_ms),
-            fmt::format("{:.3g}", each.build_ms),
-            grouped(each.bytes)};
+template <class Value>
+std::vector<double> values_of(std::span<const race_time> times, Value value) {
+    std::vector<double> all;
+    for (const race_time& t : times) all.push_back(value(t));
+    return all;
+}
+
+/// Ratio and range.
+std::vector<std::string> ratio_cells(std::span<const race_time> times, std::span<const race_time> selected) {
+    if (times.size() < selected.size()) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
+    const auto ms = [](const race_time& t) { return t.frame_ms(); };
+    const paired_ratio ratio = paired_ratio_of(values_of(times, ms), values_of(selected, ms));
+    return {ratio.may_be_same() ? "same" : fmt::format("{:.2f}", ratio.median),
+            fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
+}
+
+void add_row(table& t, const std::string& kind, const std::string& name, std::span<const race_time> times,
+             std::span<const race_time> selected) {
+    const auto median = [&](auto value) { return quartiles_of(values_of(times, value)).median; };
+    const bool is_selected = times.data() == selected.data();
+    const std::vector<std::string> ratio =
+        is_selected ? std::vector<std::string>{"1", "-"} : ratio_cells(times, selected);
+    t.rows.push_back({kind, name, fmt::format("{:.4g}", median([](const race_time& one) { return one.frame_ms(); })),
+                      ratio[0], ratio[1],
+                      fmt::format("{:.3g}", median([](const race_time& one) { return one.build_ms; })),
+                      grouped(times.back().bytes)});
 }
 
 }  // namespace
@@ -77,23 +84,44 @@ void print_savings(const scene_choice& choice, const aabb::composition& selected
     const scene_play scene(choice);
     const bool meshes = scene.meshes() != nullptr;
     const bool any = scene.objects() <= most_objects_of_any;
-    const cost chosen = cost_of(choice, contender_of(selected, meshes));
-    table t{{{"kind", false}, {"in its place", false}, {"ms a frame"}, {"times"}, {"build ms"}, {"bytes"}}, {}};
-    t.rows.push_back(cells_of("", "as selected", chosen, chosen));
+    std::vector<alternative> all;
+    std::string alone;  // kinds of which nothing else goes with the rest
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
         if (!any && !info_of(kind).apart) continue;
-        for (const aabb::composition& c : others(selected, kind, meshes))
-            t.rows.push_back(
-                cells_of(std::string(name_of(kind)), c[kind].name, cost_of(choice, contender_of(c, meshes)), chosen));
+        const std::vector<alternative> some = others(selected, kind, meshes);
+        all.insert(all.end(), some.begin(), some.end());
+        if (some.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    print(fmt::format(
-        "  what each choice saves: one kind at a time in another way, the least of {} plays of {} frames at most\n",
-        repeats, most_frames));
-    print(to_text(t, output_width()));
+    std::vector<contender> playing{contender_of(selected, meshes)};
+    for (const alternative& one : all) playing.push_back(contender_of(one.composition, meshes));
+    const auto times = play_in_turn(choice, playing, most_frames, rounds);
+    table t{{{"kind", false},
+             {"in its place", false},
+             {"ms/frame"},
+             {"ratio"},
+             {"range"},
+             {"build ms", true, 1},
+             {"bytes", true, 2}},
+            {}};
+    add_row(t, "", "as selected", times[0], times[0]);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        add_row(t, std::string(name_of(all[i].kind)), all[i].composition[all[i].kind].name, times[i + 1], times[0]);
+    const auto print_line = [](const std::string& line) { print(wrapped(line) + "\n"); };
+    print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} rounds of {}",
+                           rounds, counted(std::min(scene.frames(), most_frames), "frame")));
+    print(to_text(t, output_width()) + "\n");
+    if (!alone.empty()) print_line(alone + ": nothing else can be composed with the rest.");
     if (!any)
-        print(fmt::format("  with more than {} objects only kinds that stand apart are tried in other ways\n",
-                          most_objects_of_any));
+        print_line(fmt::format("With more than {} only kinds that stand apart are tried in other ways.",
+                               counted(most_objects_of_any, "object")));
+    print_line(ms_a_frame_text);
+    print_line(fmt::format(
+        "ratio: ms/frame over that of what is selected in the same round, the median; range: the least and the "
+        "greatest; same: the range comes within 3 % of 1; > {:.0f}: seen after one round.",
+        hopeless_ratio));
+    print_line(build_ms_text);
+    flush_output();
 }
 
 }  // namespace aabblab

@@ -162,6 +162,10 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
           "as selected", "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
         CHECK(told.out.find(part) != std::string::npos);
     CHECK(told.out.find("canonical") == std::string::npos);
+    // columns take no other sweep.
+    for (const char* part : {"\nsweep: nothing else can be composed with the rest.\n", "\nratio: ms/frame over",
+                             "\nms/frame: update, search", "\nbuild ms: the stages are made"})
+        CHECK(told.out.find(part) != std::string::npos);
     const std::size_t selected = told.out.find("\nselected ");
     REQUIRE(selected != std::string::npos);
     std::istringstream lines(told.out.substr(selected + 1, told.out.find("\n\n", selected) - selected));
