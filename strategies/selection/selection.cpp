@@ -54,21 +54,23 @@ selected_strategy selected_build(const scene_outlook& scene) {
                 " on they repay a better tree"};
 }
 
-/// Where the usual ones are refused beside what is named, the first that are not.
+/// What is named among what is fastest by itself; where that is refused, among what usually goes with what is named,
+/// and then among the first that is not.
 composition completed(const named_strategies& named) {
-    composition c(named);
+    const composition usual(named);
+    composition whole;
     for (const stage of : {stage::global_search, stage::local_detection}) {
-        if (refusal_of(c, of).empty()) continue;
-        for (const composition& other : every_composition(of)) {
-            composition tried = c;
+        const auto take = [&](const composition& others) {
             for (const strategy_kind kind : strategy_kinds)
-                if (info_of(kind).stage == of && !info_of(kind).apart && !named[kind]) tried[kind] = other[kind];
-            if (!refusal_of(tried, of).empty()) continue;
-            c = tried;
-            break;
-        }
+                if (info_of(kind).stage == of && (named[kind] || !info_of(kind).apart))
+                    whole[kind] = named[kind].value_or(others[kind]);
+            return refusal_of(whole, of).empty();
+        };
+        if (take(composition()) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
+        // What is named is refused whatever else there is.
+        take(usual);
     }
-    return c;
+    return whole;
 }
 
 /// @param why it is taken; what it says of itself follows
@@ -89,7 +91,7 @@ bool depends_on_scene(strategy_kind kind) {
 }
 
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
-    const composition usual(named);
+    const composition usual;
     const composition whole = completed(named);
     std::vector<selected_strategy> all;
     for (const strategy_kind kind : strategy_kinds) {
@@ -100,10 +102,9 @@ std::vector<selected_strategy> select_strategies(const named_strategies& named, 
         else if (kind == strategy_kind::build)
             all.push_back(selected_build(scene));
         else
-            all.push_back(
-                {kind, whole[kind],
-                 rule_of(whole[kind] == usual[kind] ? "the usual one" : "the first that goes with what is named", kind,
-                         whole[kind].name)});
+            all.push_back({kind, whole[kind],
+                           rule_of(whole[kind] == usual[kind] ? "the usual one" : "what goes with what is named", kind,
+                                   whole[kind].name)});
     }
     return all;
 }

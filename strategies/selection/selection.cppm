@@ -35,7 +35,7 @@ struct selected_strategy {
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
 /// A strategy for each kind, in their order: what is named stays; `prepare` and `build` are what serves the scene; the
-/// others are the usual ones, or where these cannot be composed with it, the first of the registry that can.
+/// others are what is fastest by itself, or where that cannot be composed with it, what can.
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] std::vector<selected_strategy> select_strategies(const named_strategies& named,
                                                                const scene_outlook& scene);

@@ -85,9 +85,15 @@ TEST_CASE("auto keeps what is named, whatever it is, and completes it where it c
                     }
         CHECK((refused > 0) == (of == stage::global_search));
     }
-    named_strategies incremental;
-    incremental[strategy_kind::sweep] = strategy_choice{"incremental", {}};
-    CHECK(text_of_global(composed_of(select_strategies(incremental, {}))) == "insertion + none + incremental");
+    const auto beside = [](strategy_kind kind, const char* name) {
+        named_strategies named;
+        named[kind] = strategy_choice{name, {}};
+        return text_of_global(composed_of(select_strategies(named, {})));
+    };
+    CHECK(beside(strategy_kind::sweep, "incremental") == "insertion + none + incremental");
+    // Beside what is named stands what is fastest, not what is usual in papers.
+    CHECK(beside(strategy_kind::sort, "shell") == "shell + columns + simd");
+    CHECK(beside(strategy_kind::partition, "none") == "bucket + none + simd");
 }
 
 TEST_CASE("auto keeps lists where frames follow each other, and builds well what is asked often") {
