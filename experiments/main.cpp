@@ -11,6 +11,7 @@
 
 #include "commands/command_line.hpp"
 #include "commands/commands.hpp"
+#include "commands/kept_costs.hpp"
 #include "commands/output.hpp"
 
 import aabb.base;
@@ -79,6 +80,7 @@ int main_of(int argc, char** argv) {
         add_errors(program, status);
         add_explain(program, status);
         add_recommend(program, status);
+        add_calibrate(program, status);
         add_list(program, status);
         add_pairs(program, status);
         add_collide(program, status);
@@ -95,6 +97,10 @@ int main_of(int argc, char** argv) {
             "  paper                       The report of a reproduction as a PDF\n"
             "aabblab COMMAND --help tells the options of a command.\n"
             "Exit status: 0, 1 when a check failed, 2 on bad input.");
+        // Before any command, but the one that measures them anew, or removes a file that cannot be read.
+        program.parse_complete_callback([&] {
+            if (!program.got_subcommand("calibrate")) use_kept_costs();
+        });
         run(program, argc, argv);
         return status;
     } catch (const output_closed&) {

@@ -9,6 +9,7 @@ class App;
 namespace aabblab {
 
 void add_atlas(CLI::App& program, int& status);
+void add_calibrate(CLI::App& program, int& status);
 void add_classify(CLI::App& program, int& status);
 void add_collide(CLI::App& program, int& status);
 void add_compare(CLI::App& program, int& status);

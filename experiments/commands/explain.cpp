@@ -16,6 +16,7 @@
 // Import, so they come last.
 #include "experiments.hpp"
 #include "explain_savings.hpp"
+#include "kept_costs.hpp"
 #include "scene_arguments.hpp"
 
 import aabb.pipeline;
@@ -151,15 +152,22 @@ void explain_scene(const experiment& e, const scene_choice& scene) {
     print("\n");
 }
 
+void explain_costs() {
+    print("strategies plan by " + costs_in_force() + "\n\n");
+}
+
 void explain(const std::vector<std::string>& what) {
     if (what.size() == 1 && names_config(what.front())) {
         const experiment e = open_experiment(what.front(), false);
+        explain_costs();
         for (const scene_choice& scene : e.scenes) explain_scene(e, scene);
         return;
     }
     experiment e;
     e.automatic.emplace_back();
-    explain_scene(e, scene_of_arguments(what));
+    const scene_choice scene = scene_of_arguments(what);
+    explain_costs();
+    explain_scene(e, scene);
 }
 
 }  // namespace

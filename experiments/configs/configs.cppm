@@ -13,6 +13,7 @@ module;
 /// Experiments as config files: which scenes, which compositions and engines, what to measure.
 export module aabblab.configs;
 
+import aabb.costs;
 import aabb.extreme;
 import aabb.pipeline;
 import aabb.policy;
@@ -144,6 +145,30 @@ struct error_study {
 [[nodiscard]] std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file);
 /// The same from text. `file` is for messages.
 [[nodiscard]] std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, const std::string& file);
+
+/// Costs that were measured, and on what: who computes otherwise has others.
+struct kept_costs {
+    std::string version;       ///< of the program that measured
+    std::string date;          ///< "2026-01-31T12:00:00Z"
+    std::string processor;     ///< its model
+    std::string instructions;  ///< "AVX-512"; what the program was built for
+    aabb::cost_model costs;
+
+    /// Whether they hold for a program of that version, on that processor, built for those instructions.
+    [[nodiscard]] bool serve(const kept_costs& here) const {
+        return version == here.version && processor == here.processor && instructions == here.instructions;
+    }
+};
+
+/// Those of this program on a processor, dated now, with the costs that are given.
+[[nodiscard]] kept_costs costs_of(const std::string& processor, const aabb::cost_model& costs);
+/// As a TOML file.
+[[nodiscard]] std::string text_of(const kept_costs& kept);
+/// @throws aabb::input_error with file and line on malformed TOML, an unknown key (with the nearest one), a cost that
+/// is not there or not a number above 0. Of another version, whose costs may be others, all but the costs is read.
+[[nodiscard]] kept_costs read_costs(const std::filesystem::path& file);
+/// The same from text. `file` is for messages.
+[[nodiscard]] kept_costs parse_costs(const std::string& text, const std::string& file);
 
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
 /// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.

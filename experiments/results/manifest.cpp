@@ -20,6 +20,7 @@ module;
 module aabblab.results;
 
 import aabb.base;
+import aabb.costs;
 import aabb.registry;
 import aabblab.files;
 import aabblab.machine;
@@ -62,6 +63,13 @@ json surroundings() {
     if (here().governor) all["governor"] = *here().governor;
     if (here().hypervisor) all["hypervisor"] = *here().hypervisor;
     return all;
+}
+
+/// What strategies plan by. Times of a run that planned otherwise are of other work.
+json costs() {
+    json ns = json::object();
+    for (const aabb::cost_info& cost : aabb::cost_infos) ns[std::string(cost.name)] = aabb::machine_costs().*cost.value;
+    return {{"source", aabb::machine_costs() == aabb::cost_model{} ? "shipped" : "calibrated"}, {"ns", std::move(ns)}};
 }
 
 json json_of(const contender_name& name) {
@@ -147,13 +155,11 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
-    json manifest{{"experiment", e.name},
-                  {"date", date},
-                  {"build", build()},
-                  {"machine", surroundings()},
-                  {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
-                  {"scenes", scenes},
-                  {"notes", e.notes}};
+    json manifest{
+        {"experiment", e.name}, {"date", date},
+        {"build", build()},     {"machine", surroundings()},
+        {"costs", costs()},     {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
+        {"scenes", scenes},     {"notes", e.notes}};
     if (seal) {
         json& all = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
         if (seal->differences) all["differences.csv"] = json_of(*seal->differences);
@@ -187,6 +193,8 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
     if (before["build"] != build())
         return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
                "), whose times cannot be compared";
+    if (before.value("costs", json()) != costs())
+        return where + " were made with other costs (aabblab calibrate), by which strategies plan otherwise";
     if (!before.contains("seal")) return {};
     // Nobody may continue what was altered, and seal it anew.
     try {

@@ -198,6 +198,9 @@ struct manifest_summary {
 };
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 
+/// "2026-01-31T12:00:00Z"
+[[nodiscard]] std::string date_now();
+
 /// What made results of this program, as a manifest says it: times of different builds or machines must not meet.
 [[nodiscard]] std::string build_description();
 
@@ -234,7 +237,6 @@ struct results_seal {
     std::vector<contender_name> contenders;  ///< in the order in which they were played
 };
 
-[[nodiscard]] std::string date_now();
 [[nodiscard]] std::string manifest_text(const experiment_record& e, const std::string& date,
                                         const scene_digests& digests, const std::optional<results_seal>& seal);
 

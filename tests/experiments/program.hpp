@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -42,6 +43,9 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
 }
 
 }  // namespace program_detail
+
+/// The program reads costs that its user keeps; tests have none, unless they name a folder of their own.
+inline const bool is_without_kept_costs = setenv("XDG_CONFIG_HOME", "/nonexistent", 1) == 0;
 
 inline constexpr int closed_output = -2;
 

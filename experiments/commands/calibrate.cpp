@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "kept_costs.hpp"
+#include "output.hpp"
+
+import aabb.base;
+import aabb.costs;
+import aabblab.calibrate;
+import aabblab.configs;
+import aabblab.files;
+import aabblab.machine;
+import aabblab.processor;
+import aabblab.statistics;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+struct calibrate_request {
+    std::optional<std::string> out;
+    bool quick = false;
+    bool reset = false;
+};
+
+std::filesystem::path file_of(const calibrate_request& request) {
+    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : kept_costs_file();
+    if (file.empty())
+        throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; --out FILE says where costs go");
+    return file;
+}
+
+void reset(const std::filesystem::path& file) {
+    print(std::filesystem::remove(file) ? "removed " + file.string() + ": costs are as shipped\n"
+                                        : file.string() + " is not there: costs are as shipped\n");
+}
+
+table table_of(const calibration& found) {
+    table t{{{"cost", false}, {"unit", false}, {"shipped"}, {"here"}, {"95 %"}}, {}};
+    for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
+        const aabb::cost_info& cost = aabb::cost_infos[k];
+        const auto [low, high] = found.estimates[k].range();
+        t.rows.push_back(
+            {std::string(cost.name), std::string(cost.unit), fmt::format("{:.3g}", aabb::cost_model{}.*cost.value),
+             fmt::format("{:.3g}", found.costs.*cost.value), fmt::format("{:.3g}-{:.3g}", std::max(0.0, low), high)});
+    }
+    return t;
+}
+
+table checks_of(const calibration& found) {
+    table t{{{"predicted in other scenes", false}, {"times"}, {"median off by"}, {"worst"}}, {}};
+    for (const group_check& one : found.checks)
+        t.rows.push_back({std::string(one.group), std::to_string(one.found.observations),
+                          fmt::format("{:.2f}", one.found.median), fmt::format("{:.2f}", one.found.worst)});
+    return t;
+}
+
+void calibrate(const calibrate_request& request) {
+    const std::filesystem::path file = file_of(request);
+    if (request.reset) return reset(file);
+    // Opened before anything is measured, so that a file that cannot be written costs no time.
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+    output_file out(file);
+    const idlest_processor here;
+    const calibration found =
+        request.quick ? calibrate(calibration_size::quick, 12) : calibrate(calibration_size::full, 95);
+    const kept_costs kept = costs_of(this_machine().processor, found.costs);
+    out.write(text_of(kept));
+    out.commit();
+    print(kept.processor + ", " + kept.instructions + "; times as processor time\n\n");
+    print(to_text(table_of(found), output_width()) + "\n");
+    print(to_text(checks_of(found), output_width()) + "\n");
+    print("wrote " + file.string() +
+          (request.out ? "\n" : ", which is used from now on;\naabblab calibrate --reset removes it\n"));
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, int&) {
+    auto* command = program.add_subcommand(
+        "calibrate", "Measure what elementary work takes on this machine, and keep it: what strategies plan by");
+    auto request = std::make_shared<calibrate_request>();
+    auto* quick = command->add_flag("--quick", request->quick, "In 20 seconds in place of two minutes");
+    auto* out = command->add_option("--out", request->out, "Write it there, not where it is used")->type_name("FILE");
+    command->add_flag("--reset", request->reset, "Remove what was kept: costs are as shipped again")
+        ->excludes(quick)
+        ->excludes(out);
+    command->callback([request] { calibrate(*request); });
+}
+
+}  // namespace aabblab

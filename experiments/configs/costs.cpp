@@ -1,0 +1,107 @@
+module;
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.configs;
+
+import :document;
+import aabb.base;
+import aabb.costs;
+import aabb.simd;
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+constexpr std::size_t longest_file = 65'536;
+
+std::string_view instructions() {
+    constexpr std::size_t of_avx512 = 16;
+    constexpr std::size_t of_avx2 = 8;
+    return aabb::simd::width == of_avx512 ? "AVX-512" : aabb::simd::width == of_avx2 ? "AVX2" : "128 bits";
+}
+
+/// As TOML quotes it.
+std::string toml_string(std::string_view text) {
+    std::string all = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') all += '\\';
+        all += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+    return all + "\"";
+}
+
+std::string head_of(const document& doc, const std::string& key) {
+    const node* value = doc.root().find(key);
+    if (!value) doc.fail(1, "there is no " + key + "; aabblab calibrate writes it");
+    return doc.text_of(key, *value);
+}
+
+double cost_of(const document& doc, const node& table, const aabb::cost_info& cost) {
+    const std::string key(cost.name);
+    const node* value = table.find(key);
+    if (!value) doc.fail(table.line, "[costs] has no " + key + "; aabblab calibrate writes all");
+    double number = 0;
+    if (value->kind == node_kind::integer || value->kind == node_kind::real)
+        std::from_chars(value->text.data(), value->text.data() + value->text.size(), number);
+    if (!(number > 0) || !std::isfinite(number))
+        doc.fail(value->line, key + " must be a number above 0" + (value->is_scalar() ? ", not " + value->text : ""));
+    return number;
+}
+
+aabb::cost_model costs_in(const document& doc) {
+    const node* table = doc.root().find("costs");
+    if (!table) doc.fail(1, "there is no [costs]; aabblab calibrate writes it");
+    doc.require_table("costs", *table);
+    std::vector<std::string> names;
+    for (const aabb::cost_info& cost : aabb::cost_infos) names.emplace_back(cost.name);
+    doc.require_keys(*table, " of [costs]", names);
+    aabb::cost_model costs;
+    for (const aabb::cost_info& cost : aabb::cost_infos) costs.*cost.value = cost_of(doc, *table, cost);
+    return costs;
+}
+
+}  // namespace
+
+kept_costs costs_of(const std::string& processor, const aabb::cost_model& costs) {
+    return {AABBLAB_VERSION, date_now(), processor, std::string(instructions()), costs};
+}
+
+std::string text_of(const kept_costs& kept) {
+    std::string text =
+        "# What elementary work takes, in nanoseconds, as `aabblab calibrate` measured it. Another version of the\n"
+        "# program, processor or instruction set makes no use of it; `aabblab calibrate --reset` removes it.\n";
+    text += "version = " + toml_string(kept.version) + "\ndate = " + toml_string(kept.date) +
+            "\nprocessor = " + toml_string(kept.processor) + "\ninstructions = " + toml_string(kept.instructions) +
+            "\n\n[costs]\n";
+    constexpr std::size_t column = 34;
+    for (const aabb::cost_info& cost : aabb::cost_infos) {
+        std::string line = std::string(cost.name) + " = " + aabb::shortest(kept.costs.*cost.value);
+        line.append(column > line.size() ? column - line.size() : 1, ' ');
+        text += line + " # " + std::string(cost.unit) + ": " + std::string(cost.of) + "\n";
+    }
+    return text;
+}
+
+kept_costs parse_costs(const std::string& text, const std::string& file) {
+    const document doc(text, file, longest_file, "a file of costs");
+    kept_costs kept{head_of(doc, "version"), "", head_of(doc, "processor"), head_of(doc, "instructions"), {}};
+    if (kept.version != AABBLAB_VERSION) return kept;
+    doc.require_keys(doc.root(), "", {"version", "date", "processor", "instructions", "costs"});
+    kept.date = head_of(doc, "date");
+    kept.costs = costs_in(doc);
+    return kept;
+}
+
+kept_costs read_costs(const std::filesystem::path& file) {
+    return parse_costs(text_of_file(file, longest_file, "a file of costs"), file.string());
+}
+
+}  // namespace aabblab
