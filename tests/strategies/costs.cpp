@@ -148,6 +148,23 @@ TEST_CASE("an axial cut makes fewer subsets where they cost more, none where tes
     CHECK(subsets_made(cut, boxes) <= 1);
 }
 
+TEST_CASE("an axial cut that chooses is never refused, however dear tests are") {
+    std::vector<box> small = spread_boxes(3000);
+    for (box& b : small) b.max = {b.min[0] + 0.001F, b.min[1] + 0.001F, b.min[2] + 0.001F};
+    cost_model costs;
+    costs.cut_test = 1e9;
+    costs.cut_entry = costs.cut_subset = 1e-9;
+    const these_costs dear(costs);
+    for (const char* cut : {"axial_cut", "axial_cut:axes=3", "axial_cut:axes=3,limit=off"}) {
+        const std::uint64_t subsets = subsets_made(
+            composed(
+                {{strategy_kind::sort, "std"}, {strategy_kind::partition, cut}, {strategy_kind::sweep, "one_axis"}}),
+            small);
+        CHECK(subsets > 1);
+        CHECK(subsets <= small.size());
+    }
+}
+
 TEST_CASE("columns are fewer where they cost more, and more where tests do") {
     const std::vector<box> boxes = spread_boxes(3000);
     const std::uint64_t usual = subsets_made({}, boxes);
