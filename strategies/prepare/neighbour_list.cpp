@@ -19,6 +19,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
+import aabb.prepare.glimpse;
 import aabb.prepare.grown_boxes;
 import aabb.prepare.list_plan;
 import aabb.prepare.mean_extent;
@@ -65,6 +66,7 @@ private:
     [[nodiscard]] bool serves(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> watched(std::span<const box> boxes, bool same_objects);
+    void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
     [[nodiscard]] std::span<const box> sample(std::span<const box> boxes, std::span<box> of);
     [[nodiscard]] double pairs_in_reach(std::span<const box> boxes, double margin);
@@ -73,6 +75,8 @@ private:
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many.
     static constexpr std::uint32_t longest_watch = 8;
     static constexpr unsigned pause = 6;
+    /// Then a few boxes are looked at, in two of so many frames, until they say that a list may pay.
+    static constexpr unsigned pause_between_glimpses = 4;
     /// A list that costs so many times what a search does is not waited for.
     static constexpr double hopeless = 3;
     /// Of fewer boxes any list is short.
@@ -106,6 +110,7 @@ private:
     double cost_ = 0;       // of the cheapest list that was thought of last, over that of a search
     bool watches_ = false;  // how far boxes are from those that are kept, without a list
     unsigned left_ = 0;     // frames that are searched as they are before one is kept again
+    glimpse glimpse_;
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
@@ -120,7 +125,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     if (leaves_any && is_kept_)
         std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
     if (left_ > 0) {
-        --left_;
+        pass_over(boxes);
         search_->update(boxes);
     } else if (!is_kept_ || comes_any || !rests(boxes)) {
         const bool same_objects = !comes_any && boxes.size() == kept_.size();
@@ -255,6 +260,16 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
     return margin;
 }
 
+/// A frame that is searched as it is. Where even the few boxes that are looked at move too far for any list, all do.
+void neighbour_list_stage::pass_over(std::span<const box> boxes) {
+    --left_;
+    if (left_ == 1) glimpse_.keep(boxes, drawn_);
+    if (left_ > 0) return;
+    const double moved = glimpse_.least_motion(boxes, objects_);
+    const list_outlook seen{std::span(&moved, 1), objects_.size(), found_, growth_, correction_};
+    if (plan_list(seen).frames == 1) left_ = pause_between_glimpses;
+}
+
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
     if (age_ <= 1) {
         std::array<box, 16> some;
@@ -275,13 +290,11 @@ std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> b
     }
 }
 
-/// Boxes by chance: what stands at regular places may be of one kind. Fewer where some objects are absent.
+/// Boxes by chance, fewer where some objects are absent.
 std::span<const box> neighbour_list_stage::sample(std::span<const box> boxes, std::span<box> of) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < of.size() && i < boxes.size(); ++i) {
-        // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4).
-        const std::uint32_t hash = ++drawn_ * 0x9e3779b1U;
-        const auto id = static_cast<std::uint32_t>(std::uint64_t{hash} * boxes.size() >> 32U);
+        const std::uint32_t id = drawn_id(drawn_, boxes.size());
         if (objects_.contains(id)) of[count++] = boxes[id];
     }
     return of.first(count);

@@ -84,6 +84,29 @@ struct relative_motion {
     bool any;       ///< whether anything moved, though it were all alike
 };
 
+}  // namespace aabb
+
+namespace aabb::detail {
+
+[[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
+    double margin = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double most = motion.most[k];
+        const double least = motion.least[k];
+        margin = std::max(margin, (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2);
+    }
+    return {margin, motion.any};
+}
+
+}  // namespace aabb::detail
+
+export namespace aabb {
+
+/// As the other, of boxes that are all present.
+[[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to) noexcept {
+    return detail::motion_of(detail::motion_of_all(from, to));
+}
+
 /// By how much the boxes of the objects that are present moved beyond what all moved alike: the least margin by which
 /// the earlier ones, grown on every side and shifted together, hold the later ones. What moves as one, as in free fall,
 /// does not move. Never less than the exact margin: each difference is off by half a unit in its last place at most.
@@ -93,19 +116,11 @@ struct relative_motion {
 /// @param from, to boxes by id, as many of one as of the other
 [[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to,
                                                     const membership& objects) noexcept {
+    if (objects.size() == to.size()) return motion_between(from, to);
     detail::plane_motion motion;
-    if (objects.size() == to.size())
-        motion = detail::motion_of_all(from, to);
-    else
-        for (std::uint32_t id = 0; id < to.size(); ++id)
-            if (objects.contains(id)) motion.take(from[id], to[id]);
-    double margin = 0;
-    for (int k = 0; k < 3; ++k) {
-        const double most = motion.most[k];
-        const double least = motion.least[k];
-        margin = std::max(margin, (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2);
-    }
-    return {margin, motion.any};
+    for (std::uint32_t id = 0; id < to.size(); ++id)
+        if (objects.contains(id)) motion.take(from[id], to[id]);
+    return detail::motion_of(motion);
 }
 
 }  // namespace aabb

@@ -1,0 +1,54 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+export module aabb.prepare.glimpse;
+
+import aabb.geometry;
+import aabb.global_search;
+import aabb.prepare.relative_motion;
+
+export namespace aabb {
+
+/// An id below `count`, by chance: what stands at regular places may be of one kind.
+/// @param drawn how many were drawn before
+[[nodiscard]] inline std::uint32_t drawn_id(std::uint32_t& drawn, std::size_t count) noexcept {
+    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4).
+    const std::uint32_t hash = ++drawn * 0x9e3779b1U;
+    return static_cast<std::uint32_t>(std::uint64_t{hash} * count >> 32U);
+}
+
+/// A few boxes, which say in two frames that all have moved at least so far.
+class glimpse {
+public:
+    /// @param drawn as `drawn_id` has it
+    void keep(std::span<const box> boxes, std::uint32_t& drawn) {
+        for (std::size_t i = 0; i < ids_.size() && !boxes.empty(); ++i) {
+            ids_[i] = drawn_id(drawn, boxes.size());
+            kept_[i] = boxes[ids_[i]];
+        }
+    }
+
+    /// Not more than `motion_between` the kept frame and this one, over all boxes; 0 where none is left.
+    [[nodiscard]] double least_motion(std::span<const box> boxes, const membership& objects) const {
+        std::array<box, few> from{};
+        std::array<box, few> to{};
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < few; ++i) {
+            if (ids_[i] >= boxes.size() || !objects.contains(ids_[i])) continue;
+            from[count] = kept_[i];
+            to[count++] = boxes[ids_[i]];
+        }
+        return count > 0 ? motion_between(std::span(from).first(count), std::span(to).first(count)).margin : 0;
+    }
+
+private:
+    static constexpr std::size_t few = 8;
+
+    std::array<std::uint32_t, few> ids_{};
+    std::array<box, few> kept_{};
+};
+
+}  // namespace aabb
