@@ -70,6 +70,15 @@ double atlas_scene::number(std::string_view parameter) const {
     return info != kind->parameters.end() ? number_in(info->fallback) : std::numeric_limits<double>::quiet_NaN();
 }
 
+std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {
+    for (atlas_scene& scene : atlas)
+        std::erase_if(scene.lines, [](const atlas_line& line) {
+            return line.automatic || line.label.find("columns") != std::string::npos;
+        });
+    std::erase_if(atlas, [](const atlas_scene& scene) { return scene.lines.empty(); });
+    return atlas;
+}
+
 estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time of) {
     cells ratios(1, 1);
     const std::vector<double>& above = arm.times(of);

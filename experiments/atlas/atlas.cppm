@@ -10,6 +10,7 @@ module;
 /// one of them everywhere, where the borders lie, and what it says of statements of others.
 export module aabblab.atlas;
 
+import aabblab.calibrate;
 import aabblab.figures;
 import aabblab.measures;
 import aabblab.results;
@@ -50,6 +51,10 @@ struct atlas_scene {
     /// A parameter of the scene as a number, its default where it is not set; NaN where it has none of that name.
     [[nodiscard]] double number(std::string_view parameter) const;
 };
+
+/// The same scenes without `columns`, which wins nearly everywhere, and without `auto`, which takes it: what is left to
+/// whoever has neither.
+[[nodiscard]] std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas);
 
 /// Of the ratio of two lines' times, over the repeats that both have.
 [[nodiscard]] estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time of);
@@ -102,6 +107,21 @@ struct judged_statement {
 [[nodiscard]] table ratios_table(const std::vector<judged_statement>& all);
 /// Labels that statements speak of.
 [[nodiscard]] std::vector<std::string> labels_in_statements();
+
+/// What a line's frame takes, as a sum of costs of what a scene's measures count, fitted to the scenes of the map; and
+/// how many times too long or too short that is, there and in the scenes that it was not fitted to.
+struct line_model {
+    std::string label;
+    std::vector<estimate> costs;  ///< ns, of each term
+    accuracy seen;
+    accuracy unseen;
+};
+[[nodiscard]] std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas);
+[[nodiscard]] table models_table(const std::vector<line_model>& models);
+[[nodiscard]] table costs_table(const std::vector<line_model>& models);
+/// Of who is predicted to be the fastest, in each scene that the models were not fitted to.
+[[nodiscard]] std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
+                                                    const std::vector<line_model>& models);
 
 [[nodiscard]] std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas);
 

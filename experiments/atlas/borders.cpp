@@ -76,6 +76,13 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
                   {std::exp(first + range.low * way), std::exp(first + range.high * way)}};
 }
 
+/// The logarithm of where a border lies, and its error.
+estimate log_place_of(const border& one) {
+    constexpr double errors_in_interval = 2 * 1.96;
+    constexpr double many_degrees = 1000;
+    return {std::log(one.at), std::log(one.range.high / one.range.low) / errors_in_interval, many_degrees};
+}
+
 }  // namespace
 
 std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
@@ -112,18 +119,21 @@ table borders_summary(const std::vector<border>& all) {
              {"fastest before", false},
              {"fastest after", false},
              {"borders"},
-             {"median at"},
+             {"at"},
+             {"95 %"},
              {"from"},
              {"to"}},
             {}};
     for (const std::vector<const border*>& group : groups) {
-        std::vector<double> places;
-        for (const border* one : group) places.push_back(one->at);
-        const auto [low, high] = std::ranges::minmax(places);
+        std::vector<estimate> places;
+        for (const border* one : group) places.push_back(log_place_of(*one));
+        const auto [low, high] = std::ranges::minmax(group, {}, &border::at);
+        const estimate mean = mean_of(places);
         const border& any = *group.front();
         t.rows.push_back({any.parameter, any.before, any.after, grouped(group.size()),
-                          fmt::format("{:.3g}", quartiles_of(places).median), fmt::format("{:.3g}", low),
-                          fmt::format("{:.3g}", high)});
+                          fmt::format("{:.3g}", std::exp(mean.value)),
+                          fmt::format("{:.3g}-{:.3g}", std::exp(mean.range().low), std::exp(mean.range().high)),
+                          fmt::format("{:.3g}", low->at), fmt::format("{:.3g}", high->at)});
     }
     return t;
 }

@@ -53,15 +53,18 @@ void add_point(std::vector<series>& to, const std::string& winner, double x, dou
     one.points.push_back({x, y, y, y});
 }
 
-figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds) {
-    figure f{.name = fmt::format("map_{:g}", clouds),
-             .caption = fmt::format("The fastest in a frame after the first, in {}: each point is a scene, of so many "
-                                    "objects that move by so much a frame.",
-                                    clouds > 1 ? fmt::format("{:g} clouds apart", clouds) : "one cloud"),
-             .x = {"objects", true, {}},
-             .y = {"displacement a frame (mean extents)", true, {}},
-             .lines = {},
-             .marks = {}};
+/// @param among "", or those among whom the fastest is looked for
+figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds,
+              const std::string& among) {
+    figure f{
+        .name = fmt::format("map_{}{:g}", among.empty() ? "" : "classic_", clouds),
+        .caption = fmt::format("The fastest{} in a frame after the first, in {}: each point is a scene, of so many "
+                               "objects that move by so much a frame.",
+                               among, clouds > 1 ? fmt::format("{:g} clouds apart", clouds) : "one cloud"),
+        .x = {"objects", true, {}},
+        .y = {"displacement a frame (mean extents)", true, {}},
+        .lines = {},
+        .marks = {}};
     std::map<panel_key, figure_panel> panels;
     for (const atlas_scene& scene : atlas) {
         if (scene.scene.kind != kind_of_map || scene.number("clouds") != clouds || scene.number("moving") != 1)
@@ -80,11 +83,12 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
 }
 
 /// All scenes that move, by what every one of them has.
-figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners) {
-    figure f{.name = "map_inversions",
-             .caption =
-                 "The fastest in a frame after the first, of all scenes in which anything moves: objects, and "
-                 "inversions an object and frame on the axis on which boxes overlap least.",
+figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners,
+                      const std::string& among) {
+    figure f{.name = among.empty() ? "map_inversions" : "map_classic_inversions",
+             .caption = "The fastest" + among +
+                        " in a frame after the first, of all scenes in which anything moves: objects, and "
+                        "inversions an object and frame on the axis on which boxes overlap least.",
              .x = {"objects", true, {}},
              .y = {"inversions an object and frame", true, {}},
              .lines = empty_series(winners),
@@ -128,16 +132,25 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
 
 }  // namespace
 
-std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
+namespace {
+
+void add_maps(std::vector<figure>& all, const std::vector<atlas_scene>& atlas, const std::string& among) {
     const std::vector<std::string> winners = most_frequent_winners(atlas);
     std::vector<double> clouds;
     for (const atlas_scene& scene : atlas)
         if (const double n = scene.number("clouds");
             scene.scene.kind == kind_of_map && std::ranges::find(clouds, n) == clouds.end())
             clouds.push_back(n);
+    for (const double n : clouds) all.push_back(map_of(atlas, winners, n, among));
+    all.push_back(inversions_map(atlas, winners, among));
+}
+
+}  // namespace
+
+std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
     std::vector<figure> all;
-    for (const double n : clouds) all.push_back(map_of(atlas, winners, n));
-    all.push_back(inversions_map(atlas, winners));
+    add_maps(all, atlas, "");
+    if (const auto others = without_columns(atlas); !others.empty()) add_maps(all, others, " of those without columns");
     all.push_back(regret_figure(atlas));
     return all;
 }

@@ -13,6 +13,7 @@ module aabblab.atlas;
 import aabblab.figures;
 import aabblab.files;
 import aabblab.numbers;
+import aabblab.statistics;
 import aabblab.tables;
 
 namespace aabblab {
@@ -33,14 +34,32 @@ std::vector<atlas_scene> of_map(const std::vector<atlas_scene>& atlas, bool unse
     return some;
 }
 
+std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
+    std::string text =
+        "A frame's time as a sum of costs, of boxes, of pairs, of inversions and more as the scene's measures have "
+        "them, fitted to the map: how many times too long or too short it is, the median and the worst. Each cost has "
+        "its interval in costs.csv.";
+    std::vector<double> regrets = regrets_of_models(atlas, models);
+    if (regrets.empty()) return text;
+    return text + fmt::format(
+                      " Whoever it predicts to be the fastest, in the scenes that it was not fitted to, takes "
+                      "{:.2f} times as long as who is, a median; {:.2f} at worst.",
+                      quartiles_of(regrets).median, *std::ranges::max_element(regrets));
+}
+
 std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
     const std::vector<border> borders = borders_of(atlas);
+    const std::vector<atlas_scene> classic = without_columns(atlas);
+    const std::vector<border> classic_borders = borders_of(classic);
+    const std::vector<line_model> models = models_of(atlas);
     const std::vector<judged_statement> judged = judged_statements(atlas);
     std::vector<section> all{
         {"Who wins",
          "Of a frame after the first. Shown: the interval of the ratio of the next fastest lies above 1. As fast: not "
          "shown to be slower than the fastest.",
          "winners", winners_table(atlas)},
+        {"Who wins without columns", "The same among those that have neither columns nor auto.", "winners_classic",
+         winners_table(classic)},
         {"What it costs to use one everywhere",
          "The time of a frame over that of the fastest of each scene; who was not repeated has one repeat.", "regrets",
          regrets_table(atlas, span_of_time::frame)},
@@ -52,10 +71,15 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
                        regrets_table(unseen, span_of_time::frame)});
     all.push_back({"Borders",
                    "Along one parameter, all others equal: where the fastest of one scene and that of the next take "
-                   "the same time, on a line between the logarithms of their ratios. Each has its interval in "
-                   "borders.csv.",
+                   "the same time, on a line between the logarithms of their ratios; the geometric mean, with an "
+                   "interval that widens where scenes disagree, the least and the greatest. Each border has its "
+                   "interval in borders.csv.",
                    "borders_summary", borders_summary(borders)});
+    all.push_back({"Borders without columns", "", "borders_classic_summary", borders_summary(classic_borders)});
     all.push_back({"", "", "borders", borders_table(borders), false});
+    all.push_back({"", "", "borders_classic", borders_table(classic_borders), false});
+    all.push_back({"Predicted times", models_text(atlas, models), "models", models_table(models)});
+    all.push_back({"", "", "costs", costs_table(models), false});
     all.push_back({"", "", "cells", cells_table(atlas), false});
     all.push_back({"Statements of others",
                    "Judged as the paper's claims are: each ratio is a geometric mean over scenes, its interval widens "

@@ -98,7 +98,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
                                        m.motion ? text(m.motion->inversions) : "",
                                        m.motion ? text(m.motion->at_rest) : "",
                                        text(m.clustering),
-                                       text(m.boxes.size_ratio),
+                                       m.boxes.size_ratio ? text(*m.boxes.size_ratio) : "",
                                        best.label,
                                        text(best.ms(frame)),
                                        second ? second->label : ""};

@@ -76,11 +76,38 @@ TEST_CASE("A border lies where two take the same time, between two scenes that d
     CHECK(borders[0].range.low < 0.1);
     CHECK(borders[0].range.high > 0.1);
     CHECK(borders[0].range.high < 0.2);
+    const aabblab::table summary = borders_summary(borders);
+    REQUIRE(summary.rows.size() == 1);
+    CHECK(summary.rows[0][3] == "1");
+    CHECK(summary.rows[0][4] == "0.1");
     atlas[1].scene.settings[0].value = "5000";
     CHECK(borders_of(atlas).empty());
     atlas[1].scene.settings[0].value = "1000";
     atlas[1].unseen = true;
     CHECK(borders_of(atlas).empty());
+}
+
+TEST_CASE("A model of a line's times is fitted to the map, and judged by the scenes beside it") {
+    std::vector<atlas_scene> atlas;
+    for (std::size_t objects = 100; objects <= 25600; objects *= 2)
+        for (const bool unseen : {false, true})
+            for (const double pairs_an_object : {0.1, 2.0}) {
+                // 10 ns a box and 5 a pair; beside the map, half as much again.
+                const double n = static_cast<double>(objects);
+                const double ms = (10 * n + 5 * n * pairs_an_object) * 1e-6;
+                atlas.push_back(
+                    cloud("0.1", {line("linear", unseen ? 1.5 * ms : ms), line("slow", 1e-6 * n * n)}, unseen));
+                atlas.back().scene.settings[0].value = std::to_string(objects);
+                atlas.back().measures.objects = objects;
+                atlas.back().measures.pairs_an_object = pairs_an_object;
+                atlas.back().lines[0].frame_ms = {atlas.back().lines[0].frame_ms[0]};
+            }
+    const std::vector<aabblab::line_model> models = models_of(atlas);
+    REQUIRE(models.size() == 2);
+    CHECK(models[0].label == "linear");
+    CHECK(models[0].seen.median < 1.01);
+    CHECK(std::abs(models[0].unseen.median - 1.5) < 0.02);
+    for (const double regret : regrets_of_models(atlas, models)) CHECK(regret < 1.2);
 }
 
 TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided without them") {

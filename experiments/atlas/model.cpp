@@ -1,0 +1,142 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.atlas;
+
+import :map;
+import aabblab.calibrate;
+import aabblab.measures;
+import aabblab.numbers;
+import aabblab.scenes;
+import aabblab.statistics;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+constexpr span_of_time frame = span_of_time::frame;
+
+/// What a frame's time is made of, as far as a scene's measures tell it: so many of each.
+struct term {
+    std::string_view name;
+    double (*of)(const scene_measures& m);
+};
+
+double objects(const scene_measures& m) {
+    return static_cast<double>(m.objects);
+}
+double pairs(const scene_measures& m) {
+    return objects(m) * m.pairs_an_object;
+}
+/// How far boxes move beside each other, in mean extents; beyond one they are new.
+double renewed(const scene_measures& m) {
+    return m.motion && m.boxes.mean_extent > 0 ? std::min(1.0, m.motion->relative / m.boxes.mean_extent) : 0;
+}
+double inversions(const scene_measures& m) {
+    return m.motion ? objects(m) * m.motion->inversions : 0;
+}
+
+constexpr std::array<term, 9> terms{{
+    {"frame", [](const scene_measures&) { return 1.0; }},
+    {"object", objects},
+    {"object log2", [](const scene_measures& m) { return objects(m) * std::log2(std::max(objects(m), 1.0)); }},
+    {"pair", pairs},
+    {"inversion", inversions},
+    {"swept pair", [](const scene_measures& m) { return objects(m) * std::ranges::min(m.boxes.overlaps) / 2; }},
+    {"object moved", [](const scene_measures& m) { return m.motion ? objects(m) * (1 - m.motion->at_rest) : 0; }},
+    {"object renewed", [](const scene_measures& m) { return objects(m) * renewed(m); }},
+    {"pair renewed", [](const scene_measures& m) { return pairs(m) * renewed(m); }},
+}};
+
+std::vector<double> work_of(const scene_measures& m) {
+    std::vector<double> work;
+    for (const term& t : terms) work.push_back(t.of(m));
+    return work;
+}
+
+std::vector<observation> seen_by(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
+    std::vector<observation> all;
+    for (const atlas_scene& scene : atlas) {
+        const atlas_line* line = scene.find(label);
+        if (!line || scene.unseen != unseen) continue;
+        // As many repeats in each: the median stands for all.
+        all.push_back(
+            {scene.scene.kind + " " + settings_text(scene.scene), work_of(scene.measures), {1e6 * line->ms(frame)}});
+    }
+    return all;
+}
+
+double predicted(const std::vector<estimate>& costs, const scene_measures& m) {
+    double ns = 0;
+    const std::vector<double> work = work_of(m);
+    for (std::size_t i = 0; i < work.size(); ++i) ns += costs[i].value * work[i];
+    return ns;
+}
+
+}  // namespace
+
+std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
+    std::vector<line_model> all;
+    for (const std::string& label : labels_of(atlas)) {
+        const std::vector<observation> seen = seen_by(atlas, label, false);
+        if (seen.size() <= terms.size()) continue;
+        line_model m{label, fit_costs(seen), {}, {}};
+        m.seen = accuracy_of(seen, m.costs);
+        if (const std::vector<observation> unseen = seen_by(atlas, label, true); !unseen.empty())
+            m.unseen = accuracy_of(unseen, m.costs);
+        all.push_back(std::move(m));
+    }
+    return all;
+}
+
+table models_table(const std::vector<line_model>& models) {
+    table t{{{"who", false}, {"scenes"}, {"off by"}, {"worst"}, {"unseen"}, {"off by"}, {"worst"}}, {}};
+    for (const line_model& m : models)
+        t.rows.push_back({m.label, grouped(m.seen.observations), fmt::format("{:.2f}", m.seen.median),
+                          fmt::format("{:.1f}", m.seen.worst), grouped(m.unseen.observations),
+                          fmt::format("{:.2f}", m.unseen.median), fmt::format("{:.1f}", m.unseen.worst)});
+    return t;
+}
+
+table costs_table(const std::vector<line_model>& models) {
+    table t{{{"who", false}}, {}};
+    for (const term& one : terms)
+        for (const char* part : {"", " low", " high"}) t.columns.push_back({std::string(one.name) + part});
+    for (const line_model& m : models) {
+        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{m.label});
+        for (const estimate& cost : m.costs)
+            for (const double ns : {cost.value, std::max(0.0, cost.range().low), cost.range().high})
+                cells.push_back(fmt::format("{:.4g}", ns));
+    }
+    return t;
+}
+
+std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
+    std::vector<double> regrets;
+    for (const atlas_scene& scene : atlas) {
+        if (!scene.unseen) continue;
+        const atlas_line* taken = nullptr;
+        double least = std::numeric_limits<double>::infinity();
+        for (const line_model& m : models) {
+            const atlas_line* line = scene.find(m.label);
+            const double ns = predicted(m.costs, scene.measures);
+            if (!line || line->automatic || ns >= least) continue;
+            taken = line;
+            least = ns;
+        }
+        if (taken) regrets.push_back(taken->ms(frame) / scene.fastest(frame).ms(frame));
+    }
+    return regrets;
+}
+
+}  // namespace aabblab
