@@ -62,7 +62,7 @@ std::vector<std::string> ratio_cells(std::span<const race_time> times, std::span
     if (times.size() < selected.size()) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
     const auto ms = [](const race_time& t) { return t.frame_ms(); };
     const paired_ratio ratio = paired_ratio_of(values_of(times, ms), values_of(selected, ms));
-    return {ratio.may_be_same() ? "same" : fmt::format("{:.2f}", ratio.median),
+    return {fmt::format("{:.2f}{}", ratio.median, ratio.may_be_same() ? "?" : ""),
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
@@ -118,7 +118,8 @@ void print_savings(const scene_choice& choice, const aabb::composition& selected
     print_line(ms_a_frame_text);
     print_line(fmt::format(
         "ratio: ms/frame over that of what is selected in the same round, the median; range: the least and the "
-        "greatest; same: the range comes within 3 % of 1; > {:.0f}: seen after one round.",
+        "greatest; ?: the range comes within 3 % of 1, so that the rounds leave it open; > {:.0f}: seen after one "
+        "round.",
         hopeless_ratio));
     print_line(build_ms_text);
     flush_output();
