@@ -167,15 +167,14 @@ statement rebuilt() {
 statement alike() {
     statement s{"B10",
                 "The manual of dyn4j",
-                "A sweep along one axis and a dynamic tree take about the same time (within twice).",
+                "A sweep along one axis and a dynamic tree take about the same time: the slower of them, which is the "
+                "tree, at most twice.",
                 {}};
     for (const double objects : {100.0, 1000.0, 10000.0})
-        for (const bool turned : {false, true})
-            s.ratios.push_back({objects < 500    ? "100 boxes"
-                                : objects < 5000 ? "1,000 boxes"
-                                                 : "10,000 boxes",
-                                turned ? dynamic_tree : one_axis, turned ? one_axis : dynamic_tree,
-                                map_with({{"objects", objects}}), expectation::not_more, 1.0});
+        s.ratios.push_back({objects < 500    ? "100 boxes"
+                            : objects < 5000 ? "1,000 boxes"
+                                             : "10,000 boxes",
+                            dynamic_tree, one_axis, map_with({{"objects", objects}}), expectation::not_more, 1.0});
     return s;
 }
 

@@ -54,6 +54,7 @@ const std::vector<std::string> rooms = {
     "experiments/measures",
     "experiments/race",
     "experiments/calibrate",
+    "experiments/atlas",
     "experiments/errors",
     "experiments/stiff",
     "experiments/extreme",
