@@ -166,6 +166,8 @@ void explain(const std::vector<std::string>& what) {
     experiment e;
     e.automatic.emplace_back();
     const scene_choice scene = scene_of_arguments(what);
+    // What cannot be made is said before anything else.
+    (void)scene_play(scene);
     explain_costs();
     explain_scene(e, scene);
 }

@@ -266,7 +266,7 @@ TEST_CASE("a list that would hold each box with every other is not kept") {
                 boxes[i] = {{x, 0, 0}, {x + 1, 1, 1}};
             } else {
                 const vec3f low{0.02F * static_cast<float>(i % 16), 0.02F * static_cast<float>(i / 16 % 16),
-                                0.02F * static_cast<float>(i / 256)};
+                                0.02F * static_cast<float>(i / 256 % 16)};
                 boxes[i] = {low, {low[0] + 1e-4F, low[1] + 1e-4F, low[2] + 1e-4F}};
             }
         }
