@@ -11,7 +11,7 @@ module;
 
 module aabblab.atlas;
 
-import :map;
+import :labels;
 import aabblab.figures;
 import aabblab.statistics;
 
@@ -113,12 +113,8 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
              .lines = {},
              .marks = {}};
     for (const std::string& label : labels_of(atlas)) {
-        std::vector<double> regrets;
-        for (const atlas_scene& scene : atlas)
-            if (const atlas_line* line = scene.find(label))
-                regrets.push_back(std::max(1.0, line->ms(frame) / scene.fastest(frame).ms(frame)));
+        const std::vector<double> regrets = regrets_of(atlas, label, frame);
         if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;
-        std::ranges::sort(regrets);
         series one{label, series_style::line, {}};
         for (std::size_t i = 0; i < regrets.size(); ++i)
             one.points.push_back({(static_cast<double>(i) + 0.5) / static_cast<double>(regrets.size()), regrets[i],

@@ -12,7 +12,7 @@ module;
 
 module aabblab.atlas;
 
-import :map;
+import :labels;
 import aabblab.calibrate;
 import aabblab.measures;
 import aabblab.numbers;

@@ -8,7 +8,7 @@ module;
 
 module aabblab.atlas;
 
-import :map;
+import :labels;
 import aabblab.numbers;
 import aabblab.statistics;
 import aabblab.tables;
@@ -24,11 +24,7 @@ table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of) {
     };
     std::vector<standing> all;
     for (const std::string& label : labels_of(atlas)) {
-        standing one{label, {}, 0, {}};
-        for (const atlas_scene& scene : atlas)
-            if (const atlas_line* line = scene.find(label))
-                one.regrets.push_back(std::max(1.0, line->ms(of) / scene.fastest(of).ms(of)));
-        std::ranges::sort(one.regrets);
+        standing one{label, regrets_of(atlas, label, of), 0, {}};
         one.beyond = static_cast<std::size_t>(std::ranges::count_if(one.regrets, [](double r) { return r > 1.3; }));
         one.of = quartiles_of(one.regrets);
         all.push_back(std::move(one));

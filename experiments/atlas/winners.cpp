@@ -9,7 +9,7 @@ module;
 
 module aabblab.atlas;
 
-import :map;
+import :labels;
 import aabblab.numbers;
 import aabblab.scenes;
 import aabblab.statistics;
