@@ -12,6 +12,9 @@
 #include "../compositions.hpp"
 #include "../validation/support.hpp"
 
+import aabb.prepare.glimpse;
+import aabb.prepare.relative_motion;
+
 using namespace aabb;
 using Catch::Matchers::Message;
 
@@ -276,4 +279,48 @@ TEST_CASE("a list that would hold each box with every other is not kept") {
             CHECK(part.bytes < 1000 * n);
         }
     }
+}
+
+TEST_CASE("where no list pays, a few boxes are looked at and nothing is kept") {
+    constexpr std::size_t n = 500;
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    std::vector<box> boxes;
+    for (std::size_t i = 0; i < n; ++i) boxes.push_back(cube(static_cast<float>(i) / 2));
+    const auto keeps = [&] {
+        return std::ranges::none_of(
+            stage->left_out(), [](const std::string& absent) { return absent.starts_with("no list of neighbours"); });
+    };
+    const auto kept_frames = [&](float way, int frames) {
+        int kept = 0;
+        for (int frame = 0; frame < frames; ++frame) {
+            for (std::size_t i = 0; i < n; ++i) boxes[i] = cube(boxes[i].min[0] + (i % 2 == 0 ? way : -way));
+            (void)pairs_of(*stage, boxes);
+            kept += keeps() ? 1 : 0;
+        }
+        return kept;
+    };
+    CHECK(kept_frames(3, 10) > 0);
+    CHECK(kept_frames(3, 40) == 0);
+    CHECK(kept_frames(1e-4F, 20) > 10);
+}
+
+TEST_CASE("a few boxes never say that all moved further than they did") {
+    REQUIRE(rc::check([] {
+        const auto n = *rc::gen::inRange<std::uint32_t>(1, 40);
+        membership objects;
+        for (std::uint32_t id = 0; id < n; ++id)
+            if (*rc::gen::inRange(0, 4) > 0) objects.insert(id);
+        objects.settle();
+        const auto frame = [&] {
+            std::vector<box> boxes;
+            for (std::uint32_t id = 0; id < n; ++id) boxes.push_back(cube(*rc::gen::inRange(-50, 50) / 8.0F));
+            return boxes;
+        };
+        const std::vector<box> from = frame();
+        const std::vector<box> to = frame();
+        glimpse some;
+        std::uint32_t drawn = *rc::gen::arbitrary<std::uint32_t>();
+        some.keep(from, drawn);
+        RC_ASSERT(some.least_motion(to, objects) <= motion_between(from, to, objects).margin);
+    }));
 }
