@@ -17,6 +17,7 @@ import aabb.geometry;
 import :column_groups;
 import :column_plan;
 import :column_worker;
+import :few_boxes;
 import :frame_at_rest;
 import :membership;
 import :partition_policy;
@@ -26,8 +27,8 @@ import :sweep_policy;
 export namespace aabb {
 
 /// Global search that cuts first: boxes go to columns as they are, group by group where there are many, and what a
-/// group needs is made while it is swept, so that it is still in a cache. Kept from frame to frame are the plans, and
-/// the pairs for as long as nothing moves.
+/// group needs is made while it is swept, so that it is still in a cache. A few boxes are not cut at all. Kept from
+/// frame to frame are the plans, and the pairs for as long as nothing moves.
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
@@ -51,6 +52,12 @@ public:
         if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
         select(boxes, objects);
         const std::size_t n = present_.boxes.size();
+        is_few_ = n <= partition_.few();
+        if (is_few_) {
+            planned_ = 0;
+            if (!few_.fill(present_)) require_valid(boxes);
+            return;
+        }
         const box bounds = bounds_of_some();
         const bool is_anew = is_stale(n) || lie_elsewhere(bounds, planned_bounds_);
         if (is_anew) planned_bounds_ = bounds;
@@ -68,7 +75,9 @@ public:
             return;
         }
         const std::size_t before = pairs.size();
-        if (groups_.size() == 0)
+        if (is_few_)
+            few_.search(pairs, counters);
+        else if (groups_.size() == 0)
             workers_.front().own.sweep(partition_, present_, everywhere, plan_, pairs);
         else
             search_groups(pairs);
@@ -76,12 +85,14 @@ public:
         at_rest_.keep(boxes_, std::span(pairs).subspan(before));
     }
 
+    /// Whether the boxes of the frame were so few that none was sorted or cut.
+    [[nodiscard]] bool is_uncut() const noexcept { return is_few_; }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
         return bytes_of(partition_) + bytes_of(groups_) + bytes_of(group_plans_) + bytes_of(present_boxes_) +
-               bytes_of(present_ids_) + bytes_of(at_rest_) +
+               bytes_of(present_ids_) + bytes_of(few_) + bytes_of(at_rest_) +
                sum_of([](const worker& w) { return w.own.column_bytes(); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {
@@ -261,6 +272,8 @@ private:
     column_group present_{};
     std::vector<box> present_boxes_;  // where some objects are absent
     std::vector<std::uint32_t> present_ids_;
+    few_boxes few_;
+    bool is_few_ = false;
     kept_plan plan_;  // of all, where there are no groups
     column_plan group_plan_;
     std::size_t planned_fullest_ = 0;  // boxes in the fullest group when those were planned

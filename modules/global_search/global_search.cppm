@@ -212,6 +212,8 @@ public:
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] static axis_set sorted_axes() noexcept { return 0; }
+    /// Whether the boxes of the frame were so few that none was sorted or cut.
+    [[nodiscard]] bool is_uncut() const noexcept { return search_.is_uncut(); }
     [[nodiscard]] std::size_t projection_bytes() const noexcept { return objects_.bytes(); }
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return search_.sort_bytes(); }
     [[nodiscard]] std::size_t partition_bytes() const noexcept { return search_.partition_bytes(); }

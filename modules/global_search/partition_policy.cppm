@@ -36,12 +36,13 @@ concept CuttingPartition =
     };
 
 /// A partition that cuts before anything is sorted: `plan(boxes, within)` says into which columns boxes are cut, of
-/// which only what lies within the bounds counts; `group(n)` says how many of n boxes are cut together, and `threads()`
-/// how many threads take such groups.
+/// which only what lies within the bounds counts; `few()` says of how many nothing is cut, `group(n)` how many of n
+/// boxes are cut together, and `threads()` how many threads take such groups.
 template <class P>
 concept ColumnPartition =
     PartitionPolicy<P> && requires(const P policy, std::span<const box> boxes, const box& within) {
         { policy.plan(boxes, within) } -> std::same_as<column_plan>;
+        { policy.few() } -> std::same_as<std::size_t>;
         { policy.group(boxes.size()) } -> std::same_as<std::size_t>;
         { policy.threads() } -> std::same_as<unsigned>;
     };

@@ -37,6 +37,8 @@ public:
     struct config {
         /// How many of the two axes across are cut into columns.
         std::uint32_t axes = 2;
+        /// Up to so many boxes are tested each against each, a vector at a time.
+        std::uint32_t few = 4 * simd::width;
         /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
         /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
         /// be written in turn without much waiting.
@@ -47,6 +49,7 @@ public:
     static constexpr std::tuple parameters{
         integer_parameter{"axes", &config::axes, 0U, 2U,
                           "how many axes are cut, beside the one that columns run along"},
+        integer_parameter{"few", &config::few, 0U, 4096U, "boxes that are not cut, but tested each against each"},
         integer_parameter{"group", &config::group, 1U, 1'000'000'000U, "boxes that are cut into columns together"},
         integer_parameter{"threads", &config::threads, 1U, 256U, "how many threads take groups"}};
 
@@ -93,6 +96,8 @@ public:
         return best;
     }
 
+    /// Of so many boxes, or fewer, none is cut.
+    [[nodiscard]] std::size_t few() const noexcept { return config_.few; }
     /// How many of so many boxes are cut into columns together, about.
     [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
         if (config_.group) return std::min(boxes, std::size_t{*config_.group});

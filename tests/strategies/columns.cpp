@@ -91,6 +91,36 @@ TEST_CASE("more boxes than one group takes are put into groups") {
     CHECK(pairs == true_pairs(boxes));
 }
 
+TEST_CASE("of a few boxes none is cut, whichever come and go") {
+    const std::vector<box> boxes = random_boxes(40, 3, 0.7, 3);
+    const std::vector<index_pair> all = true_pairs(boxes);
+    const auto search = global_of(columns_with(":few=20"), instrumentation::counters);
+    std::vector<bool> present(boxes.size());
+    // Frames of so many, the lowest ids absent.
+    for (const std::size_t n : {std::size_t{3}, std::size_t{20}, std::size_t{21}, std::size_t{40}, std::size_t{20},
+                                std::size_t{17}, std::size_t{33}, std::size_t{0}, std::size_t{1}}) {
+        INFO(n << " boxes");
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+            const bool wanted = id >= boxes.size() - n;
+            if (wanted != present[id]) wanted ? search->insert(id) : search->remove(id);
+            present[id] = wanted;
+        }
+        std::vector<index_pair> expected = all;
+        std::erase_if(expected, [&](index_pair p) { return !present[p.a] || !present[p.b]; });
+        const work_counters before = search->counters();
+        std::vector<index_pair> pairs;
+        search->update(boxes);
+        search->search(pairs);
+        std::ranges::sort(pairs);
+        CHECK(pairs == expected);
+        const work_counters after = search->counters();
+        CHECK((after[work::subsets] > before[work::subsets]) == (n > 20));
+        CHECK((after[work::moves] > before[work::moves]) == (n > 20));
+        CHECK(std::ranges::any_of(search->left_out(),
+                                  [](const std::string& s) { return s.starts_with("no columns"); }) == (n <= 20));
+    }
+}
+
 TEST_CASE("columns are planned anew once boxes lie elsewhere") {
     const std::vector<box> heap = random_boxes(3000, 14, 1, 1);
     // Tests of a frame, of a search that has seen others before.

@@ -38,6 +38,12 @@ std::vector<index_pair> overlapping(const std::vector<box>& boxes, const std::ve
     return pairs;
 }
 
+/// Whether all boxes of a test are so few for it that none is sorted or cut.
+bool tests_all(const aabb::composition& c) {
+    return std::ranges::any_of(c[strategy_kind::partition].settings,
+                               [](const auto& s) { return s.name == "few" && s.value == "4096"; });
+}
+
 }  // namespace
 
 // The sort and the splitting are drawn with the boxes: a property for each of them too would take minutes. With
@@ -191,7 +197,8 @@ TEST_CASE("counted compositions do the same and say what they did") {
         std::ranges::sort(counted_pairs);
         CHECK(pairs == counted_pairs);
         // Whoever sorts by comparing counts those, whoever does not the entries moved.
-        CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= boxes.size() - 1);
+        if (!tests_all(composition))
+            CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= boxes.size() - 1);
         CHECK(counted->counters()[work::box_tests] > 0);
         CHECK(plain->counters()[work::box_tests] == 0);
     }
@@ -199,12 +206,13 @@ TEST_CASE("counted compositions do the same and say what they did") {
 
 TEST_CASE("without a partition there are no cells and no copies") {
     std::vector<box> boxes;
-    for (int i = 0; i < 50; ++i) {
-        const vec3f at{static_cast<float>(i), static_cast<float>(i * 7 % 50), static_cast<float>(i * 11 % 50)};
+    for (int i = 0; i < 80; ++i) {
+        const vec3f at{static_cast<float>(i), static_cast<float>(i * 7 % 80), static_cast<float>(i * 11 % 80)};
         boxes.push_back({at, at + vec3f{1, 1, 1}});
     }
     for (const aabb::composition& composition : all_global_compositions()) {
         INFO(text_of_global(composition));
+        if (tests_all(composition)) continue;
         const auto stage = global_of(composition, instrumentation::counters);
         for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
