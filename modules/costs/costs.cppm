@@ -16,7 +16,7 @@ struct cost_model {
     double search_pair = 7.5;  ///< a pair of boxes that the search finds
     double keep_box = 3;       ///< a box that is grown by a margin and kept with its list
     double watch_box = 0.75;   ///< a box that is looked at for how far it has moved
-    double test_pair = 2;      ///< a pair of the list that is tested
+    double test_pair = 1.35;   ///< a pair of the list that is tested
 
     // Segments of an axial cut (`axial_cut`).
     double list_entry = 6;   ///< an entry of a sorted list, brought up to a frame

@@ -20,9 +20,12 @@ export namespace aabb {
     return static_cast<std::uint32_t>(std::uint64_t{hash} * count >> 32U);
 }
 
-/// A few boxes, which say in two frames that all have moved at least so far.
+/// A few boxes, which say that all have moved at least so far.
 class glimpse {
 public:
+    /// Frames that it looks on.
+    static constexpr unsigned longest = 8;
+
     /// @param drawn as `drawn_id` has it
     void keep(std::span<const box> boxes, std::uint32_t& drawn) {
         for (std::size_t i = 0; i < ids_.size() && !boxes.empty(); ++i) {
@@ -31,8 +34,11 @@ public:
         }
     }
 
-    /// Not more than `motion_between` the kept frame and this one, over all boxes; 0 where none is left.
-    [[nodiscard]] double least_motion(std::span<const box> boxes, const membership& objects) const {
+    /// Frame by frame, not more than `motion_between` the kept one and that, over all boxes; 0 where none is left.
+    /// Frames that were not looked at are as the next one.
+    /// @param age how many frames ago it was kept, each power of two in turn
+    [[nodiscard]] std::span<const double> least_motion(std::span<const box> boxes, const membership& objects,
+                                                       unsigned age) {
         std::array<box, few> from{};
         std::array<box, few> to{};
         std::size_t count = 0;
@@ -41,7 +47,10 @@ public:
             from[count] = kept_[i];
             to[count++] = boxes[ids_[i]];
         }
-        return count > 0 ? motion_between(std::span(from).first(count), std::span(to).first(count)).margin : 0;
+        const double moved =
+            count > 0 ? motion_between(std::span(from).first(count), std::span(to).first(count)).margin : 0;
+        for (std::size_t frame = age / 2; frame < age; ++frame) motion_[frame] = moved;
+        return std::span(motion_).first(age);
     }
 
 private:
@@ -49,6 +58,7 @@ private:
 
     std::array<std::uint32_t, few> ids_{};
     std::array<box, few> kept_{};
+    std::array<double, longest> motion_{};
 };
 
 }  // namespace aabb

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -16,21 +17,25 @@ import aabb.geometry;
 export namespace aabb {
 
 /// How many pairs come into reach as boxes grow, in pairs of those that overlap: of boxes evenly spread, the mean over
-/// pairs of them of the product of what they reach on three axes, a polynomial in the margin. An axis on which no box
-/// has an extent counts for nothing: all lie at one height there, mostly.
+/// pairs of them of the product of what they reach on three axes, a polynomial in the margin. An axis on which boxes
+/// lie no further apart than they reach counts for nothing: they overlap there as they are.
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;
     /// @param some boxes of the scene, in any order
     explicit growth_of_pairs(std::span<const box> some) {
         vec3d lengths{};
-        for (const box& b : some)
+        box lower_corners = empty_box();
+        for (const box& b : some) {
+            lower_corners = merged(lower_corners, box{b.min, b.min});
             for (int k = 0; k < 3; ++k) lengths[k] += double{b.max[k]} - double{b.min[k]};
+        }
+        const auto apart = [&](int k) { return double{lower_corners.max[k]} - double{lower_corners.min[k]}; };
         longest_margin_ = 4 * (lengths[0] + lengths[1] + lengths[2]) / (3.0 * static_cast<double>(some.size()));
         for (std::size_t i = 1; i < some.size(); ++i) {
             std::array<double, 4> product{1, 0, 0, 0};
             for (int k = 0; k < 3; ++k) {
-                if (lengths[k] == 0) continue;
+                if (apart(k) <= lengths[k] / static_cast<double>(some.size())) continue;
                 double reach = 0;
                 for (const box& b : {some[i - 1], some[i]}) reach += double{b.max[k]} - double{b.min[k]};
                 for (std::size_t power = 3; power > 0; --power)
@@ -63,25 +68,37 @@ struct list_outlook {
     double correction = 1;  ///< pairs that the last list held beside those that overlapped, over what was reckoned
 };
 
-/// For how many frames a list is to serve, its own included, and the margin by which boxes are grown for that.
+/// The cheapest list: for how many frames it is to serve, its own included, and the margin by which boxes are grown for
+/// that.
 struct list_plan {
-    std::size_t frames = 1;  ///< 1 where no list pays
+    std::size_t frames = 1;  ///< 1 where it does not pay
     double margin = 0;
-    double cost = std::numeric_limits<double>::infinity();  ///< of the cheapest list a frame, over that of a search
+    double cost = std::numeric_limits<double>::infinity();  ///< a frame, over that of a search
 };
 
-/// The margin that a list needs to serve so many frames after its own: what was seen, and further on in a line through
-/// the second half of it, and a little more. So what jiggles about its place needs little more than it moved, what
-/// drifts ever more.
+/// The margin that a list needs to serve so many frames after its own: what was seen; further on as much more with each
+/// doubling of time as the last two doublings tell; and a little more. So what jiggles about its place needs little
+/// more than it moved, what drifts ever more.
 [[nodiscard]] inline double margin_after(std::span<const double> motion, std::size_t frames) {
     constexpr double a_little_more = 1.01;
+    constexpr double for_the_unseen = 1.02;
     const std::size_t seen = motion.size();
     if (frames <= seen) return a_little_more * *std::ranges::max_element(motion.first(frames));
-    const std::size_t half = seen / 2;
+    const auto moved_after = [&](std::size_t frame) { return frame > 0 ? motion[frame - 1] : 0; };
+    // In half of that time, at the pace since the middle of it.
+    const auto growth = [&](std::size_t frame, double moved) {
+        const std::size_t middle = frame / 2;
+        return std::max(0.0, moved - moved_after(middle)) * static_cast<double>(frame) /
+               static_cast<double>(2 * (frame - middle));
+    };
     const double last = *std::ranges::max_element(motion);
-    const double before = half > 0 ? motion[half - 1] : 0;
-    const double slope = std::max(0.0, last - before) / static_cast<double>(seen - half);
-    return a_little_more * (last + slope * static_cast<double>(frames - seen));
+    const double grown = growth(seen, last);
+    const double grown_before = seen < 4 ? 0 : growth(seen / 2, moved_after(seen / 2));
+    // 2 is a drift.
+    const double ratio = grown < 2 * grown_before ? std::max(0.3, grown / grown_before) : 2;
+    const double doublings = std::log2(static_cast<double>(frames) / static_cast<double>(seen));
+    const double more = ratio == 1 ? doublings : ratio * (std::pow(ratio, doublings) - 1) / (ratio - 1);
+    return for_the_unseen * (last + grown * more);
 }
 
 /// A list must cost less than this part of a search: what it takes of the caches is not reckoned.
@@ -117,21 +134,17 @@ inline constexpr double worth_a_list = 0.87;
     list_plan best;
     if (seen.motion.empty()) return best;
     const double search = cost_of_search(n, pairs_listed(seen, 0), cost);
-    double least = worth_a_list * search;
     for (const std::size_t frames : lifetimes) {
         const double margin = margin_after(seen.motion, frames - 1);
         if (!(margin <= seen.growth.longest_margin())) break;
         const double listed = pairs_listed(seen, margin);
-        const double served = cost_of_service(n, listed, cost);
-        const double made = n * cost.keep_box + cost_of_search(n, listed, cost);
+        const double served = cost_of_service(n, listed, cost) / search;
+        if (served >= best.cost) break;
+        const double made = (n * cost.keep_box + cost_of_search(n, listed, cost)) / search;
         const double each = made / static_cast<double>(frames) + served;
-        best.cost = std::min(best.cost, each / search);
-        if (served >= least) break;
-        if (each >= least) continue;
-        least = each;
-        best.frames = frames;
-        best.margin = margin;
+        if (each < best.cost) best = {frames, margin, each};
     }
+    if (best.cost >= worth_a_list) best.frames = 1;
     return best;
 }
 

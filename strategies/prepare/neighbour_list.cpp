@@ -25,6 +25,7 @@ import aabb.prepare.list_plan;
 import aabb.prepare.mean_extent;
 import aabb.prepare.relative_motion;
 import aabb.prepare.rest_watch;
+import aabb.simd;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -70,15 +71,18 @@ private:
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
     [[nodiscard]] std::span<const box> sample(std::span<const box> boxes, std::span<box> of);
     [[nodiscard]] double pairs_in_reach(std::span<const box> boxes, double margin);
+    void correct(double beside);
+    void search_as_it_is(std::span<const box> boxes);
     void keep(std::span<const box> boxes, double margin);
 
-    /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many.
+    /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many,
+    /// and then a few of them looked at.
     static constexpr std::uint32_t longest_watch = 8;
     static constexpr unsigned pause = 6;
-    /// Then a few boxes are looked at, in two of so many frames, until they say that a list may pay.
-    static constexpr unsigned pause_between_glimpses = 4;
     /// A list that costs so many times what a search does is not waited for.
     static constexpr double hopeless = 3;
+    /// Fewer are searched in the time that it takes to watch them.
+    static constexpr std::size_t fewest_boxes_of_list = 2 * simd::width + 1;
     /// Of fewer boxes any list is short.
     static constexpr std::size_t fewest_boxes_of_long_list = 256;
     static constexpr std::size_t longest_history = 256;
@@ -124,9 +128,11 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     // At once: the frame may be refused yet, and who left is not told again.
     if (leaves_any && is_kept_)
         std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
-    if (left_ > 0) {
+    if (adapts() && objects_.size() < fewest_boxes_of_list) {
+        search_as_it_is(boxes);
+    } else if (left_ > 0) {
         pass_over(boxes);
-        search_->update(boxes);
+        search_as_it_is(boxes);
     } else if (!is_kept_ || comes_any || !rests(boxes)) {
         const bool same_objects = !comes_any && boxes.size() == kept_.size();
         if (is_kept_ && !is_too_long_ && same_objects && serves(boxes)) {
@@ -134,9 +140,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         } else if (const std::optional<double> margin = watches_ ? watched(boxes, same_objects) : next_margin(boxes)) {
             keep(boxes, *margin);
         } else {
-            is_kept_ = false;
-            from_ = source::search;
-            search_->update(boxes);
+            search_as_it_is(boxes);
         }
     }
     frame_.taken();
@@ -162,6 +166,29 @@ using corner = float __attribute__((vector_size(16)));
     return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
 }
 
+/// Appends those that overlap: a vector of pairs at a time and without a branch, since which they are cannot be
+/// foreseen.
+void append_meeting(std::span<const box> boxes, std::span<const index_pair> list, std::vector<index_pair>& pairs) {
+    constexpr std::size_t at_a_time = simd::width / 2;
+    std::size_t end = pairs.size();
+    pairs.resize(end + list.size() + at_a_time);
+    std::size_t i = 0;
+    for (; i + at_a_time <= list.size(); i += at_a_time) {
+        std::uint32_t both_words = 0;
+#pragma clang loop unroll(full)
+        for (std::size_t k = 0; k < at_a_time; ++k)
+            both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
+        simd::words some;
+        std::memcpy(&some, &list[i], sizeof some);
+        end += simd::store_where(&pairs[end].a, some, both_words) / 2;
+    }
+    for (const index_pair pair : list.subspan(i)) {
+        pairs[end] = pair;
+        end += static_cast<std::size_t>(meet(boxes[pair.a], boxes[pair.b]));
+    }
+    pairs.resize(end);
+}
+
 void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
     frame_.require_taken();
     require_ieee_arithmetic();
@@ -172,16 +199,7 @@ void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
         pairs.insert(pairs.end(), list_.begin(), list_.end());
     } else {
         if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-        append_whole(pairs, [&] {
-            // Written without a branch, since which pairs of the list overlap cannot be predicted.
-            std::size_t end = pairs.size();
-            pairs.resize(end + list_.size());
-            for (const index_pair pair : list_) {
-                pairs[end] = pair;
-                end += static_cast<std::size_t>(meet(boxes_[pair.a], boxes_[pair.b]));
-            }
-            pairs.resize(end);
-        });
+        append_whole(pairs, [&] { append_meeting(boxes_, list_, pairs); });
     }
     found_ = pairs.size() - before;
 }
@@ -201,7 +219,10 @@ std::vector<part_bytes> neighbour_list_stage::bytes() const {
 
 std::vector<std::string> neighbour_list_stage::left_out() const {
     std::vector<std::string> absent = search_->left_out();
-    if (from_ == source::search) absent.emplace_back("no list of neighbours: boxes move too far for one to pay");
+    if (from_ == source::search)
+        absent.emplace_back(adapts() && objects_.size() < fewest_boxes_of_list
+                                ? "no list of neighbours: so few boxes are searched as soon as watched"
+                                : "no list of neighbours: boxes move too far, or come too often, for one to pay");
     return absent;
 }
 
@@ -238,8 +259,8 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
     // What jiggles about its place shows it only after some frames.
-    watches_ = is_first_look && cost_ < hopeless;
-    if (!watches_) left_ = pause;
+    watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
+    if (!watches_) left_ = pause + glimpse::longest;
     return std::nullopt;
 }
 
@@ -256,18 +277,24 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
         margin = paying_margin(boxes);
     }
     watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
-    if (!watches_ && !margin) left_ = pause;
+    if (!watches_ && !margin) left_ = pause + glimpse::longest;
     return margin;
 }
 
-/// A frame that is searched as it is. Where even the few boxes that are looked at move too far for any list, all do.
+/// A frame that is searched as it is. A few boxes are looked at until they say that a list may pay: where even those
+/// move too far for any, all do.
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     --left_;
-    if (left_ == 1) glimpse_.keep(boxes, drawn_);
-    if (left_ > 0) return;
-    const double moved = glimpse_.least_motion(boxes, objects_);
-    const list_outlook seen{std::span(&moved, 1), objects_.size(), found_, growth_, correction_};
-    if (plan_list(seen).frames == 1) left_ = pause_between_glimpses;
+    const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
+    if (std::has_single_bit(age)) {
+        const list_outlook seen{glimpse_.least_motion(boxes, objects_, age), objects_.size(), found_, growth_,
+                                correction_};
+        if (plan_list(seen).frames > 1)
+            left_ = 0;
+        else if (left_ == 0)
+            left_ = glimpse::longest;
+    }
+    if (left_ == glimpse::longest) glimpse_.keep(boxes, drawn_);
 }
 
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
@@ -279,15 +306,24 @@ std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> b
         const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
         const list_plan plan = plan_list(seen);
         cost_ = plan.cost;
-        if (plan.frames == 1) return std::nullopt;
+        const bool pays = plan.frames > 1;
         foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
-        if (plan.margin <= looked_up_ || objects_.size() < fewest_boxes_of_long_list) return plan.margin;
-        // A list may hold each box with every other, and the few that the reckoning is made from may not tell.
+        const bool is_to_be_looked_up = objects_.size() >= fewest_boxes_of_long_list && foreseen_ > 0 &&
+                                        (pays ? plan.margin > looked_up_ : looked_up_ == 0 && cost_ < hopeless);
+        if (!is_to_be_looked_up) return pays ? std::optional(plan.margin) : std::nullopt;
+        // A list may hold each box with every other, or as boxes on a surface fewer than are reckoned.
         looked_up_ = plan.margin;
         const double beside = pairs_in_reach(boxes, plan.margin) - static_cast<double>(found_);
-        if (beside <= 2 * foreseen_ + static_cast<double>(objects_.size())) return plan.margin;
-        correction_ *= beside / foreseen_;
+        if (pays && beside <= 2 * foreseen_ + static_cast<double>(objects_.size())) return plan.margin;
+        // Where none pays, only fewer of them change that.
+        if (!pays && beside >= foreseen_) return std::nullopt;
+        correct(beside);
     }
+}
+
+/// @param beside pairs that a list holds beside those that overlap, where others were foreseen
+void neighbour_list_stage::correct(double beside) {
+    correction_ = std::clamp(correction_ * beside / foreseen_, 0.3, 1000.0);
 }
 
 /// Boxes by chance, fewer where some objects are absent.
@@ -316,6 +352,12 @@ double neighbour_list_stage::pairs_in_reach(std::span<const box> boxes, double m
            static_cast<double>(objects_.size());
 }
 
+void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
+    is_kept_ = false;
+    from_ = source::search;
+    search_->update(boxes);
+}
+
 void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     is_kept_ = false;
     kept_.assign(boxes.begin(), boxes.end());
@@ -328,10 +370,7 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     search_->update(margin > 0 ? std::span<const box>(grown_) : boxes);
     list_.clear();
     search_->search(list_);
-    if (foreseen_ > 0) {
-        const double beside = static_cast<double>(list_.size()) - static_cast<double>(found_);
-        correction_ = std::clamp(correction_ * beside / foreseen_, 0.5, 1000.0);
-    }
+    if (foreseen_ > 0) correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     margin_ = margin;
     is_too_long_ = foreseen_ > 0 && !pays(objects_.size(), found_, list_.size());
     motion_.clear();

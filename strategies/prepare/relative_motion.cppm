@@ -59,17 +59,21 @@ struct plane_motion {
                 least[v] = d < least[v] ? d : least[v];
                 most[v] = d > most[v] ? d : most[v];
             }
-        for (std::size_t i = 0; i < 3 * simd::width; ++i) {
-            const std::size_t column = i % 6;
-            const auto k = static_cast<int>(column % 3);
-            const std::size_t v = i / simd::width;
-            const std::size_t lane = i % simd::width;
-            motion.any |= least[v][lane] != 0 || most[v][lane] != 0;
-            if (column < 3)
-                motion.least[k] = std::min(motion.least[k], least[v][lane]);
-            else
-                motion.most[k] = std::max(motion.most[k], most[v][lane]);
+        float down[3 * simd::width];
+        float up[3 * simd::width];
+        std::memcpy(down, least, sizeof down);
+        std::memcpy(up, most, sizeof up);
+        // Row by row into one.
+        for (std::size_t half = 3 * simd::width / 2; half >= 6; half /= 2)
+            for (std::size_t i = 0; i < half; ++i) {
+                down[i] = std::min(down[i], down[half + i]);
+                up[i] = std::max(up[i], up[half + i]);
+            }
+        for (int k = 0; k < 3; ++k) {
+            motion.least[k] = std::min(motion.least[k], down[k]);
+            motion.most[k] = std::max(motion.most[k], up[3 + k]);
         }
+        for (std::size_t i = 0; i < 6; ++i) motion.any |= down[i] != 0 || up[i] != 0;
     }
     for (std::size_t i = whole; i < to.size(); ++i) motion.take(from[i], to[i]);
     return motion;

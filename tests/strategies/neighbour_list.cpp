@@ -1,19 +1,25 @@
 #include <rapidcheck.h>
 #include <algorithm>
+#include <bit>
+#include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "../compositions.hpp"
 #include "../validation/support.hpp"
 
 import aabb.prepare.glimpse;
+import aabb.prepare.list_plan;
 import aabb.prepare.relative_motion;
+import aabb.simd;
 
 using namespace aabb;
 using Catch::Matchers::Message;
@@ -32,6 +38,12 @@ std::unique_ptr<global_stage> stage_of(const aabb::composition& c, std::size_t o
 
 box cube(float at) {
     return {{at, 0, 0}, {at + 1, 1, 1}};
+}
+
+/// Whether something that begins so is left out.
+bool says(const global_stage& stage, std::string_view beginning) {
+    return std::ranges::any_of(stage.left_out(),
+                               [&](const std::string& absent) { return absent.starts_with(beginning); });
 }
 
 }  // namespace
@@ -286,10 +298,7 @@ TEST_CASE("where no list pays, a few boxes are looked at and nothing is kept") {
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
     std::vector<box> boxes;
     for (std::size_t i = 0; i < n; ++i) boxes.push_back(cube(static_cast<float>(i) / 2));
-    const auto keeps = [&] {
-        return std::ranges::none_of(
-            stage->left_out(), [](const std::string& absent) { return absent.starts_with("no list of neighbours"); });
-    };
+    const auto keeps = [&] { return !says(*stage, "no list of neighbours"); };
     const auto kept_frames = [&](float way, int frames) {
         int kept = 0;
         for (int frame = 0; frame < frames; ++frame) {
@@ -317,10 +326,79 @@ TEST_CASE("a few boxes never say that all moved further than they did") {
             return boxes;
         };
         const std::vector<box> from = frame();
-        const std::vector<box> to = frame();
         glimpse some;
         std::uint32_t drawn = *rc::gen::arbitrary<std::uint32_t>();
         some.keep(from, drawn);
-        RC_ASSERT(some.least_motion(to, objects) <= motion_between(from, to, objects).margin);
+        std::vector<double> moved;
+        for (unsigned age = 1; age <= glimpse::longest; ++age) {
+            const std::vector<box> to = frame();
+            moved.push_back(motion_between(from, to, objects).margin);
+            if (!std::has_single_bit(age)) continue;
+            const std::span<const double> least = some.least_motion(to, objects, age);
+            RC_ASSERT(least.size() == age);
+            RC_ASSERT(least.back() <= moved.back());
+        }
     }));
+}
+
+TEST_CASE("what jiggles about its place gets a list that lasts, though lists before it did not") {
+    constexpr std::size_t n = 600;
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    std::uint64_t random = 1;
+    const auto any = [&] {
+        random = random * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<float>(random >> 40U) * 0x1p-24F - 0.5F;
+    };
+    std::vector<vec3f> homes(n);
+    for (vec3f& home : homes) home = {7 * any(), 7 * any(), 7 * any()};
+    std::vector<vec3f> away(n);
+    int kept = 0;
+    for (int frame = 0; frame < 80; ++frame) {
+        std::vector<box> boxes;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (int k = 0; k < 3; ++k) away[i][k] = away[i][k] / 2 + 0.15F * any();
+            boxes.push_back({homes[i] + away[i], homes[i] + away[i] + vec3f{1, 1, 1}});
+        }
+        (void)pairs_of(*stage, boxes);
+        if (frame >= 40) kept += says(*stage, "no list of neighbours") ? 0 : 1;
+    }
+    CHECK(kept == 40);
+}
+
+TEST_CASE("a few boxes are not watched") {
+    for (const std::size_t n : {std::size_t{2} * simd::width, std::size_t{2} * simd::width + 1}) {
+        INFO(n << " boxes");
+        const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+        std::vector<box> boxes(n, cube(0));
+        (void)pairs_of(*stage, boxes);
+        CHECK(says(*stage, "no list of neighbours: so few") == (n == 2 * simd::width));
+        // A margin that is named is kept to.
+        const auto named = stage_of(composed({{strategy_kind::prepare, "neighbour_list:margin=1"}}), n);
+        (void)pairs_of(*named, boxes);
+        CHECK(!says(*named, "no list of neighbours"));
+    }
+}
+
+TEST_CASE("pairs in reach grow on the axes on which boxes lie apart") {
+    std::vector<box> along;
+    std::vector<box> spread;
+    for (int i = 0; i < 16; ++i) {
+        const auto at = static_cast<float>(i);
+        along.push_back({{4 * at, 0.01F * at, 0}, {4 * at + 1, 0.01F * at + 1, 1}});
+        spread.push_back({{4 * at, 3 * static_cast<float>(i * 7 % 16), 5 * at},
+                          {4 * at + 1, 3 * static_cast<float>(i * 7 % 16) + 1, 5 * at + 1}});
+    }
+    // Two boxes of 1 reach 2; grown by 0.5 on every side, 4.
+    CHECK(growth_of_pairs(along).at(0.5) == 2);
+    CHECK(growth_of_pairs(spread).at(0.5) == 8);
+}
+
+TEST_CASE("the margin goes on as the last doublings of time did") {
+    const std::vector<double> drift{1, 2, 3, 4, 5, 6, 7, 8};
+    const std::vector<double> jiggle{1, 1.5, 1.5, 1.75, 1.75, 1.75, 1.75, 1.875};
+    CHECK(margin_after(drift, 8) == Catch::Approx(8 * 1.01));
+    CHECK(margin_after(drift, 32) == Catch::Approx(32 * 1.02));
+    CHECK(margin_after(drift, 12) == Catch::Approx(12 * 1.02));
+    CHECK(margin_after(jiggle, 1024) == Catch::Approx(2 * 1.02).epsilon(0.001));
+    CHECK(margin_after(std::vector<double>{3.0}, 4) == Catch::Approx(12 * 1.02));
 }
