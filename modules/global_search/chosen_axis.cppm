@@ -1,4 +1,6 @@
 module;
+#include <bit>
+#include <cstddef>
 #include <span>
 
 export module aabb.global_search:chosen_axis;
@@ -15,10 +17,16 @@ export namespace aabb {
 class chosen_axis {
 public:
     int choose(std::span<const box> boxes, const membership& objects) {
-        const spread along = spread_of(boxes, objects);
-        const double margin = chosen_ ? 1.5 : 1.0;
+        return choose(spread_of(boxes, objects), every_axis);
+    }
+
+    /// One of these; at least one.
+    int choose(const spread& along, axis_set among) {
+        const auto is_among = [among](int k) { return has_axis(among, static_cast<std::size_t>(k)); };
+        const double margin = chosen_ && is_among(axis_) ? 1.5 : 1.0;
+        if (!is_among(axis_)) axis_ = std::countr_zero(among);
         for (int k = 0; k < 3; ++k)
-            if (along.variance[k] > margin * along.variance[axis_]) axis_ = k;
+            if (is_among(k) && along.variance[k] > margin * along.variance[axis_]) axis_ = k;
         chosen_ |= along.objects > 0;
         return axis_;
     }
