@@ -24,7 +24,9 @@ const std::string kept_list = "neighbour_list:margin=0.1 + bucket + columns + si
 const std::string incremental = "insertion + incremental";
 const std::string one_axis = "insertion + one_axis";
 const std::string simd_sweep = "insertion + simd";
+const std::string two_axis = "insertion + two_axis";
 const std::string grid = "std + uniform_grid + simd";
+const std::string kd_tree = "radix + kd_tree + simd";
 const std::string dynamic_tree = "bullet_dbvt";
 const std::string bullet_sap = "bullet_sap";
 
@@ -183,12 +185,57 @@ statement flat_worlds() {
              compared("more than in a cube", columns, simd_sweep, kind_is("flat"), kind_is("far"))}};
 }
 
+statement kd_trees() {
+    return {"B12",
+            "Y. Serpa, M. Rodrigues, Computer Graphics Forum 38, 2019, title",
+            "A kd-tree that makes use of where boxes were before is fast and scales.",
+            {{"10,000 boxes", kd_tree, simd_sweep, map_with({{"objects", 10000}})},
+             {"10,000 boxes", kd_tree, grid, map_with({{"objects", 10000}})},
+             {"10,000 boxes", kd_tree, dynamic_tree, map_with({{"objects", 10000}})},
+             compared("its lead over a sweep, 10,000 boxes over 1,000", kd_tree, simd_sweep,
+                      map_with({{"objects", 10000}}), map_with({{"objects", 1000}}))}};
+}
+
+statement best_variants() {
+    statement s{"B13",
+                "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
+                "Of sweeps the one that tests by vectors is the best.",
+                {}};
+    for (const double objects : {100.0, 1000.0, 10000.0})
+        s.ratios.push_back({grouped(static_cast<std::uint64_t>(objects)) + " boxes", simd_sweep, one_axis,
+                            map_with({{"objects", objects}})});
+    return s;
+}
+
+statement two_axes() {
+    return {"B14",
+            "G. Capannini, T. Larsson, SCCG 2016 and IEEE TVCG 2018, titles (the latter on several threads)",
+            "A sweep of two axes is efficient, and for massive scenes.",
+            {{"1,000 boxes", two_axis, one_axis, map_with({{"objects", 1000}})},
+             {"10,000 boxes", two_axis, one_axis, map_with({{"objects", 10000}})},
+             compared("10,000 boxes over 1,000", two_axis, one_axis, map_with({{"objects", 10000}}),
+                      map_with({{"objects", 1000}}))}};
+}
+
+statement one_size() {
+    statement s{"B15",
+                "G. Capannini, T. Larsson, SIGRAD 2016, abstract (of a form for boxes of one size alone)",
+                "A sweep of two axes gains where all boxes have one size.",
+                {}};
+    for (const double objects : {1000.0, 10000.0})
+        s.ratios.push_back(compared(
+            grouped(static_cast<std::uint64_t>(objects)) + " boxes, one size over sizes 1 to 100", two_axis, one_axis,
+            map_with({{"objects", objects}, {"ratio", 1}}), map_with({{"objects", objects}, {"ratio", 100}})));
+    return s;
+}
+
 }  // namespace
 
 const std::vector<statement>& statements() {
-    static const std::vector<statement> all{little_motion(), all_asleep(),      subdivided(), coherent_sweep(),
-                                            grid_of_sizes(), clustered_sweep(), few_boxes(),  fast_motion(),
-                                            rebuilt(),       alike(),           flat_worlds()};
+    static const std::vector<statement> all{little_motion(), all_asleep(),      subdivided(),  coherent_sweep(),
+                                            grid_of_sizes(), clustered_sweep(), few_boxes(),   fast_motion(),
+                                            rebuilt(),       alike(),           flat_worlds(), kd_trees(),
+                                            best_variants(), two_axes(),        one_size()};
     return all;
 }
 

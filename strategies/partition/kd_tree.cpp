@@ -71,6 +71,14 @@ struct sampled {
     }
 };
 
+/// Of a half-open cell.
+bool lies_within(const box& b, const box& cell) {
+    unsigned within = 1;
+    for (int k = 0; k < 3; ++k)
+        within &= static_cast<unsigned>(b.min[k] >= cell.min[k]) & static_cast<unsigned>(b.max[k] < cell.max[k]);
+    return within != 0;
+}
+
 bool lies_left(const box& b, std::uint32_t axis, float plane) {
     return b.min[static_cast<int>(axis)] < plane;
 }
@@ -116,9 +124,9 @@ void kd_tree_partition::fit(const whole_subset& all) {
 }
 
 std::size_t kd_tree_partition::bytes() const noexcept {
-    return bytes_of(present_) + bytes_of(nodes_) + bytes_of(starts_) + bytes_of(entries_) + bytes_of(in_leaf_) +
-           bytes_of(below_) + bytes_of(old_) + bytes_of(groups_) + bytes_of(group_of_) + bytes_of(group_starts_) +
-           bytes_of(group_ends_) + bytes_of(ids_);
+    return bytes_of(present_) + bytes_of(nodes_) + bytes_of(starts_) + bytes_of(entries_) + bytes_of(homes_) +
+           bytes_of(now_at_) + bytes_of(in_leaf_) + bytes_of(below_) + bytes_of(old_) + bytes_of(groups_) +
+           bytes_of(group_of_) + bytes_of(group_starts_) + bytes_of(group_ends_) + bytes_of(ids_);
 }
 
 /// All planes, whatever there was.
@@ -129,7 +137,8 @@ void kd_tree_partition::choose_all(std::span<const box> boxes) {
     copied_ = 0;
     pairs_at_first_ = 0;
     ids_ = present_;
-    choose(boxes, 0, ids_.size(), 0);
+    homes_.clear();
+    choose(boxes, 0, ids_.size(), {empty_box().max, empty_box().min}, 0);
 }
 
 /// Those below the nodes that went off, for the boxes that were in them.
@@ -142,11 +151,14 @@ void kd_tree_partition::choose_stale(std::span<const box> boxes) {
     for (const std::uint32_t copies : in_leaf_) copied_ += copies;
     copied_ -= std::min<std::uint64_t>(copied_, present_.size());
     pairs_at_first_ = 0;
+    now_at_.resize(old_.size());
     copy_or_choose(boxes, 0, 0);
+    for (std::uint32_t& home : homes_) home = now_at_[home];
     groups_.clear();
 }
 
 void kd_tree_partition::copy_or_choose(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
+    const auto self = static_cast<std::uint32_t>(nodes_.size());
     const auto group = std::ranges::lower_bound(groups_, old);
     if (group != groups_.end() && *group == old) {
         const auto g = static_cast<std::size_t>(group - groups_.begin());
@@ -156,26 +168,31 @@ void kd_tree_partition::copy_or_choose(std::span<const box> boxes, std::uint32_t
         ids_.resize(first + count);
         std::copy_n(ids_.begin() + static_cast<std::ptrdiff_t>(group_starts_[g]), count,
                     ids_.begin() + static_cast<std::ptrdiff_t>(first));
-        choose(boxes, first, count, depth);
+        choose(boxes, first, count, old_[old].cell, depth);
         ids_.resize(first);
+        std::uint32_t last = old;
+        while (old_[last].axis != is_leaf) last = old_[last].children[1];
+        std::fill(now_at_.begin() + old, now_at_.begin() + last + 1, self);
         return;
     }
-    const auto self = nodes_.size();
+    now_at_[old] = self;
     nodes_.push_back(old_[old]);
     if (old_[old].axis == is_leaf) {
-        nodes_[self].right = leaves_++;
+        nodes_[self].children[0] = leaves_++;
         return;
     }
-    copy_or_choose(boxes, old + 1, depth + 1);
-    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
-    copy_or_choose(boxes, old_[old].right, depth + 1);
+    nodes_[self].children[0] = self + 1;
+    copy_or_choose(boxes, old_[old].children[0], depth + 1);
+    nodes_[self].children[1] = static_cast<std::uint32_t>(nodes_.size());
+    copy_or_choose(boxes, old_[old].children[1], depth + 1);
 }
 
 /// A node and all below it, for the boxes ids_[first .. first + count).
-void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, std::size_t count, std::size_t depth) {
+void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
+                               std::size_t depth) {
     const std::size_t self = nodes_.size();
     ++made_nodes_;
-    nodes_.push_back({0, is_leaf, leaves_, unknown});
+    nodes_.push_back({cell, 0, is_leaf, {leaves_, 0}, unknown});
     if (count >= 2 && depth < most_depth) {
         const split at = best_split(boxes, first, count);
         std::array<std::size_t, 2> parts{};
@@ -184,10 +201,16 @@ void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, st
             nodes_[self].axis = at.axis;
             const std::size_t right = first + count;
             const std::size_t left = right + parts[1];
-            choose(boxes, left, parts[0], depth + 1);
-            nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
+            std::array<box, 2> cells{cell, cell};
+            // Boxes may have moved out of the cell since, and the plane lie beyond it.
+            const auto k = static_cast<int>(at.axis);
+            cells[0].max[k] = std::min(at.plane, cell.max[k]);
+            cells[1].min[k] = std::max(at.plane, cell.min[k]);
+            nodes_[self].children[0] = static_cast<std::uint32_t>(nodes_.size());
+            choose(boxes, left, parts[0], cells[0], depth + 1);
+            nodes_[self].children[1] = static_cast<std::uint32_t>(nodes_.size());
             ids_.resize(left);
-            choose(boxes, right, parts[1], depth + 1);
+            choose(boxes, right, parts[1], cells[1], depth + 1);
             ids_.resize(right);
             return;
         }
@@ -260,36 +283,50 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
 bool kd_tree_partition::place(std::span<const box> boxes) {
     const std::size_t most = 2 * most_copies * present_.size();
     starts_.resize(boxes.size() + 1);
+    homes_.resize(boxes.size(), 0);
     in_leaf_.assign(leaves_, 0);
     entries_.clear();
-    struct waiting {
-        std::uint32_t at;
-        axis_set owned;
-    };
-    std::array<waiting, most_depth + 1> stack;
     std::size_t next = 0;  // of starts_
     for (const std::uint32_t id : present_) {
-        const box b = boxes[id];
+        const box& b = boxes[id];
         while (next <= id) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
-        std::size_t height = 0;
-        stack[height++] = {0, every_axis};
-        while (height > 0) {
-            auto [at, owned] = stack[--height];
-            while (nodes_[at].axis != is_leaf) {
-                const node& n = nodes_[at];
-                const bool left = lies_left(b, n.axis, n.plane);
-                const bool right = lies_right(b, n.axis, n.plane);
-                if (left && right) stack[height++] = {n.right, owned & ~(axis_set{1} << n.axis)};
-                at = left ? at + 1 : n.right;
-            }
-            const std::uint32_t leaf = nodes_[at].right;
-            entries_.push_back(leaf << 3 | owned);
-            ++in_leaf_[leaf];
-        }
+        homes_[id] = put(b, lies_within(b, nodes_[homes_[id]].cell) ? homes_[id] : 0);
         if (entries_.size() > most) return false;
     }
     while (next <= boxes.size()) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
     return true;
+}
+
+/// Into every leaf that it reaches into below a node whose cell holds all of the box.
+/// @returns the lowest such node
+inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
+    struct waiting {
+        std::uint32_t at;
+        axis_set owned;
+    };
+    std::array<waiting, most_depth> stack;
+    std::size_t height = 0;
+    std::uint32_t home = unknown;
+    axis_set owned = every_axis;
+    for (std::uint32_t at = from;;) {
+        const node* n = &nodes_[at];
+        for (; n->axis != is_leaf; n = &nodes_[at]) {
+            const bool left = lies_left(b, n->axis, n->plane);
+            if (left && lies_right(b, n->axis, n->plane)) {
+                home = std::min(home, at);
+                stack[height++] = {n->children[1], owned & ~(axis_set{1} << n->axis)};
+            }
+            // Which of them it is cannot be foreseen.
+            at = n->children[static_cast<std::size_t>(!left)];
+        }
+        entries_.push_back(n->children[0] << 3 | owned);
+        ++in_leaf_[n->children[0]];
+        // Nodes below others have greater numbers.
+        home = std::min(home, at);
+        if (height == 0) return home;
+        at = stack[--height].at;
+        owned = stack[height].owned;
+    }
 }
 
 /// Holds how many are where against how many there were when planes were chosen.
@@ -297,7 +334,7 @@ void kd_tree_partition::compare() {
     below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
         node& n = nodes_[at];
-        below_[at] = n.axis == is_leaf ? in_leaf_[n.right] : below_[at + 1] + below_[n.right];
+        below_[at] = n.axis == is_leaf ? in_leaf_[n.children[0]] : below_[n.children[0]] + below_[n.children[1]];
         if (n.at_first == unknown) n.at_first = below_[at];
     }
     pairs_ = 0;
@@ -320,13 +357,19 @@ bool kd_tree_partition::is_off(std::uint32_t at) const noexcept {
 /// A node that is as it was with a child that is not can divide its boxes anew between its children.
 void kd_tree_partition::mark(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
-    const std::uint32_t right = nodes_[at].right;
-    if (is_off(at + 1) || is_off(right)) {
+    const auto [left, right] = nodes_[at].children;
+    if (is_off(left) || is_off(right)) {
         groups_.push_back(at);
         return;
     }
-    mark(at + 1);
+    mark(left);
     mark(right);
+}
+
+/// The first or the last leaf below a node.
+std::uint32_t kd_tree_partition::leaf_of(std::uint32_t at, std::size_t side) const noexcept {
+    while (nodes_[at].axis != is_leaf) at = nodes_[at].children[side];
+    return nodes_[at].children[0];
 }
 
 /// The boxes of each group, in the order of ids. The leaves of a box rise, so those of a group follow each other.
@@ -338,11 +381,8 @@ void kd_tree_partition::gather() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         group_starts_[g] = group_ends_[g] = room;
         room += below_[groups_[g]];
-        std::uint32_t first = groups_[g];
-        while (nodes_[first].axis != is_leaf) ++first;
-        std::uint32_t last = groups_[g];
-        while (nodes_[last].axis != is_leaf) last = nodes_[last].right;
-        for (std::uint32_t leaf = nodes_[first].right; leaf <= nodes_[last].right; ++leaf)
+        const std::uint32_t last = leaf_of(groups_[g], 1);
+        for (std::uint32_t leaf = leaf_of(groups_[g], 0); leaf <= last; ++leaf)
             group_of_[leaf] = static_cast<std::uint32_t>(g) + 1;
     }
     ids_.resize(room);

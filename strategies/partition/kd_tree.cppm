@@ -21,9 +21,10 @@ export namespace aabb {
 /// every leaf that it reaches into. Planes are kept from frame to frame; only below a node whose boxes went elsewhere
 /// are they chosen anew. After Serpa and Rodrigues, "Flexible use of temporal and spatial reasoning for fast and
 /// scalable CPU broad-phase collision detection using KD-trees" (Computer Graphics Forum 38, 2019), from what the names
-/// and comments of its authors' program tell: it too keeps a box at the planes that cut it and hands it down to the
-/// leaves, but moves planes and objects in place; here boxes are found anew in kept planes, and the sweep in a leaf is
-/// whichever is named. When to use: clusters and unlike densities, for which cells of one size do not do.
+/// and comments of its authors' program tell: it too hands boxes that lie across planes down to the leaves, but moves
+/// planes and objects in place; here a box is looked for from the last node whose cell held all of it, if it still
+/// does, and the sweep in a leaf is whichever is named. When to use: clusters and unlike densities, for which cells of
+/// one size do not do.
 ///
 /// A box lies left of a plane when its lower end does, and right when its upper end does not, so space is divided
 /// half-open, and the leaf that holds the greater lower ends of a pair owns it.
@@ -77,10 +78,11 @@ private:
 
     /// Nodes stand before their children, the left one right behind.
     struct node {
+        box cell;  ///< half-open
         float plane;
-        std::uint32_t axis;      ///< or is_leaf
-        std::uint32_t right;     ///< child; of a leaf its number
-        std::uint32_t at_first;  ///< copies in its leaves when it was made
+        std::uint32_t axis;                     ///< or is_leaf
+        std::array<std::uint32_t, 2> children;  ///< left, right; of a leaf its number
+        std::uint32_t at_first;                 ///< copies in its leaves when it was made
     };
 
     /// Where to split a node, and what the frame costs then, in nanoseconds.
@@ -93,7 +95,9 @@ private:
     void choose_all(std::span<const box> boxes);
     void choose_stale(std::span<const box> boxes);
     void copy_or_choose(std::span<const box> boxes, std::uint32_t old, std::size_t depth);
-    void choose(std::span<const box> boxes, std::size_t first, std::size_t count, std::size_t depth);
+    void choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell, std::size_t depth);
+    std::uint32_t put(const box& b, std::uint32_t from);
+    [[nodiscard]] std::uint32_t leaf_of(std::uint32_t at, std::size_t side) const noexcept;
     [[nodiscard]] split best_split(std::span<const box> boxes, std::size_t first, std::size_t count) const;
     [[nodiscard]] bool divide(std::span<const box> boxes, std::size_t first, std::size_t count, const split& at,
                               std::array<std::size_t, 2>& parts);
@@ -111,6 +115,7 @@ private:
     std::uint32_t leaves_ = 1;
     std::vector<std::uint32_t> starts_;   // by id, in entries_
     std::vector<std::uint32_t> entries_;  // leaf << 3 | the axes whose lower end lies there
+    std::vector<std::uint32_t> homes_;    // by id: the lowest node whose cell holds all of the box
     std::vector<std::uint32_t> in_leaf_;  // copies
     std::vector<std::uint32_t> below_;    // by node: copies in its leaves
     double pairs_ = 0;                    // within leaves
@@ -118,6 +123,7 @@ private:
     std::size_t made_nodes_ = 0;
     // While planes are chosen:
     std::vector<node> old_;
+    std::vector<std::uint32_t> now_at_;      // by old node: itself, or what stands for it now
     std::vector<std::uint32_t> groups_;      // nodes to be chosen anew in the next frame, in their order
     std::vector<std::uint32_t> group_of_;    // by leaf, from 1; 0: stays
     std::vector<std::size_t> group_starts_;  // in ids_

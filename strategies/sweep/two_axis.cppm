@@ -53,18 +53,23 @@ public:
         if (met.size() < 2) return;
         rank(subset, subset.lists[static_cast<std::size_t>(kept_axis_)]);
         std::uint64_t tests = 0;
-        for (const auto& e : met) tests += meet<Subset>(rank_[e.id], pairs);
+        for (const auto& e : met) {
+            tests += meet<Subset>(rank_[e.id]);
+            if (found_ > enough) report(pairs);
+        }
+        report(pairs);
         counters.add(work::box_tests, tests);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
         return bytes_of(ranked_) + bytes_of(first_word_) + bytes_of(reached_) + bytes_of(rank_) + bytes_of(active_) +
-               bytes_of(word_begins_) + bytes_of(long_active_);
+               bytes_of(word_begins_) + bytes_of(long_active_) + bytes_of(pairs_) + bytes_of(candidates_);
     }
 
 private:
     using quad = float __attribute__((vector_size(16)));
     static constexpr std::size_t bits = 64;  // of a word
+    static constexpr std::size_t enough = 2048;
 
     /// A box as the sweep sees it; aligned, so that none lies across two cache lines.
     struct alignas(32) ranked_box {
@@ -84,6 +89,11 @@ private:
         return b.bounds[0] + b.bounds[2] > longest_short_;
     }
 
+    void report(std::vector<index_pair>& pairs) {
+        pairs.insert(pairs.end(), pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(found_));
+        found_ = 0;
+    }
+
     /// Numbers boxes by their place in the list that keeps them in order, and finds how far back each must look there.
     template <class Subset, class List>
     void rank(const Subset& subset, const List& list) {
@@ -95,6 +105,10 @@ private:
         word_begins_.resize((n + bits - 1) / bits);
         active_.assign(word_begins_.size(), 0);
         long_active_.clear();
+        found_ = 0;
+        // A box meets each of the others once at most, and one entry is written over by the next.
+        if (pairs_.size() < n + enough) pairs_.resize(n + enough);
+        if (candidates_.size() < n + 1) candidates_.resize(n + 1);
         const int third = 3 - swept_axis_ - kept_axis_;
         float reached = -std::numeric_limits<float>::infinity();
         std::size_t first = 0;
@@ -114,31 +128,62 @@ private:
         }
     }
 
-    /// Tests a box against those that it can reach, and puts it among them.
+    /// Lists the active boxes from a word on, up to the words that begin beyond a place. Most words have a few bits,
+    /// how many cannot be foreseen.
+    std::size_t candidates(std::size_t word, float last) noexcept {
+        std::size_t found = 0;
+        for (; word < active_.size() && word_begins_[word] <= last; ++word) {
+            std::uint64_t left = active_[word];
+            const auto take = [&] {
+                candidates_[found] =
+                    static_cast<std::uint32_t>(word * bits) + static_cast<std::uint32_t>(std::countr_zero(left));
+                found += static_cast<std::size_t>(left != 0);
+                left &= left - 1;
+            };
+            take();
+            take();
+            take();
+            while (left != 0) take();
+        }
+        return found;
+    }
+
+    /// Tests a box against those that it can reach, and puts it among them. Without a branch a test: neither whether
+    /// two boxes overlap nor whether one has ended can be foreseen.
     /// @returns how many it was tested against
     template <class Subset>
-    std::uint64_t meet(std::uint32_t rank, std::vector<index_pair>& pairs) {
+    std::size_t meet(std::uint32_t rank) {
         const ranked_box a = ranked_[rank];
         const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};
-        std::uint64_t tests = 0;
-        /// @returns whether the other has not ended
-        const auto test = [&](const ranked_box& b) {
-            ++tests;
-            if (b.end < a.begin) return false;
-            if (all_at_most(lower, b.bounds) && Subset::owns(a.owned, b.owned))
-                pairs.push_back(ordered_pair(a.id, b.id));
-            return true;
+        const auto overlaps = [&](const ranked_box& b) {
+            return static_cast<std::size_t>(b.end >= a.begin) & static_cast<std::size_t>(all_at_most(lower, b.bounds)) &
+                   static_cast<std::size_t>(Subset::owns(a.owned, b.owned));
         };
-        for (std::size_t w = first_word_[rank]; w < active_.size() && word_begins_[w] <= a.bounds[0]; ++w)
-            for (std::uint64_t left = active_[w]; left != 0; left &= left - 1)
-                if (!test(ranked_[w * bits + static_cast<std::size_t>(std::countr_zero(left))]))
-                    active_[w] &= ~(left & -left);
-        std::erase_if(long_active_, [&](std::uint32_t other) { return !test(ranked_[other]); });
+        const std::size_t near = candidates(first_word_[rank], a.bounds[0]);
+        std::size_t found = found_;
+        for (std::size_t c = 0; c < near; ++c) {
+            const std::uint32_t other = candidates_[c];
+            const ranked_box& b = ranked_[other];
+            pairs_[found] = ordered_pair(a.id, b.id);
+            found += overlaps(b);
+            active_[other / bits] &= ~(std::uint64_t{b.end < a.begin} << other % bits);
+        }
+        const std::size_t far = long_active_.size();
+        std::size_t stay = 0;
+        for (std::size_t c = 0; c < far; ++c) {
+            const ranked_box& b = ranked_[long_active_[c]];
+            pairs_[found] = ordered_pair(a.id, b.id);
+            found += overlaps(b);
+            long_active_[stay] = long_active_[c];
+            stay += static_cast<std::size_t>(b.end >= a.begin);
+        }
+        long_active_.resize(stay);
+        found_ = found;
         if (is_long(a))
             long_active_.push_back(rank);
         else
             active_[rank / bits] |= std::uint64_t{1} << rank % bits;
-        return tests;
+        return near + far;
     }
 
     chosen_axis swept_;
@@ -154,6 +199,9 @@ private:
     std::vector<std::uint64_t> active_;      // a bit for each box that was met, is not long, and was not seen to end
     std::vector<float> word_begins_;         // the lower end of the first box of a word of active_
     std::vector<std::uint32_t> long_active_;
+    std::vector<std::uint32_t> candidates_;  // of the box at hand
+    std::vector<index_pair> pairs_;          // found, not yet reported
+    std::size_t found_ = 0;
 };
 
 static_assert(ListSweep<two_axis_sweep>);

@@ -90,7 +90,7 @@ TEST_CASE("boxes of a kd-tree are classified half-open at its planes, and touchi
 TEST_CASE("overlapping boxes have one leaf that owns them, whatever frames came before") {
     REQUIRE(rc::check([] {
         planted p({{"leaf", *rc::gen::element<std::string>("auto", "2", "5")}});
-        std::vector<box> boxes(*rc::gen::inRange<std::size_t>(0, 60));
+        std::vector<box> boxes(*rc::gen::inRange<std::size_t>(0, 200));
         for (int frame = 0; frame < 4; ++frame) {
             // Some go elsewhere, or all.
             for (box& b : boxes)
