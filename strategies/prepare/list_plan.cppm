@@ -80,8 +80,7 @@ struct list_plan {
 /// doubling of time as the last two doublings tell; and a little more. So what jiggles about its place needs little
 /// more than it moved, what drifts ever more.
 [[nodiscard]] inline double margin_after(std::span<const double> motion, std::size_t frames) {
-    constexpr double a_little_more = 1.01;
-    constexpr double for_the_unseen = 1.02;
+    constexpr double a_little_more = 1.05;
     const std::size_t seen = motion.size();
     if (frames <= seen) return a_little_more * *std::ranges::max_element(motion.first(frames));
     const auto moved_after = [&](std::size_t frame) { return frame > 0 ? motion[frame - 1] : 0; };
@@ -94,11 +93,12 @@ struct list_plan {
     const double last = *std::ranges::max_element(motion);
     const double grown = growth(seen, last);
     const double grown_before = seen < 4 ? 0 : growth(seen / 2, moved_after(seen / 2));
-    // 2 is a drift.
-    const double ratio = grown < 2 * grown_before ? std::max(0.3, grown / grown_before) : 2;
-    const double doublings = std::log2(static_cast<double>(frames) / static_cast<double>(seen));
+    const double times = static_cast<double>(frames) / static_cast<double>(seen);
+    if (!(grown < 2 * grown_before)) return a_little_more * (last + 2 * grown * (times - 1));  // a drift
+    const double ratio = std::max(0.3, grown / grown_before);
+    const double doublings = std::log2(times);
     const double more = ratio == 1 ? doublings : ratio * (std::pow(ratio, doublings) - 1) / (ratio - 1);
-    return for_the_unseen * (last + grown * more);
+    return a_little_more * (last + grown * more);
 }
 
 /// A list must cost less than this part of a search: what it takes of the caches is not reckoned.
@@ -127,7 +127,10 @@ inline constexpr double worth_a_list = 0.87;
 }
 
 /// The plan that costs least a frame.
-[[nodiscard]] inline list_plan plan_list(const list_outlook& seen, const cost_model& cost = machine_costs()) {
+/// @param most a frame that a list serves costs less, over one that is searched, or the list is not looked at
+[[nodiscard]] inline list_plan plan_list(const list_outlook& seen,
+                                         double most = std::numeric_limits<double>::infinity(),
+                                         const cost_model& cost = machine_costs()) {
     constexpr std::array<std::size_t, 19> lifetimes{2,  3,  4,  5,  6,  8,  10,  12,  16, 20,
                                                     24, 32, 40, 48, 64, 96, 128, 192, 256};
     const auto n = static_cast<double>(seen.boxes);
@@ -139,7 +142,7 @@ inline constexpr double worth_a_list = 0.87;
         if (!(margin <= seen.growth.longest_margin())) break;
         const double listed = pairs_listed(seen, margin);
         const double served = cost_of_service(n, listed, cost) / search;
-        if (served >= best.cost) break;
+        if (served >= std::min(best.cost, most)) break;
         const double made = (n * cost.keep_box + cost_of_search(n, listed, cost)) / search;
         const double each = made / static_cast<double>(frames) + served;
         if (each < best.cost) best = {frames, margin, each};

@@ -67,6 +67,7 @@ private:
     [[nodiscard]] bool serves(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> watched(std::span<const box> boxes, bool same_objects);
+    void leave_alone();
     void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
     [[nodiscard]] std::span<const box> sample(std::span<const box> boxes, std::span<box> of);
@@ -78,7 +79,8 @@ private:
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many,
     /// and then a few of them looked at.
     static constexpr std::uint32_t longest_watch = 8;
-    static constexpr unsigned pause = 6;
+    static constexpr unsigned shortest_pause = 6;
+    static constexpr unsigned longest_pause = 96;
     /// A list that costs so many times what a search does is not waited for.
     static constexpr double hopeless = 3;
     /// Fewer are searched in the time that it takes to watch them.
@@ -114,6 +116,7 @@ private:
     double cost_ = 0;       // of the cheapest list that was thought of last, over that of a search
     bool watches_ = false;  // how far boxes are from those that are kept, without a list
     unsigned left_ = 0;     // frames that are searched as they are before one is kept again
+    unsigned pause_ = shortest_pause;
     glimpse glimpse_;
 };
 
@@ -260,7 +263,7 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
     // What jiggles about its place shows it only after some frames.
     watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
-    if (!watches_) left_ = pause + glimpse::longest;
+    if (!watches_) leave_alone();
     return std::nullopt;
 }
 
@@ -277,8 +280,14 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
         margin = paying_margin(boxes);
     }
     watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
-    if (!watches_ && !margin) left_ = pause + glimpse::longest;
+    if (!watches_ && !margin) leave_alone();
     return margin;
+}
+
+/// Where a few boxes say that a list may pay and all of them that none does, ever longer.
+void neighbour_list_stage::leave_alone() {
+    left_ = pause_ + glimpse::longest;
+    pause_ = std::min(2 * pause_, longest_pause);
 }
 
 /// A frame that is searched as it is. A few boxes are looked at until they say that a list may pay: where even those
@@ -289,7 +298,7 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     if (std::has_single_bit(age)) {
         const list_outlook seen{glimpse_.least_motion(boxes, objects_, age), objects_.size(), found_, growth_,
                                 correction_};
-        if (plan_list(seen).frames > 1)
+        if (plan_list(seen, worth_a_list).frames > 1)
             left_ = 0;
         else if (left_ == 0)
             left_ = glimpse::longest;
@@ -364,6 +373,7 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     if (margin > 0) {
         // Grown, an inverted box may be none. As they are, the search looks at them.
         require_valid(boxes);
+        pause_ = shortest_pause;
         grown_.resize(boxes.size());
         grow(boxes, margin, grown_);
     }
