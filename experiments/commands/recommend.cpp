@@ -16,7 +16,10 @@
 #include "scene_arguments.hpp"
 
 import aabb.base;
+import aabb.costs;
+import aabblab.configs;
 import aabblab.files;
+import aabblab.machine;
 import aabblab.measures;
 import aabblab.numbers;
 import aabblab.race;
@@ -78,6 +81,12 @@ std::string joined(const std::vector<std::string>& sentences) {
     return text;
 }
 
+/// By what, when and where it was measured.
+std::string origin() {
+    const kept_costs here = costs_of(this_machine().processor, aabb::machine_costs());
+    return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
+}
+
 std::string page_of(const std::string& scene, const race_result& race, const std::vector<told_measure>& measured) {
     table measures{{{"measured", false}, {"", false}}, {}};
     for (const told_measure& one : measured) measures.rows.push_back({one.name, one.value});
@@ -86,7 +95,7 @@ std::string page_of(const std::string& scene, const race_result& race, const std
            "0 .6em;text-align:left}</style></head><body>\n<h1>" +
            html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
            "<p>" + html_text(joined(legend())) + "</p>\n" + to_html(measures) + to_html(dropped_table_of(race)) +
-           "</body></html>\n";
+           "<p>" + html_text(origin()) + "</p>\n</body></html>\n";
 }
 
 double seconds_of(const std::string& text) {

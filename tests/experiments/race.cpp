@@ -106,6 +106,25 @@ TEST_CASE("A race ends with the fastest, and those who are far behind or fail pl
     CHECK(race.dropped.front().name == "slow");
 }
 
+TEST_CASE("Who was disturbed once is not dropped") {
+    using namespace std::chrono_literals;
+    static constexpr auto frame = 5ms;
+    const temporary_folder folder;
+    const std::string played = (folder / "played").string();
+    std::vector<racer> all{delayed("fast", [] { std::this_thread::sleep_for(frame); }),
+                           delayed("disturbed", [] { std::this_thread::sleep_for(frame); })};
+    // Three times as slow in the play that finds no file.
+    all.back().who.make_global = [played, make = all.back().who.make_global](
+                                     aabb::instrumentation counted) -> std::unique_ptr<aabb::global_stage> {
+        if (std::filesystem::exists(played)) return make(counted);
+        std::ofstream(played) << "once";
+        const auto slow = [] { std::this_thread::sleep_for(3 * frame); };
+        return std::make_unique<delayed_stage<decltype(slow)>>(slow);
+    };
+    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 5);
+    CHECK(holds(race.finalists, "disturbed"));
+}
+
 TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
     std::vector<racer> all{delayed("one", [] {}), delayed("other", [] {})};
     const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 1);
@@ -323,7 +342,7 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     CHECK(told.out.find("finds other pairs") == std::string::npos);
     std::ifstream in(page);
     const std::string html{std::istreambuf_iterator<char>(in), {}};
-    for (const char* part : {"<p>Use ", "overlapping pairs an object", "dropped", "all_axes"})
+    for (const char* part : {"<p>Use ", "overlapping pairs an object", "dropped", "all_axes", "<p>aabblab "})
         CHECK(html.find(part) != std::string::npos);
     for (const char* part : {"\nratio: all ms over", "\nms/frame: update, search", "\nbuild ms: the stages are made"})
         CHECK(told.out.find(part) != std::string::npos);
