@@ -23,6 +23,15 @@ export import :player;
 
 export namespace aabblab {
 
+/// Who plays at a place of a round, so that it matters to nobody alone after whom one plays: each begins a round, and
+/// in as many rounds as there are players, if these are even, follows each other one once; else about so (Williams,
+/// "Experimental designs balanced for the estimation of residual effects of treatments", 1949).
+[[nodiscard]] constexpr std::size_t in_turn(std::size_t place, std::size_t round, std::size_t players) noexcept {
+    // 0, 1, -1, 2, -2 and so on.
+    const std::size_t apart = place % 2 == 1 ? (place + 1) / 2 : players - place / 2;
+    return (round + apart) % players;
+}
+
 /// "insertion + none + one_axis + canonical + exact", "cgal".
 [[nodiscard]] std::string text_of(const contender_name& name);
 

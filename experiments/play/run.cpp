@@ -207,8 +207,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat) {
         const hopeless given_up(e, share, repeat > share.begin ? rows_of(scene, results.rows()) : std::vector<row>());
         for (std::size_t i = 0; i < timed.size(); ++i, shown.at(++done)) {
-            // Each repeat begins with another contender, so that none is always the first.
-            timed_contender& turn = timed[(i + repeat) % timed.size()];
+            timed_contender& turn = timed[in_turn(i, repeat, timed.size())];
             turn.result.repeat = repeat;
             turn.result.process = process;
             if (turn.strayed || given_up.contains(turn.result.name) || results.has(turn.result)) continue;

@@ -173,13 +173,12 @@ private:
         running_.erase(first_out, running_.end());
     }
 
-    /// The whole scene, in turn, as often as there is time for. Each repeat begins with another one, since it matters
-    /// after whom one plays. Who does not come to the end each time is dropped.
+    /// The whole scene, in turn, as often as there is time for. Who does not come to the end each time is dropped.
     void play_final() {
         progress shown("racing to the end", most_repeats);
         for (std::size_t repeat = 0; repeat < most_repeats && (repeat < fewest_repeats || left() > 0); ++repeat) {
             for (std::size_t k = 0; k < running_.size(); ++k) {
-                racer& r = running_[(repeat + k) % running_.size()];
+                racer& r = running_[in_turn(k, repeat, running_.size())];
                 if (const auto time = play_apart(scene_, r.who, result_.frames, final_patience)) {
                     r.times.push_back(*time);
                     r.frames = result_.frames;

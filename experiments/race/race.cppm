@@ -46,7 +46,7 @@ struct race_time {
 inline constexpr double hopeless_ratio = 20;
 inline constexpr double hopeless_ms = 100;
 
-/// Plays the first frames of the scene with all in turn, round after round, each of which begins with another one.
+/// Plays the first frames of the scene with all in turn (`in_turn`), round after round.
 /// @returns by contender the times, by round
 [[nodiscard]] std::vector<std::vector<race_time>> play_in_turn(const scene_choice& scene,
                                                                std::span<const contender> all, std::size_t frames,

@@ -22,7 +22,7 @@ std::vector<std::vector<race_time>> play_in_turn(const scene_choice& scene, std:
     std::iota(running.begin(), running.end(), std::size_t{0});
     for (std::size_t round = 0; round < rounds; ++round) {
         for (std::size_t k = 0; k < running.size(); ++k) {
-            const std::size_t one = running[(round + k) % running.size()];
+            const std::size_t one = running[in_turn(k, round, running.size())];
             times[one].push_back(time_frames(scene, all[one], frames));
             shown.at(round * all.size() + k + 1);
         }

@@ -268,6 +268,28 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     CHECK(told(without, "auto (= x) was stopped"));
 }
 
+TEST_CASE("In rounds everybody plays once, begins in turn, and follows each other as often") {
+    for (std::size_t players = 1; players <= 12; ++players) {
+        INFO(players << " players");
+        std::vector<std::vector<int>> follows(players, std::vector<int>(players));
+        // An odd number needs twice as many rounds, of which half would be played backwards.
+        for (std::size_t round = 0; round < players; ++round) {
+            std::vector<bool> has_played(players);
+            for (std::size_t place = 0; place < players; ++place) {
+                const std::size_t one = aabblab::in_turn(place, round, players);
+                REQUIRE(one < players);
+                CHECK_FALSE(has_played[one]);
+                has_played[one] = true;
+                if (place > 0) ++follows[one][aabblab::in_turn(place - 1, round, players)];
+            }
+            CHECK(aabblab::in_turn(0, round, players) == round);
+        }
+        for (std::size_t a = 0; a < players; ++a)
+            for (std::size_t b = 0; b < players; ++b)
+                if (a != b) CHECK((players % 2 == 0 ? follows[a][b] == 1 : follows[a][b] <= 2));
+    }
+}
+
 TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once") {
     std::string order;
     std::vector<aabblab::contender> all;
