@@ -141,7 +141,7 @@ private:
         for (racer& r : running_) r.behind = r.last ? whole(r) / least : 0;
     }
 
-    /// One play may have been disturbed: of two, the faster counts for who would be dropped and is not far behind.
+    /// One play may have been disturbed: of two, the faster counts for who is behind, but not far.
     void play_again(std::size_t frames, double margin) {
         constexpr double far = 2;
         for (racer& r : running_) {

@@ -113,10 +113,10 @@ private:
     std::uint32_t drawn_ = 0;  // boxes, for samples
     rest_watch rest_;
     bool came_to_rest_ = false;
-    double cost_ = 0;       // of the cheapest list that was thought of last, over that of a search
-    bool watches_ = false;  // how far boxes are from those that are kept, without a list
-    unsigned left_ = 0;     // frames that are searched as they are before one is kept again
-    unsigned pause_ = shortest_pause;
+    double cost_ = 0;                  // of the cheapest list that was thought of last, over that of a search
+    bool watches_ = false;             // how far boxes are from those that are kept, without a list
+    unsigned left_ = 0;                // frames that are searched as they are before one is kept again
+    unsigned pause_ = shortest_pause;  // as long as the next one is
     glimpse glimpse_;
 };
 

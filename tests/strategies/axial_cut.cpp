@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "cell_owners.hpp"
+
 import aabb;
 import aabb.partition.axial_cut;
 
@@ -37,9 +39,7 @@ struct fitted {
 
     /// Subsets of a box, with the axes that each owns.
     [[nodiscard]] std::map<std::uint32_t, axis_set> subsets_of(std::uint32_t id) const {
-        std::map<std::uint32_t, axis_set> all;
-        partition.for_each_subset(id, boxes[id], [&](std::uint32_t s, axis_set owned) { all[s] = owned; });
-        return all;
+        return subsets_in(partition, boxes, id);
     }
 
     std::vector<box> boxes;
@@ -59,15 +59,6 @@ std::vector<box> row_of_points(int n) {
     std::vector<std::pair<float, float>> points;
     for (int i = 0; i < n; ++i) points.emplace_back(static_cast<float>(i), static_cast<float>(i));
     return line_of(points);
-}
-
-box any_box() {
-    box b;
-    for (int k = 0; k < 3; ++k) {
-        b.min[k] = static_cast<float>(*rc::gen::inRange(0, 30));
-        b.max[k] = b.min[k] + static_cast<float>(*rc::gen::element(0, 1, 2, 3, 20));
-    }
-    return b;
 }
 
 }  // namespace
@@ -106,7 +97,7 @@ TEST_CASE("boxes are classified half-open at the cuts, and closed boxes that tou
 TEST_CASE("no box is cut more than once on an axis, and overlapping boxes have one subset that owns them") {
     REQUIRE(rc::check([] {
         std::vector<box> boxes(*rc::gen::inRange<std::size_t>(0, 40));
-        for (box& b : boxes) b = any_box();
+        for (box& b : boxes) b = any_box_among_planes();
         const std::string axes = *rc::gen::element<std::string>("auto", "1", "2", "3");
         const std::string limit = *rc::gen::element<std::string>("on", "off");
         const std::string segments = *rc::gen::element<std::string>("auto", "1", "2", "3", "9", "60");
@@ -201,7 +192,7 @@ TEST_CASE("auto keeps to the axes that it cuts until others cost a tenth less") 
 TEST_CASE("the more segments are wanted, the more there are, up to the limit") {
     REQUIRE(rc::check([] {
         std::vector<box> boxes(*rc::gen::inRange<std::size_t>(1, 200));
-        for (box& b : boxes) b = any_box();
+        for (box& b : boxes) b = any_box_among_planes();
         std::uint64_t got = 0;
         for (const char* wanted : {"2", "8", "64", "65535"}) {
             const segment_counts counts = fitted(boxes, {{"axes", "1"}, {"segments", wanted}}).partition.segments();
