@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -34,8 +35,8 @@ public:
         }
     }
 
-    /// Frame by frame, not more than `motion_between` the kept one and that, over all boxes; 0 where none is left.
-    /// Frames that were not looked at are as the next one.
+    /// Frame by frame, not more than `motion_between` the kept one and any until that, over all boxes; 0 where none is
+    /// left. Frames that were not looked at are as the next one.
     /// @param age how many frames ago it was kept, each power of two in turn
     [[nodiscard]] std::span<const double> least_motion(std::span<const box> boxes, const membership& objects,
                                                        unsigned age) {
@@ -47,8 +48,8 @@ public:
             from[count] = kept_[i];
             to[count++] = boxes[ids_[i]];
         }
-        const double moved =
-            count > 0 ? motion_between(std::span(from).first(count), std::span(to).first(count)).margin : 0;
+        double moved = count > 0 ? motion_between(std::span(from).first(count), std::span(to).first(count)).margin : 0;
+        if (age > 1) moved = std::max(moved, motion_[age / 2 - 1]);
         for (std::size_t frame = age / 2; frame < age; ++frame) motion_[frame] = moved;
         return std::span(motion_).first(age);
     }

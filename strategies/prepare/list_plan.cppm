@@ -60,7 +60,8 @@ private:
 
 /// What is known of a scene when the next list of neighbours is planned.
 struct list_outlook {
-    /// By how much boxes moved relative to each other since the last search, frame by frame; see `relative_motion`.
+    /// By how much boxes moved relative to each other since the last search, at most until that frame, frame by frame;
+    /// see `relative_motion`.
     std::span<const double> motion;
     std::size_t boxes = 0;
     std::size_t pairs = 0;  ///< that overlap
@@ -82,15 +83,14 @@ struct list_plan {
 [[nodiscard]] inline double margin_after(std::span<const double> motion, std::size_t frames) {
     constexpr double a_little_more = 1.05;
     const std::size_t seen = motion.size();
-    if (frames <= seen) return a_little_more * *std::ranges::max_element(motion.first(frames));
+    if (frames <= seen) return a_little_more * motion[frames - 1];
     const auto moved_after = [&](std::size_t frame) { return frame > 0 ? motion[frame - 1] : 0; };
     // In half of that time, at the pace since the middle of it.
     const auto growth = [&](std::size_t frame, double moved) {
         const std::size_t middle = frame / 2;
-        return std::max(0.0, moved - moved_after(middle)) * static_cast<double>(frame) /
-               static_cast<double>(2 * (frame - middle));
+        return (moved - moved_after(middle)) * static_cast<double>(frame) / static_cast<double>(2 * (frame - middle));
     };
-    const double last = *std::ranges::max_element(motion);
+    const double last = motion.back();
     const double grown = growth(seen, last);
     const double grown_before = seen < 4 ? 0 : growth(seen / 2, moved_after(seen / 2));
     const double times = static_cast<double>(frames) / static_cast<double>(seen);
@@ -101,8 +101,10 @@ struct list_plan {
     return a_little_more * (last + grown * more);
 }
 
-/// A list must cost less than this part of a search: what it takes of the caches is not reckoned.
+/// A list must cost less than this part of a search: what it takes of the caches is not reckoned. The next one of lists
+/// that do may cost a little more: giving up what pays by a little costs more than that.
 inline constexpr double worth_a_list = 0.87;
+inline constexpr double worth_another_list = 0.95;
 
 /// How many pairs a list with that margin is to hold.
 [[nodiscard]] inline double pairs_listed(const list_outlook& seen, double margin) {
@@ -127,8 +129,9 @@ inline constexpr double worth_a_list = 0.87;
 }
 
 /// The plan that costs least a frame.
+/// @param worth what it must cost less than, over a search in every frame
 /// @param most a frame that a list serves costs less, over one that is searched, or the list is not looked at
-[[nodiscard]] inline list_plan plan_list(const list_outlook& seen,
+[[nodiscard]] inline list_plan plan_list(const list_outlook& seen, double worth = worth_a_list,
                                          double most = std::numeric_limits<double>::infinity(),
                                          const cost_model& cost = machine_costs()) {
     constexpr std::array<std::size_t, 19> lifetimes{2,  3,  4,  5,  6,  8,  10,  12,  16, 20,
@@ -147,7 +150,7 @@ inline constexpr double worth_a_list = 0.87;
         const double each = made / static_cast<double>(frames) + served;
         if (each < best.cost) best = {frames, margin, each};
     }
-    if (best.cost >= worth_a_list) best.frames = 1;
+    if (best.cost >= worth) best.frames = 1;
     return best;
 }
 

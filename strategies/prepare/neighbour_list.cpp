@@ -75,6 +75,8 @@ private:
     void correct(double beside);
     void search_as_it_is(std::span<const box> boxes);
     void keep(std::span<const box> boxes, double margin);
+    void judge_first_list(std::span<const box> boxes);
+    void keep_those_that_meet(std::span<const box> boxes);
 
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many,
     /// and then a few of them looked at.
@@ -88,6 +90,8 @@ private:
     /// Of fewer boxes any list is short.
     static constexpr std::size_t fewest_boxes_of_long_list = 256;
     static constexpr std::size_t longest_history = 256;
+    /// Of the first list, in mean extents: the best where one margin must do for any scene.
+    static constexpr double first_margin = 0.1;
 
     std::unique_ptr<global_stage> search_;
     neighbour_list_prepare::config config_;
@@ -102,9 +106,11 @@ private:
     std::vector<index_pair> list_;  // that it found, less the pairs of objects that have left
     bool is_kept_ = false;          // false where that search failed, or there was none
     bool is_too_long_ = false;      // so that a search takes less time
+    bool is_first_ = true;          // nothing is known of the scene yet
     double margin_ = 0;
-    std::vector<double> motion_;  // since then, frame by frame
+    std::vector<double> motion_;  // since then, at most until that frame, frame by frame
     std::uint32_t age_ = 0;       // frames since
+    std::size_t planned_ = 0;     // frames for which the list was made; 0 where nobody reckoned
     std::size_t found_ = 0;       // pairs of the frame before
     growth_of_pairs growth_;
     double foreseen_ = 0;      // pairs of the list beside those that overlap, as they were reckoned
@@ -138,8 +144,10 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         search_as_it_is(boxes);
     } else if (!is_kept_ || comes_any || !rests(boxes)) {
         const bool same_objects = !comes_any && boxes.size() == kept_.size();
-        if (is_kept_ && !is_too_long_ && same_objects && serves(boxes)) {
+        if (is_kept_ && is_first_) judge_first_list(boxes);
+        if (is_kept_ && same_objects && serves(boxes) && !is_too_long_) {
             require_valid(boxes);
+            if (came_to_rest_) keep_those_that_meet(boxes);
         } else if (const std::optional<double> margin = watches_ ? watched(boxes, same_objects) : next_margin(boxes)) {
             keep(boxes, *margin);
         } else {
@@ -169,12 +177,13 @@ using corner = float __attribute__((vector_size(16)));
     return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
 }
 
-/// Appends those that overlap: a vector of pairs at a time and without a branch, since which they are cannot be
+/// Stores those that overlap: a vector of pairs at a time and without a branch, since which they are cannot be
 /// foreseen.
-void append_meeting(std::span<const box> boxes, std::span<const index_pair> list, std::vector<index_pair>& pairs) {
+/// @param to may be where the list is; written are some beyond the last, at most as many as the list has and a vector
+/// @return how many
+std::size_t store_meeting(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
     constexpr std::size_t at_a_time = simd::width / 2;
-    std::size_t end = pairs.size();
-    pairs.resize(end + list.size() + at_a_time);
+    std::size_t end = 0;
     std::size_t i = 0;
     for (; i + at_a_time <= list.size(); i += at_a_time) {
         std::uint32_t both_words = 0;
@@ -183,13 +192,13 @@ void append_meeting(std::span<const box> boxes, std::span<const index_pair> list
             both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
         simd::words some;
         std::memcpy(&some, &list[i], sizeof some);
-        end += simd::store_where(&pairs[end].a, some, both_words) / 2;
+        end += simd::store_where(&to[end].a, some, both_words) / 2;
     }
     for (const index_pair pair : list.subspan(i)) {
-        pairs[end] = pair;
+        to[end] = pair;
         end += static_cast<std::size_t>(meet(boxes[pair.a], boxes[pair.b]));
     }
-    pairs.resize(end);
+    return end;
 }
 
 void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
@@ -202,7 +211,10 @@ void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
         pairs.insert(pairs.end(), list_.begin(), list_.end());
     } else {
         if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-        append_whole(pairs, [&] { append_meeting(boxes_, list_, pairs); });
+        append_whole(pairs, [&] {
+            pairs.resize(before + list_.size() + simd::width / 2);
+            pairs.resize(before + store_meeting(boxes_, list_, pairs.data() + before));
+        });
     }
     found_ = pairs.size() - before;
 }
@@ -245,19 +257,22 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
     from_ = source::list;
     if (config_.every > 0 && config_.margin) return age_ < config_.every;
     const relative_motion moved = motion_between(kept_, boxes, objects_);
-    if (motion_.size() < longest_history) motion_.push_back(moved.margin);
+    if (motion_.size() < longest_history)
+        motion_.push_back(motion_.empty() ? moved.margin : std::max(motion_.back(), moved.margin));
     if (!moved.any && margin_ == 0) from_ = source::whole;
     if (config_.every > 0) return age_ < config_.every;
-    came_to_rest_ = adapts() && margin_ > 0 && rest_.came_to_rest(boxes, moved.margin);
-    return moved.margin <= margin_ && !came_to_rest_;
+    came_to_rest_ = adapts() && margin_ > 0 && (!moved.any || rest_.came_to_rest(boxes, moved.margin));
+    return moved.margin <= margin_;
 }
 
-/// The margin of the list that is to be kept now; none where none pays. A first frame is kept as it is, to see how
-/// boxes move, and one of boxes that came to rest, to be the answer until they move.
+/// The margin of the list that is to be kept now; none where none pays. After a pause a frame is kept as it is, to see
+/// how boxes move, and one of boxes that came to rest, to be the answer until they move.
 std::optional<double> neighbour_list_stage::next_margin(std::span<const box> boxes) {
     foreseen_ = 0;
     if (config_.margin) return mean_extents(*config_.margin, boxes, objects_);
-    if (!is_kept_ || std::exchange(came_to_rest_, false)) return 0;
+    const bool comes_to_rest = std::exchange(came_to_rest_, false);
+    if (adapts() && is_first_) return mean_extents(first_margin, boxes, objects_);
+    if (!is_kept_ || comes_to_rest) return 0;
     if (config_.every > 0) return motion_.empty() ? 0 : margin_after(motion_, config_.every - 1);
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
@@ -275,7 +290,7 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
     bool drifts = false;
     if (same_objects && std::has_single_bit(age_)) {
         const double half_way = motion_.back();
-        motion_.resize(age_, motion_between(kept_, boxes, objects_).margin);
+        motion_.resize(age_, std::max(half_way, motion_between(kept_, boxes, objects_).margin));
         drifts = motion_.back() > 1.8 * half_way;
         margin = paying_margin(boxes);
     }
@@ -298,7 +313,7 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     if (std::has_single_bit(age)) {
         const list_outlook seen{glimpse_.least_motion(boxes, objects_, age), objects_.size(), found_, growth_,
                                 correction_};
-        if (plan_list(seen, worth_a_list).frames > 1)
+        if (plan_list(seen, worth_a_list, worth_a_list).frames > 1)
             left_ = 0;
         else if (left_ == 0)
             left_ = glimpse::longest;
@@ -313,8 +328,10 @@ std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> b
     }
     for (;;) {
         const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
-        const list_plan plan = plan_list(seen);
+        const bool lasted_as_planned = is_kept_ && planned_ > 1 && age_ >= planned_;
+        const list_plan plan = plan_list(seen, lasted_as_planned ? worth_another_list : worth_a_list);
         cost_ = plan.cost;
+        planned_ = plan.frames;
         const bool pays = plan.frames > 1;
         foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
         const bool is_to_be_looked_up = objects_.size() >= fewest_boxes_of_long_list && foreseen_ > 0 &&
@@ -365,6 +382,29 @@ void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
     is_kept_ = false;
     from_ = source::search;
     search_->update(boxes);
+}
+
+/// What the list of the first frame tells, which was kept before anything was known.
+void neighbour_list_stage::judge_first_list(std::span<const box> boxes) {
+    is_first_ = false;
+    if (margin_ == 0) return;
+    std::array<box, 16> some;
+    growth_ = growth_of_pairs(sample(boxes, some));
+    const list_outlook seen{{}, objects_.size(), found_, growth_, correction_};
+    foreseen_ = pairs_listed(seen, margin_) - pairs_listed(seen, 0);
+    if (foreseen_ > 0) correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
+    is_too_long_ = !pays(objects_.size(), found_, list_.size());
+}
+
+/// Of a list that serves boxes which came to rest.
+void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
+    if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
+    list_.resize(store_meeting(boxes, list_, list_.data()));
+    kept_.assign(boxes.begin(), boxes.end());
+    margin_ = 0;
+    motion_.clear();
+    age_ = 0;
+    from_ = source::whole;
 }
 
 void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {

@@ -18,8 +18,9 @@ export namespace aabb {
 /// pair and no search (Verlet, "Computer 'experiments' on classical fluids", 1967). What all move alike is no motion.
 /// An object that comes makes a search too.
 ///
-/// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one;
-/// where no list pays, frames are searched as they are, and boxes watched in some of them.
+/// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one,
+/// and the first one a tenth of the mean extent, since nothing is known yet; where no list pays, frames are searched as
+/// they are, and boxes watched in some of them.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
 /// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
