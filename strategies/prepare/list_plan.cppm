@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -83,6 +84,7 @@ struct list_plan {
 [[nodiscard]] inline double margin_after(std::span<const double> motion, std::size_t frames) {
     constexpr double a_little_more = 1.05;
     const std::size_t seen = motion.size();
+    assert(frames > 0 && seen > 0);
     if (frames <= seen) return a_little_more * motion[frames - 1];
     const auto moved_after = [&](std::size_t frame) { return frame > 0 ? motion[frame - 1] : 0; };
     // In half of that time, at the pace since the middle of it.

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -22,7 +23,9 @@ import aabb.pipeline;
 import aabb.prepare.glimpse;
 import aabb.prepare.grown_boxes;
 import aabb.prepare.list_plan;
+import aabb.prepare.listed_pairs;
 import aabb.prepare.mean_extent;
+import aabb.prepare.reach;
 import aabb.prepare.relative_motion;
 import aabb.prepare.rest_watch;
 import aabb.simd;
@@ -52,6 +55,7 @@ public:
     void search(std::vector<index_pair>& pairs) override;
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
+    [[nodiscard]] std::vector<std::string> plans() const override;
     [[nodiscard]] std::vector<std::string> left_out() const override;
 
 private:
@@ -70,8 +74,10 @@ private:
     void leave_alone();
     void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
-    [[nodiscard]] std::span<const box> sample(std::span<const box> boxes, std::span<box> of);
-    [[nodiscard]] double pairs_in_reach(std::span<const box> boxes, double margin);
+    [[nodiscard]] double first_margin(std::span<const box> boxes);
+    [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin);
+    void look_anew(std::span<const box> boxes);
+    void look_anew_at_other_sizes(std::span<const box> boxes);
     void correct(double beside);
     void search_as_it_is(std::span<const box> boxes);
     void keep(std::span<const box> boxes, double margin);
@@ -91,7 +97,7 @@ private:
     static constexpr std::size_t fewest_boxes_of_long_list = 256;
     static constexpr std::size_t longest_history = 256;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
-    static constexpr double first_margin = 0.1;
+    static constexpr double extents_of_first_margin = 0.1;
 
     std::unique_ptr<global_stage> search_;
     neighbour_list_prepare::config config_;
@@ -113,17 +119,20 @@ private:
     std::size_t planned_ = 0;     // frames for which the list was made; 0 where nobody reckoned
     std::size_t found_ = 0;       // pairs of the frame before
     growth_of_pairs growth_;
+    double extent_ = 0;        // of boxes, when that was looked at
     double foreseen_ = 0;      // pairs of the list beside those that overlap, as they were reckoned
     double correction_ = 1;    // of that
-    double looked_up_ = 0;     // the greatest margin for which a sample was asked how long the list would be
+    double looked_up_ = 0;     // a margin for which a sample said how long the list would be, or the first list did
     std::uint32_t drawn_ = 0;  // boxes, for samples
     rest_watch rest_;
     bool came_to_rest_ = false;
+    bool rested_ = false;              // since the list was kept
     double cost_ = 0;                  // of the cheapest list that was thought of last, over that of a search
     bool watches_ = false;             // how far boxes are from those that are kept, without a list
     unsigned left_ = 0;                // frames that are searched as they are before one is kept again
     unsigned pause_ = shortest_pause;  // as long as the next one is
     glimpse glimpse_;
+    bool move_too_far_ = false;  // the few boxes, for any list
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
@@ -144,7 +153,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         search_as_it_is(boxes);
     } else if (!is_kept_ || comes_any || !rests(boxes)) {
         const bool same_objects = !comes_any && boxes.size() == kept_.size();
-        if (is_kept_ && is_first_) judge_first_list(boxes);
+        if (adapts() && is_kept_ && is_first_) judge_first_list(boxes);
         if (is_kept_ && same_objects && serves(boxes) && !is_too_long_) {
             require_valid(boxes);
             if (came_to_rest_) keep_those_that_meet(boxes);
@@ -155,50 +164,6 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         }
     }
     frame_.taken();
-}
-
-/// The least and the greatest numbers of a box on all three axes, each with a fourth one of no account.
-using corner = float __attribute__((vector_size(16)));
-[[nodiscard, gnu::always_inline]] inline corner lower_of(const box& b) noexcept {
-    corner v;
-    std::memcpy(&v, &b, sizeof v);
-    return v;
-}
-[[nodiscard, gnu::always_inline]] inline corner upper_of(const box& b) noexcept {
-    corner v;
-    std::memcpy(&v, reinterpret_cast<const char*>(&b) + sizeof(box) - sizeof v, sizeof v);
-    return __builtin_shufflevector(v, v, 1, 2, 3, 0);
-}
-
-/// As `overlaps`, on three axes at a time.
-[[nodiscard, gnu::always_inline]] inline bool meet(const box& a, const box& b) noexcept {
-    using bools = bool __attribute__((ext_vector_type(4)));
-    const auto held = (lower_of(a) <= upper_of(b)) & (lower_of(b) <= upper_of(a));
-    return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
-}
-
-/// Stores those that overlap: a vector of pairs at a time and without a branch, since which they are cannot be
-/// foreseen.
-/// @param to may be where the list is; written are some beyond the last, at most as many as the list has and a vector
-/// @return how many
-std::size_t store_meeting(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
-    constexpr std::size_t at_a_time = simd::width / 2;
-    std::size_t end = 0;
-    std::size_t i = 0;
-    for (; i + at_a_time <= list.size(); i += at_a_time) {
-        std::uint32_t both_words = 0;
-#pragma clang loop unroll(full)
-        for (std::size_t k = 0; k < at_a_time; ++k)
-            both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
-        simd::words some;
-        std::memcpy(&some, &list[i], sizeof some);
-        end += simd::store_where(&to[end].a, some, both_words) / 2;
-    }
-    for (const index_pair pair : list.subspan(i)) {
-        to[end] = pair;
-        end += static_cast<std::size_t>(meet(boxes[pair.a], boxes[pair.b]));
-    }
-    return end;
 }
 
 void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
@@ -232,11 +197,23 @@ std::vector<part_bytes> neighbour_list_stage::bytes() const {
     return parts;
 }
 
+std::vector<std::string> neighbour_list_stage::plans() const {
+    std::vector<std::string> all = search_->plans();
+    if (from_ == source::list)
+        all.push_back("a list of " + std::to_string(list_.size()) + " pairs, of boxes grown by " +
+                      shortest(static_cast<float>(margin_)) + " on every side");
+    else if (from_ == source::whole)
+        all.emplace_back("the pairs of a frame since which nothing has moved");
+    return all;
+}
+
 std::vector<std::string> neighbour_list_stage::left_out() const {
     std::vector<std::string> absent = search_->left_out();
     if (from_ == source::search)
         absent.emplace_back(adapts() && objects_.size() < fewest_boxes_of_list
                                 ? "no list of neighbours: so few boxes are searched as soon as watched"
+                            : watches_
+                                ? "no list of neighbours: boxes are watched for how far they move"
                                 : "no list of neighbours: boxes move too far, or come too often, for one to pay");
     return absent;
 }
@@ -247,6 +224,7 @@ bool neighbour_list_stage::rests(std::span<const box> boxes) {
         std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) != 0)
         return false;
     motion_.clear();
+    rested_ = true;
     from_ = source::whole;
     return true;
 }
@@ -271,9 +249,10 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     foreseen_ = 0;
     if (config_.margin) return mean_extents(*config_.margin, boxes, objects_);
     const bool comes_to_rest = std::exchange(came_to_rest_, false);
-    if (adapts() && is_first_) return mean_extents(first_margin, boxes, objects_);
-    if (!is_kept_ || comes_to_rest) return 0;
-    if (config_.every > 0) return motion_.empty() ? 0 : margin_after(motion_, config_.every - 1);
+    if (adapts() && is_first_) return first_margin(boxes);
+    // Whoever comes to boxes at rest does not make them move.
+    if (!is_kept_ || comes_to_rest || (rested_ && motion_.empty())) return 0;
+    if (config_.every > 0) return motion_.empty() || config_.every == 1 ? 0 : margin_after(motion_, config_.every - 1);
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
     // What jiggles about its place shows it only after some frames.
@@ -306,40 +285,48 @@ void neighbour_list_stage::leave_alone() {
 }
 
 /// A frame that is searched as it is. A few boxes are looked at until they say that a list may pay: where even those
-/// move too far for any, all do.
+/// move too far for any, all do, and are not looked at for the rest of the eight frames.
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     --left_;
     const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
-    if (std::has_single_bit(age)) {
+    if (std::has_single_bit(age) && !move_too_far_) {
         const list_outlook seen{glimpse_.least_motion(boxes, objects_, age), objects_.size(), found_, growth_,
                                 correction_};
-        if (plan_list(seen, worth_a_list, worth_a_list).frames > 1)
+        const list_plan plan = plan_list(seen, worth_a_list, worth_a_list);
+        if (plan.frames > 1) {
             left_ = 0;
-        else if (left_ == 0)
-            left_ = glimpse::longest;
+            return;
+        }
+        move_too_far_ = std::isinf(plan.cost);
     }
-    if (left_ == glimpse::longest) glimpse_.keep(boxes, drawn_);
+    if (left_ == 0) left_ = glimpse::longest;
+    if (left_ == glimpse::longest) {
+        look_anew_at_other_sizes(boxes);
+        glimpse_.keep(boxes, drawn_);
+        move_too_far_ = false;
+    }
 }
 
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
-    if (age_ <= 1) {
-        std::array<box, 16> some;
-        growth_ = growth_of_pairs(sample(boxes, some));
-    }
+    if (age_ <= 1)
+        look_anew(boxes);
+    else
+        look_anew_at_other_sizes(boxes);
+    const bool lasted_as_planned = is_kept_ && planned_ > 1 && age_ >= planned_;
     for (;;) {
         const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
-        const bool lasted_as_planned = is_kept_ && planned_ > 1 && age_ >= planned_;
         const list_plan plan = plan_list(seen, lasted_as_planned ? worth_another_list : worth_a_list);
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
         foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
         const bool is_to_be_looked_up = objects_.size() >= fewest_boxes_of_long_list && foreseen_ > 0 &&
-                                        (pays ? plan.margin > looked_up_ : looked_up_ == 0 && cost_ < hopeless);
+                                        (pays ? plan.margin > 2 * looked_up_ : looked_up_ == 0 && cost_ < hopeless);
+        if (pays && is_far_too_long(boxes, plan.margin)) return std::nullopt;
         if (!is_to_be_looked_up) return pays ? std::optional(plan.margin) : std::nullopt;
         // A list may hold each box with every other, or as boxes on a surface fewer than are reckoned.
         looked_up_ = plan.margin;
-        const double beside = pairs_in_reach(boxes, plan.margin) - static_cast<double>(found_);
+        const double beside = pairs_in_reach(boxes, objects_, drawn_, plan.margin) - static_cast<double>(found_);
         if (pays && beside <= 2 * foreseen_ + static_cast<double>(objects_.size())) return plan.margin;
         // Where none pays, only fewer of them change that.
         if (!pays && beside >= foreseen_) return std::nullopt;
@@ -352,30 +339,38 @@ void neighbour_list_stage::correct(double beside) {
     correction_ = std::clamp(correction_ * beside / foreseen_, 0.3, 1000.0);
 }
 
-/// Boxes by chance, fewer where some objects are absent.
-std::span<const box> neighbour_list_stage::sample(std::span<const box> boxes, std::span<box> of) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < of.size() && i < boxes.size(); ++i) {
-        const std::uint32_t id = drawn_id(drawn_, boxes.size());
-        if (objects_.contains(id)) of[count++] = boxes[id];
-    }
-    return of.first(count);
+/// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
+double neighbour_list_stage::first_margin(std::span<const box> boxes) {
+    const double margin = mean_extents(extents_of_first_margin, boxes, objects_);
+    found_ = 0;
+    return is_far_too_long(boxes, margin) ? 0 : margin;
 }
 
-/// About how many pairs a list with that margin holds: as many as a sample of boxes has neighbours.
-double neighbour_list_stage::pairs_in_reach(std::span<const box> boxes, double margin) {
+/// Whether half of that list would not pay: it may hold each box with every other, whatever is reckoned.
+bool neighbour_list_stage::is_far_too_long(std::span<const box> boxes, double margin) {
+    constexpr std::size_t by_chance = 8;
+    const rough_reach reach = rough_reach_of(boxes, objects_, drawn_, margin);
+    const auto overlapping = std::max(found_, static_cast<std::size_t>(reach.overlapping));
+    return reach.counted >= by_chance &&
+           !pays(objects_.size(), overlapping, static_cast<std::size_t>(reach.in_reach / 2));
+}
+
+void neighbour_list_stage::look_anew(std::span<const box> boxes) {
+    std::array<box, 16> some;
+    const std::span<const box> drawn = drawn_boxes(boxes, objects_, drawn_, some);
+    growth_ = growth_of_pairs(drawn);
+    extent_ = median_extent(drawn);
+}
+
+/// Where boxes are by far shorter or longer than those that were looked at, what lists held tells nothing.
+void neighbour_list_stage::look_anew_at_other_sizes(std::span<const box> boxes) {
+    constexpr double by_far = 4;
     std::array<box, 8> some;
-    const std::span<const box> asked = sample(boxes, some);
-    if (asked.empty()) return 0;
-    std::array<box, 8> reach;
-    // Both boxes of a pair are grown.
-    grow(asked, 2 * margin, reach);
-    std::size_t neighbours = 0;
-    for (const box& b : boxes)
-        for (std::size_t i = 0; i < asked.size(); ++i) neighbours += static_cast<std::size_t>(meet(b, reach[i]));
-    // Each is a neighbour of itself.
-    return (static_cast<double>(neighbours) / static_cast<double>(asked.size()) - 1) / 2 *
-           static_cast<double>(objects_.size());
+    const double now = median_extent(drawn_boxes(boxes, objects_, drawn_, some));
+    if (now > extent_ / by_far && now < by_far * extent_) return;
+    look_anew(boxes);
+    correction_ = 1;
+    looked_up_ = 0;
 }
 
 void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
@@ -388,11 +383,11 @@ void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
 void neighbour_list_stage::judge_first_list(std::span<const box> boxes) {
     is_first_ = false;
     if (margin_ == 0) return;
-    std::array<box, 16> some;
-    growth_ = growth_of_pairs(sample(boxes, some));
+    look_anew(boxes);
     const list_outlook seen{{}, objects_.size(), found_, growth_, correction_};
     foreseen_ = pairs_listed(seen, margin_) - pairs_listed(seen, 0);
     if (foreseen_ > 0) correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
+    looked_up_ = margin_;
     is_too_long_ = !pays(objects_.size(), found_, list_.size());
 }
 
@@ -403,6 +398,8 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
     kept_.assign(boxes.begin(), boxes.end());
     margin_ = 0;
     motion_.clear();
+    came_to_rest_ = false;
+    rested_ = true;
     age_ = 0;
     from_ = source::whole;
 }
@@ -424,6 +421,7 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     margin_ = margin;
     is_too_long_ = foreseen_ > 0 && !pays(objects_.size(), found_, list_.size());
     motion_.clear();
+    rested_ = false;
     age_ = 0;
     is_kept_ = true;
     from_ = margin > 0 ? source::list : source::whole;

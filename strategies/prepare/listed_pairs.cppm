@@ -1,0 +1,59 @@
+module;
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+export module aabb.prepare.listed_pairs;
+
+import aabb.geometry;
+import aabb.simd;
+
+export namespace aabb {
+
+/// The least and the greatest numbers of a box on all three axes, each with a fourth one of no account.
+using corner = float __attribute__((vector_size(16)));
+[[nodiscard, gnu::always_inline]] inline corner lower_of(const box& b) noexcept {
+    corner v;
+    std::memcpy(&v, &b, sizeof v);
+    return v;
+}
+[[nodiscard, gnu::always_inline]] inline corner upper_of(const box& b) noexcept {
+    corner v;
+    std::memcpy(&v, reinterpret_cast<const char*>(&b) + sizeof(box) - sizeof v, sizeof v);
+    return __builtin_shufflevector(v, v, 1, 2, 3, 0);
+}
+
+/// As `overlaps`, on three axes at a time.
+[[nodiscard, gnu::always_inline]] inline bool meet(const box& a, const box& b) noexcept {
+    using bools = bool __attribute__((ext_vector_type(4)));
+    const auto held = (lower_of(a) <= upper_of(b)) & (lower_of(b) <= upper_of(a));
+    return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
+}
+
+/// Stores those that overlap: a vector of pairs at a time and without a branch, since which they are cannot be
+/// foreseen.
+/// @param to may be where the list is; written are some beyond the last, at most as many as the list has and a vector
+/// @return how many
+inline std::size_t store_meeting(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
+    constexpr std::size_t at_a_time = simd::width / 2;
+    std::size_t end = 0;
+    std::size_t i = 0;
+    for (; i + at_a_time <= list.size(); i += at_a_time) {
+        std::uint32_t both_words = 0;
+#pragma clang loop unroll(full)
+        for (std::size_t k = 0; k < at_a_time; ++k)
+            both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
+        simd::words some;
+        std::memcpy(&some, &list[i], sizeof some);
+        end += simd::store_where(&to[end].a, some, both_words) / 2;
+    }
+    for (const index_pair pair : list.subspan(i)) {
+        to[end] = pair;
+        end += static_cast<std::size_t>(meet(boxes[pair.a], boxes[pair.b]));
+    }
+    return end;
+}
+
+}  // namespace aabb
