@@ -41,6 +41,15 @@ void print_parts(std::string_view stage, const std::string& made_of, const std::
         print(fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes)));
 }
 
+void print_sentences(std::string_view of, const std::vector<std::string>& sentences) {
+    if (!sentences.empty()) print(fmt::format("    {}\n", of));
+    constexpr std::string_view before = "      ";
+    for (const std::string& sentence : sentences) {
+        std::istringstream lines(wrapped(sentence, std::max<std::size_t>(output_width(), 40) - before.size()));
+        for (std::string line; std::getline(lines, line);) print(fmt::format("{}{}\n", before, line));
+    }
+}
+
 /// What the stage is made of.
 std::string text_of(const contender_name& name, aabb::stage stage) {
     std::string text;
@@ -69,12 +78,12 @@ void explain_contender(const scene_choice& choice, const contender& who) {
     print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
+    print_sentences("planned from what was seen", p.plans());
     std::vector<std::string> left_out = p.left_out();
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (std::string sentence = left_out_by(kind, name[kind]); !sentence.empty())
             left_out.push_back(std::move(sentence));
-    if (!left_out.empty()) print("    left out\n");
-    for (const std::string& sentence : left_out) print("      " + sentence + "\n");
+    print_sentences("left out", left_out);
     flush_output();
 }
 

@@ -166,6 +166,10 @@ std::size_t player::held_bytes() const {
     return all;
 }
 
+std::vector<std::string> player::plans() const {
+    return made_.global ? made_.global->plans() : std::vector<std::string>{};
+}
+
 std::vector<std::string> player::left_out() const {
     std::vector<std::string> all = made_.global ? made_.global->left_out() : std::vector<std::string>{};
     if (!made_.local) all.emplace_back("no local detection: no meshes, no trees, no triangle test");

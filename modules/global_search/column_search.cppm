@@ -87,6 +87,9 @@ public:
 
     /// Whether the boxes of the frame were so few that none was sorted or cut.
     [[nodiscard]] bool is_uncut() const noexcept { return is_few_; }
+    /// Of the last frame that was cut: into groups of columns where there are any.
+    [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? group_plan_ : plan_.plan; }
+    [[nodiscard]] bool is_in_groups() const noexcept { return groups_.size() > 0; }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
     }

@@ -214,6 +214,9 @@ public:
     [[nodiscard]] static axis_set sorted_axes() noexcept { return 0; }
     /// Whether the boxes of the frame were so few that none was sorted or cut.
     [[nodiscard]] bool is_uncut() const noexcept { return search_.is_uncut(); }
+    /// How the last frame that was cut was, into groups of columns where there were any.
+    [[nodiscard]] const column_plan& plan() const noexcept { return search_.plan(); }
+    [[nodiscard]] bool is_in_groups() const noexcept { return search_.is_in_groups(); }
     [[nodiscard]] std::size_t projection_bytes() const noexcept { return objects_.bytes(); }
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return search_.sort_bytes(); }
     [[nodiscard]] std::size_t partition_bytes() const noexcept { return search_.partition_bytes(); }

@@ -40,6 +40,18 @@ public:
     [[nodiscard]] work_counters counters() const override { return work_of(search_.counters()); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return bytes_by_part(search_); }
 
+    [[nodiscard]] std::vector<std::string> plans() const override {
+        if constexpr (ColumnPartition<Partition>)
+            if (!search_.is_uncut()) {
+                const column_plan& plan = search_.plan();
+                if (plan.columns() == 1) return {"one column, cut nowhere"};
+                return {std::to_string(plan.across[0]) + " by " + std::to_string(plan.across[1]) +
+                        (search_.is_in_groups() ? " groups of columns along the " : " columns along the ") +
+                        "xyz"[plan.axis] + " axis"};
+            }
+        return {};
+    }
+
     [[nodiscard]] std::vector<std::string> left_out() const override {
         std::vector<std::string> absent;
         if constexpr (!really_cuts<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");

@@ -57,6 +57,8 @@ public:
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
+    /// What this stage planned from what it saw, a sentence each.
+    [[nodiscard]] virtual std::vector<std::string> plans() const { return {}; }
     /// What this stage does without, a sentence each.
     [[nodiscard]] virtual std::vector<std::string> left_out() const = 0;
 };

@@ -33,10 +33,12 @@ double queries_that_repay_sah(std::size_t triangles) {
 
 selected_strategy selected_prepare(const scene_outlook& scene) {
     if (scene.frames < fewest_frames_of_list)
-        return {strategy_kind::prepare, {"none", {}}, "fewer than four frames: a list of pairs would not be used"};
+        return {strategy_kind::prepare,
+                {"none", {}},
+                "fewer than four frames: a list of neighbours would not repay its making"};
     return {strategy_kind::prepare,
             {"neighbour_list", {}},
-            "frames follow each other: pairs are kept while boxes move little, and only then"};
+            "frames follow each other: a list of neighbours is kept while boxes move little, and only then"};
 }
 
 selected_strategy selected_build(const scene_outlook& scene) {

@@ -159,7 +159,8 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     REQUIRE(told.status == 0);
     for (const char* part :
          {"objects       200\n", "at rest       0 % of the objects\n", "prepare    neighbour_list  frames follow",
-          "as selected", "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
+          "    planned from what was seen\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
+          "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
         CHECK(told.out.find(part) != std::string::npos);
     CHECK(told.out.find("canonical") == std::string::npos);
     // columns take no other sweep.
