@@ -236,8 +236,9 @@ std::vector<racer> starters(const scene_choice& choice) {
         // It is the same twice.
         if (contender who = contender_of(c, meshes); who.name != automatic) add(who, text_of(who.name));
     }
+    // Whoever may find other pairs is no answer to what to use.
     for (const aabb::engine_info& engine : aabb::engines())
-        if (meshes ? engine.collides_meshes : engine.searches_boxes)
+        if (engine.exact && (meshes ? engine.collides_meshes : engine.searches_boxes))
             if (const auto who = contender_of(engine, meshes)) add(*who, text_of(who->name));
     return all;
 }

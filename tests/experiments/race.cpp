@@ -327,14 +327,15 @@ TEST_CASE("A ratio of times in the same rounds has a median, a least and a great
     CHECK_FALSE(of({0.7, 0.96}, {1, 1}).may_be_same());
 }
 
-TEST_CASE("All that is exact starts in a race, and every engine") {
+TEST_CASE("All that is exact starts in a race, engines too") {
     std::vector<racer> all = aabblab::starters(scene);
     CHECK(all.front().name == "auto (= neighbour_list + bucket + columns + simd)");
     CHECK_FALSE(holds(all, "neighbour_list + bucket + columns + simd"));
     for (const char* name : {"bucket + columns + simd", "insertion + none + incremental", "std + uniform_grid + simd"})
         CHECK(holds(all, name));
     CHECK_FALSE(holds(all, "split_mesh + bucket + columns + simd"));
-    for (const aabb::engine_info& engine : aabb::engines()) CHECK(holds(all, engine.name) == engine.searches_boxes);
+    for (const aabb::engine_info& engine : aabb::engines())
+        CHECK(holds(all, engine.name) == (engine.exact && engine.searches_boxes));
     // What auto is does not race twice.
     aabblab::scene_choice still = scene;
     still.settings[1].value = "1";
@@ -349,7 +350,8 @@ TEST_CASE("All that is exact starts in a race, and every engine") {
     CHECK_FALSE(holds(all, "bucket + columns + simd + canonical + moller"));
     for (const aabb::engine_info& engine : aabb::engines())
         if (engine.collides_meshes)
-            CHECK(std::ranges::any_of(all, [&](const racer& r) { return r.name.starts_with(engine.name); }));
+            CHECK(std::ranges::any_of(all, [&](const racer& r) { return r.name.starts_with(engine.name); }) ==
+                  engine.exact);
 }
 
 TEST_CASE("recommend ranks, says what to use, and writes a page") {
