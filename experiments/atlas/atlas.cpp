@@ -93,7 +93,7 @@ std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool un
     const row_value& whole = measured("whole_ms");
     std::vector<atlas_scene> atlas;
     std::map<scene_choice, std::size_t> places;
-    for (const row& r : read_rows(folder / "results.csv")) {
+    for (const row& r : verified_rows(folder)) {
         const std::optional<double> frame_ms = frame(r);
         const std::optional<double> whole_ms = whole(r);
         if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;

@@ -130,6 +130,27 @@ TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided 
     CHECK(verdict("B9") == aabblab::verdict_kind::holds);
 }
 
+TEST_CASE("A single ratio of single repeats is as sure as the repeats of others make it, and never surer") {
+    std::vector<atlas_scene> atlas{{{"cloud", {{"objects", "10000"}, {"moving", "0"}}, {}, 1},
+                                    false,
+                                    {},
+                                    {line("insertion + incremental", 8), line("bucket + columns + simd", 1)}}};
+    std::vector<atlas_line>& lines = atlas[0].lines;
+    for (atlas_line& one : lines) one.frame_ms.resize(1);
+    const auto ratios = [&] {
+        const auto all = judged_statements(atlas);
+        return std::ranges::find(all, "B2", &aabblab::judged_statement::id)->ratios;
+    };
+    CHECK(ratios().empty());
+    lines.push_back(line("another", 3));
+    REQUIRE(ratios().size() == 1);
+    CHECK(ratios()[0].range.low < 7.99);
+    CHECK(ratios()[0].range.high > 8.01);
+    CHECK(ratios()[0].found == aabblab::support::contradicts);
+    lines.back().frame_ms = {1, 3, 9};
+    CHECK(ratios()[0].found == aabblab::support::undecided);
+}
+
 TEST_CASE("Whoever a statement speaks of plays in the map") {
     std::set<std::string> players;
     const aabblab::experiment e =
