@@ -1,24 +1,19 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "commands.hpp"
 #include "output.hpp"
 
-#include "experiments.hpp"
+#include "atlas_measuring.hpp"
 
 import aabb.base;
 import aabblab.atlas;
-import aabblab.configs;
-import aabblab.results;
 import aabblab.statistics;
 import aabblab.tables;
 
@@ -36,38 +31,12 @@ struct atlas_request {
     }
 };
 
-/// Its experiments, in the order in which they are played.
-struct part {
-    std::string_view name;
-    bool unseen;
-};
-constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {"atlas_unseen", true}}};
-
-/// @returns a sentence for each composition that is wrong
-std::vector<std::string> measure(const std::filesystem::path& folder, bool quick) {
-    std::vector<experiment> experiments;
-    for (const part& one : parts)
-        experiments.push_back(open_experiment(fmt::format("{}/{}.toml", AABBLAB_ATLAS_CONFIGS, one.name), quick));
-    std::vector<std::string> failures;
-    for (const experiment& e : experiments) {
-        note(fmt::format("experiment {} of {}: {}, {} scenes", &e - experiments.data() + 1, experiments.size(), e.name,
-                         e.scenes.size()));
-        std::vector<std::string> found =
-            play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
-        std::ranges::move(found, std::back_inserter(failures));
-    }
-    return failures;
-}
-
 int run(const atlas_request& request) {
     outlive_reader();
     const std::filesystem::path folder = request.folder();
     std::vector<std::string> failures;
-    if (!request.judge) failures = measure(folder, request.quick);
-    std::vector<atlas_scene> atlas;
-    for (const part& one : parts)
-        if (std::filesystem::exists(folder / one.name / "results.csv"))
-            std::ranges::move(read_atlas(folder / one.name, one.unseen), std::back_inserter(atlas));
+    if (!request.judge) failures = measure_atlas(folder, request.quick);
+    const std::vector<atlas_scene> atlas = measured_atlas(folder);
     if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + folder.string());
     write_atlas(folder, atlas);
     print(to_text(winners_table(atlas), output_width()) + "\n");

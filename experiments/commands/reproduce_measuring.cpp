@@ -11,6 +11,7 @@
 #include "output.hpp"
 #include "process.hpp"
 
+#include "atlas_measuring.hpp"
 #include "reproduce_measuring.hpp"
 #include "suite_report.hpp"
 
@@ -122,6 +123,10 @@ std::filesystem::path folder_of_study(const std::filesystem::path& folder, const
     return folder / "errors" / study.name;
 }
 
+std::filesystem::path folder_of_atlas(const std::filesystem::path& folder) {
+    return folder / "atlas";
+}
+
 std::filesystem::path file_of_suite(const std::filesystem::path& folder, const std::string& suite) {
     return folder / suite / "report.json";
 }
@@ -152,6 +157,8 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
         add(measure_study(study, folder_of_study(folder, study), printed::nothing));
     }
     add(play_suites(folder, quick));
+    // Whatever the size of the run: the whole atlas takes half an hour by itself.
+    add(measure_atlas(folder_of_atlas(folder), true));
     seal_record(folder);
 }
 

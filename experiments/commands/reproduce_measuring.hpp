@@ -25,6 +25,9 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick);
 [[nodiscard]] std::vector<error_study> studies_with_curves(bool quick);
 [[nodiscard]] std::filesystem::path folder_of_study(const std::filesystem::path& folder, const error_study& study);
 
+/// The small atlas that stands in the report.
+[[nodiscard]] std::filesystem::path folder_of_atlas(const std::filesystem::path& folder);
+
 /// The suites of `validate` that stand in the report: "extreme", "stiff".
 [[nodiscard]] std::filesystem::path file_of_suite(const std::filesystem::path& folder, const std::string& suite);
 

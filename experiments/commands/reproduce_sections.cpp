@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "atlas_measuring.hpp"
 #include "reproduce_measuring.hpp"
 #include "reproduce_sections.hpp"
 #include "suite_report.hpp"
 
+import aabblab.atlas;
 import aabblab.configs;
 import aabblab.errors;
 import aabblab.reproduction;
@@ -68,6 +70,24 @@ std::optional<report_section> suite_section(const std::filesystem::path& folder,
     return section;
 }
 
+/// The small atlas, where it was measured.
+std::optional<report_section> atlas_section(const std::filesystem::path& folder) {
+    const std::vector<atlas_scene> atlas = measured_atlas(folder_of_atlas(folder));
+    if (atlas.empty()) return std::nullopt;
+    return report_section{
+        "atlas",
+        "Atlas of global search",
+        {fmt::format("Beyond the paper: which composition or engine is the fastest in each of {} small scenes. "
+                     "`./aabblab atlas` plays the whole atlas, and judges statements of others on it.",
+                     atlas.size())},
+        atlas_figures(atlas),
+        {{"winners", "Who wins a frame after the first.", winners_table(atlas)},
+         {"regrets", "What it costs to use one everywhere: a frame's time over that of the fastest of each scene.",
+          regrets_table(atlas, span_of_time::frame)},
+         {"regrets_whole", "The same of all frames, the first and the making included.",
+          regrets_table(atlas, span_of_time::whole)}}};
+}
+
 }  // namespace
 
 std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick) {
@@ -83,6 +103,7 @@ std::vector<report_section> sections_of_reproduction(const std::filesystem::path
                                    "Beyond the paper: bodies stepped in time, pushed by the contacts that are found, "
                                    "and held against closed forms and published results."))
         sections.push_back(*std::move(stiff));
+    if (auto atlas = atlas_section(folder)) sections.push_back(*std::move(atlas));
     return sections;
 }
 

@@ -10,7 +10,7 @@ import aabblab.reproduction;
 namespace aabblab {
 
 /// What the reports of `reproduce` have behind the claims, from what was measured in the folder: errors against run
-/// time, the extreme scenes, the stiff ones.
+/// time, the extreme scenes, the stiff ones, the atlas.
 [[nodiscard]] std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick);
 
 }  // namespace aabblab

@@ -61,6 +61,8 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
                 {"config.toml", "errors.csv", "manifest.json", "results.csv", "differences.csv"});
     for (const std::string& name : names_in(folder / "c6"))
         if (name.ends_with(".json") || name == "made_by.txt") all.add("c6", {name.c_str()});
+    for (const std::string& name : names_in(folder / "atlas"))
+        all.add(std::filesystem::path("atlas") / name, {"manifest.json", "results.csv", "differences.csv"});
     for (const char* suite : {"extreme", "stiff"}) all.add(suite, {"report.json"});
     all.add("", {"failures.txt"});
     return all.sorted();

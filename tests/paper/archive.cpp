@@ -23,9 +23,12 @@ namespace {
 /// The results of a run that is finished, as `reproduce` leaves them.
 void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6) {
     worlds::write_world(folder, ratio, 0.05);
-    // A study of errors has results of its own; any experiment does for one.
-    for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick))
-        if (e.name == "c10") worlds::write_experiment(folder / "errors", e, [](const auto&, auto&) {});
+    // A study of errors and the atlas have results of their own; any experiment does for one.
+    std::vector<aabblab::experiment> all = worlds::all_experiments(aabblab::experiment_size::quick);
+    aabblab::experiment& any = *std::ranges::find(all, "c10", &aabblab::experiment::name);
+    worlds::write_experiment(folder / "errors", any, [](const auto&, auto&) {});
+    any.name = "atlas";
+    worlds::write_experiment(folder / "atlas", any, [](const auto&, auto&) {});
     std::ofstream(folder / "failures.txt") << "";
     aabblab::seal_record(folder);
 }
@@ -71,6 +74,7 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
     CHECK(std::regex_search(judged.out, std::regex("run\\.tar\\.xz \\([0-9.]+ MiB\\), SHA-256 [0-9a-f]{64}\n")));
     const std::string page = bytes_of_file(folder / "a/report.html");
     REQUIRE(page.find("not sealed") == std::string::npos);
+    CHECK(page.find("Atlas of global search") != std::string::npos);
     // Nothing was written beside the results.
     CHECK(!std::filesystem::exists(results / "report.html"));
 
