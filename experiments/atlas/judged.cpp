@@ -99,7 +99,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
 }
 
 table statements_table(const std::vector<judged_statement>& all) {
-    table t{{{"", false}, {"says", false}, {"source", false}, {"verdict", false}, {"ratios", false}}, {}};
+    table t{{{"statement", false}, {"says", false}, {"source", false}, {"verdict", false}, {"ratios", false}}, {}};
     for (const judged_statement& s : all) {
         std::string ratios;
         for (const judged_ratio& r : s.ratios) ratios += (ratios.empty() ? "" : ", ") + fmt::format("{:.3g}", r.ratio);
@@ -109,7 +109,13 @@ table statements_table(const std::vector<judged_statement>& all) {
 }
 
 table ratios_table(const std::vector<judged_statement>& all) {
-    table t{{{"", false}, {"where", false}, {"time of a frame", false}, {"scenes"}, {"ratio"}, {"95 %"}, {"", false}},
+    table t{{{"statement", false},
+             {"where", false},
+             {"time of a frame", false},
+             {"scenes"},
+             {"ratio"},
+             {"95 %"},
+             {"found", false}},
             {}};
     for (const judged_statement& s : all)
         for (const judged_ratio& r : s.ratios)

@@ -100,7 +100,8 @@ std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
 }
 
 table models_table(const std::vector<line_model>& models) {
-    table t{{{"who", false}, {"scenes"}, {"off by"}, {"worst"}, {"unseen"}, {"off by"}, {"worst"}}, {}};
+    table t{{{"who", false}, {"scenes"}, {"off by"}, {"worst"}, {"unseen scenes"}, {"off by there"}, {"worst there"}},
+            {}};
     for (const line_model& m : models)
         t.rows.push_back({m.label, grouped(m.seen.observations), fmt::format("{:.2f}", m.seen.median),
                           fmt::format("{:.1f}", m.seen.worst), grouped(m.unseen.observations),
