@@ -74,6 +74,7 @@ private:
     void leave_alone();
     void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
+    [[nodiscard]] bool repeats_plan(std::span<const box> boxes);
     [[nodiscard]] double first_margin(std::span<const box> boxes);
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin);
     void look_anew(std::span<const box> boxes);
@@ -96,6 +97,8 @@ private:
     /// Of fewer boxes any list is short.
     static constexpr std::size_t fewest_boxes_of_long_list = 256;
     static constexpr std::size_t longest_history = 256;
+    /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
+    static constexpr unsigned longest_repetition = 8;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
 
@@ -117,6 +120,8 @@ private:
     std::vector<double> motion_;  // since then, at most until that frame, frame by frame
     std::uint32_t age_ = 0;       // frames since
     std::size_t planned_ = 0;     // frames for which the list was made; 0 where nobody reckoned
+    double planned_for_ = 0;      // the farthest that boxes had moved when that was reckoned
+    unsigned repeated_ = 0;       // lists made since by the same plan
     std::size_t found_ = 0;       // pairs of the frame before
     growth_of_pairs growth_;
     double extent_ = 0;        // of boxes, when that was looked at
@@ -129,6 +134,7 @@ private:
     bool rested_ = false;              // since the list was kept
     double cost_ = 0;                  // of the cheapest list that was thought of last, over that of a search
     bool watches_ = false;             // how far boxes are from those that are kept, without a list
+    bool watches_long_ = false;        // before anything is planned
     unsigned left_ = 0;                // frames that are searched as they are before one is kept again
     unsigned pause_ = shortest_pause;  // as long as the next one is
     glimpse glimpse_;
@@ -254,6 +260,8 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     if (!is_kept_ || comes_to_rest || (rested_ && motion_.empty())) return 0;
     if (config_.every > 0) return motion_.empty() || config_.every == 1 ? 0 : margin_after(motion_, config_.every - 1);
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
+    // Of a plan that was so wrong, less was known than it seemed.
+    watches_long_ = margin_ > 0 && planned_ > 4 * std::size_t{age_};
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
     // What jiggles about its place shows it only after some frames.
     watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
@@ -271,7 +279,7 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
         const double half_way = motion_.back();
         motion_.resize(age_, std::max(half_way, motion_between(kept_, boxes, objects_).margin));
         drifts = motion_.back() > 1.8 * half_way;
-        margin = paying_margin(boxes);
+        if (!watches_long_ || age_ == longest_watch) margin = paying_margin(boxes);
     }
     watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
     if (!watches_ && !margin) leave_alone();
@@ -308,11 +316,14 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
 }
 
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
+    const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
+    if (lasted_as_planned && repeats_plan(boxes)) return margin_;
     if (age_ <= 1)
         look_anew(boxes);
     else
         look_anew_at_other_sizes(boxes);
-    const bool lasted_as_planned = is_kept_ && planned_ > 1 && age_ >= planned_;
+    planned_for_ = motion_.empty() ? 0 : motion_.back();
+    repeated_ = 0;
     for (;;) {
         const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
         const list_plan plan = plan_list(seen, lasted_as_planned ? worth_another_list : worth_a_list);
@@ -332,6 +343,17 @@ std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> b
         if (!pays && beside >= foreseen_) return std::nullopt;
         correct(beside);
     }
+}
+
+/// Whether the next list is made as the last one was, since boxes moved as they did before it: of a few boxes, planning
+/// takes as long as searching them.
+bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
+    constexpr double alike = 1.02;
+    if (age_ != planned_ || motion_.back() > alike * planned_for_ || alike * motion_.back() < planned_for_ ||
+        repeated_ == longest_repetition || is_far_too_long(boxes, margin_))
+        return false;
+    ++repeated_;
+    return true;
 }
 
 /// @param beside pairs that a list holds beside those that overlap, where others were foreseen
