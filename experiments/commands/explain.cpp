@@ -151,9 +151,8 @@ void explain_automatic(const scene_choice& choice, const aabb::named_strategies&
 void explain_scene(const experiment& e, const scene_choice& scene) {
     explain_measures(scene);
     if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
-        print(
-            fmt::format("  bytes are those after {} of {} frames; run tells those after the last, which may be more\n",
-                        explained_frames, grouped(frames)));
+        print(fmt::format("  bytes are those after {} of {} frames; run tells those after the last\n", explained_frames,
+                          grouped(frames)));
     explain_unused(e, scene);
     for (const aabb::named_strategies& named : e.automatic) explain_automatic(scene, named);
     for (const contender& who : contenders_for(e, scene))
