@@ -17,6 +17,7 @@ export import :column_plan;
 export import :column_search;
 export import :column_worker;
 export import :frame_at_rest;
+export import :interval_ends;
 export import :inversions;
 export import :membership;
 export import :pair_set;

@@ -12,7 +12,9 @@ import aabb.geometry;
 import aabb.policy;
 import :column_plan;
 import :membership;
+import :partition_policy;
 import :projection;
+import :sort_policy;
 
 export namespace aabb {
 
@@ -49,6 +51,18 @@ concept CoherentSweep =
         policy.search(pairs);
         { policy.axes() } -> std::same_as<axis_set>;
     };
+
+/// Why a coherent sweep does not go with these strategies; empty where it does.
+template <class... All>
+constexpr std::string_view refusal_of_coherent_sweep() {
+    if (((CuttingPartition<All> || ColumnPartition<All>) || ...))
+        return "a sweep that keeps its pairs between frames cannot follow a partition that makes other subsets in each "
+               "frame; it goes with none only";
+    if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
+        return "a sweep that keeps its pairs follows the swaps of neighbours, of which this sort does not tell; "
+               "it goes with insertion only";
+    return {};
+}
 
 /// Either of the two.
 template <class S>

@@ -28,11 +28,10 @@ export namespace aabb {
 /// A frame in which as many swaps were followed as starting anew would take steps is started anew: the lists are sorted
 /// by std::sort, and one of them is swept for all pairs. So no frame costs more than about twice the less of the two.
 ///
-/// A lower end comes before an upper end of the same value, so touching is overlapping. A pair is put in when it begins
-/// to overlap on an axis and its boxes overlap on all: the order in which axes are sorted does not matter then, and
-/// there is never a pair that overlaps neither now nor did in the frame before. Memory is 16 bytes an object and axis,
-/// 24 an object for the boxes of the frame before, up to 36 while arrivals are brought in or all is started anew, and
-/// 16 to 32 bytes a pair, of as many as there were at most.
+/// A pair is put in when it begins to overlap on an axis and its boxes overlap on all: the order in which axes are
+/// sorted does not matter then, and there is never a pair that overlaps neither now nor did in the frame before. Memory
+/// is 16 bytes an object and axis, 24 an object for the boxes of the frame before, up to 36 while arrivals are brought
+/// in or all is started anew, and 16 to 32 bytes a pair, of as many as there were at most.
 class incremental_sweep {
 public:
     static constexpr std::string_view name = "incremental";
@@ -41,18 +40,12 @@ public:
 
     template <class... All>
     static constexpr std::string_view refuses() {
-        if (((CuttingPartition<All> || ColumnPartition<All>) || ...))
-            return "incremental keeps its pairs between frames, but this partition makes other subsets in each frame; "
-                   "it goes with none only";
-        if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
-            return "incremental follows the swaps of neighbours, of which this sort does not tell; "
-                   "it goes with insertion only";
-        return {};
+        return refusal_of_coherent_sweep<All...>();
     }
 
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
-        if (boxes.size() > most_objects)
+        if (boxes.size() > most_interval_objects)
             throw input_error("incremental takes at most 2^31 objects, not " + std::to_string(boxes.size()));
         if (objects.any_departures()) forget_departures(objects);
         const axis_set before = axes_;
@@ -85,31 +78,10 @@ public:
     [[nodiscard]] axis_set axes() const noexcept { return axes_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
         return bytes_of(ends_[0]) + bytes_of(ends_[1]) + bytes_of(ends_[2]) + bytes_of(arriving_) + bytes_of(before_) +
-               bytes_of(place_) + bytes_of(active_[0]) + bytes_of(active_[1]) + bytes_of(pairs_);
+               bytes_of(sweep_) + bytes_of(pairs_);
     }
 
 private:
-    static constexpr std::size_t most_objects = std::size_t{1} << 31;
-
-    /// One end of an object's interval on an axis.
-    struct interval_end {
-        float key;
-        std::uint32_t id : 31;
-        std::uint32_t is_upper : 1;
-
-        friend constexpr bool precedes(const interval_end& e, const interval_end& f) noexcept {
-            return e.key < f.key || (e.key == f.key && e.is_upper < f.is_upper);
-        }
-    };
-    static_assert(sizeof(interval_end) == 8);
-
-    [[nodiscard]] static interval_end lower_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
-        return {boxes[id].min[static_cast<int>(axis)], id, 0};
-    }
-    [[nodiscard]] static interval_end upper_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
-        return {boxes[id].max[static_cast<int>(axis)], id, 1};
-    }
-
     void forget_departures(const membership& objects) {
         for (auto& list : ends_) std::erase_if(list, [&](const interval_end& e) { return objects.is_leaving(e.id); });
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
@@ -119,14 +91,13 @@ private:
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         bool moved = false;
         for (interval_end& e : ends_[axis]) {
-            const float key =
-                e.is_upper ? boxes[e.id].max[static_cast<int>(axis)] : boxes[e.id].min[static_cast<int>(axis)];
+            const float key = key_of(e, boxes, axis);
             moved |= key != e.key;
             e.key = key;
         }
         if (!moved) return;
         if (swaps_left_ > 0) follow_swaps(boxes, axis, sort, counters);
-        if (swaps_left_ == 0) sort_anew(ends_[axis]);
+        if (swaps_left_ == 0) sort_ends(ends_[axis]);
     }
 
     template <class Sort, CounterPolicy Counters>
@@ -134,21 +105,9 @@ private:
         sort.sort(std::span(ends_[axis]), counters, [&](const interval_end& passed, const interval_end& mover) {
             counters.add(work::inversions);
             if (--swaps_left_ == 0) return false;
-            if (passed.is_upper == mover.is_upper) return true;
-            const index_pair pair = ordered_pair(passed.id, mover.id);
-            counters.add(work::box_tests);
-            // Few of the pairs whose overlap ends on this axis overlapped on the others: a test spares the look-up.
-            if (mover.is_upper) {
-                if (overlaps(before_[pair.a], before_[pair.b])) pairs_.erase(pair);
-            } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
-                pairs_.insert(pair);
-            }
+            take_note_of_swap(passed, mover, before_, boxes, pairs_, counters);
             return true;
         });
-    }
-
-    static void sort_anew(std::vector<interval_end>& list) {
-        std::ranges::sort(list, [](const auto& e, const auto& f) { return precedes(e, f); });
     }
 
     /// What sorting all lists and sweeping one takes; never 0.
@@ -176,7 +135,7 @@ private:
             list.push_back(lower_end(boxes, id, axis));
             list.push_back(upper_end(boxes, id, axis));
         }
-        sort_anew(list);
+        sort_ends(list);
     }
 
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
@@ -185,7 +144,7 @@ private:
             arriving_.push_back(lower_end(boxes, id, axis));
             arriving_.push_back(upper_end(boxes, id, axis));
         }
-        sort_anew(arriving_);
+        sort_ends(arriving_);
         std::vector<interval_end>& list = ends_[axis];
         std::size_t known = list.size();
         list.resize(known + arriving_.size());
@@ -220,29 +179,10 @@ private:
                        [&](std::uint32_t id) { return objects.is_arrival(id); });
     }
 
-    /// Sweeps one list, and tests what is new against what is active and what begins against what is active and new.
+    /// Sweeps one list.
     template <CounterPolicy Counters>
     void find_pairs(std::span<const box> boxes, std::size_t axis, Counters& counters, auto is_new) {
-        std::uint64_t tests = 0;
-        place_.resize(boxes.size());
-        for (const interval_end& e : ends_[axis]) {
-            std::vector<std::uint32_t>& own = active_[is_new(e.id)];
-            if (e.is_upper) {
-                place_[own.back()] = place_[e.id];
-                own[place_[e.id]] = own.back();
-                own.pop_back();
-                continue;
-            }
-            for (std::size_t of_new = is_new(e.id) ? 0 : 1; of_new < 2; ++of_new) {
-                tests += active_[of_new].size();
-                for (const std::uint32_t other : active_[of_new])
-                    if (overlaps(boxes[e.id], boxes[other])) pairs_.insert(ordered_pair(e.id, other));
-            }
-            place_[e.id] = static_cast<std::uint32_t>(own.size());
-            own.push_back(e.id);
-        }
-        // Every interval that begins ends.
-        assert(active_[0].empty() && active_[1].empty());
+        const std::uint64_t tests = sweep_.find(ends_[axis], boxes, pairs_, is_new);
         counters.add(work::box_tests, tests);
         tests_anew_ = std::max(tests_anew_, tests);
     }
@@ -255,8 +195,7 @@ private:
     std::uint64_t tests_anew_ = 0;  // that a sweep of a list took, at most, since all was started anew
     // While arrivals are brought in, or all is started anew:
     std::vector<interval_end> arriving_;
-    std::array<std::vector<std::uint32_t>, 2> active_;  // those met and not yet left, known ones and new ones
-    std::vector<std::uint32_t> place_;                  // of an active object in its vector
+    interval_sweep sweep_;
 };
 
 static_assert(CoherentSweep<incremental_sweep>);

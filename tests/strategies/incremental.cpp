@@ -3,61 +3,18 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "../compositions.hpp"
+#include "counted_search.hpp"
 
 using namespace aabb;
 
 namespace {
 
-struct work_of_frame {
-    std::uint64_t comparisons, moves, swaps, restarts, box_tests, pairs;
-};
-
-/// A counted search that says what a frame took.
-class counted_search {
-public:
-    explicit counted_search(const aabb::composition& c, std::uint32_t objects)
-        : stage_(compose_global_search(c, instrumentation::counters)) {
-        for (std::uint32_t id = 0; id < objects; ++id) stage_->insert(id);
-    }
-
-    work_of_frame play(const std::vector<box>& boxes) {
-        const work_counters before = stage_->counters();
-        pairs_.clear();
-        stage_->update(boxes);
-        stage_->search(pairs_);
-        const work_counters after = stage_->counters();
-        const auto spent = [&](work what) { return after[what] - before[what]; };
-        return {spent(work::comparisons), spent(work::moves),     spent(work::inversions),
-                spent(work::restarts),    spent(work::box_tests), pairs_.size()};
-    }
-
-    [[nodiscard]] std::vector<index_pair> pairs() const {
-        std::vector<index_pair> sorted = pairs_;
-        std::ranges::sort(sorted);
-        return sorted;
-    }
-
-    [[nodiscard]] global_stage& stage() { return *stage_; }
-
-private:
-    std::unique_ptr<global_stage> stage_;
-    std::vector<index_pair> pairs_;
-};
-
-composition with_incremental(const char* sort, const char* partition) {
-    composition c;
-    c[strategy_kind::sort].name = sort;
-    c[strategy_kind::partition].name = partition;
-    c[strategy_kind::sweep].name = "incremental";
-    return c;
-}
-const composition incremental = with_incremental("insertion", "none");
+const composition incremental = composed({{strategy_kind::sort, "insertion"}, {strategy_kind::sweep, "incremental"}});
 
 std::vector<box> scattered(std::uint32_t n) {
     std::vector<box> boxes;
@@ -196,12 +153,17 @@ TEST_CASE("incremental holds no list of an axis on which all boxes overlap, unti
     CHECK(left_out().find("no projection list of the y axis") == std::string::npos);
 }
 
-TEST_CASE("incremental is refused with what it cannot follow, and says why") {
-    for (const char* sort : {"shell", "std"})
-        CHECK(std::string(refusal_of(with_incremental(sort, "none"), stage::global_search))
-                  .ends_with("it goes with insertion only"));
-    for (const char* partition : {"axial_cut", "uniform_grid"})
-        CHECK(std::string(refusal_of(with_incremental("insertion", partition), stage::global_search))
-                  .ends_with("it goes with none only"));
-    CHECK(refusal_of(incremental, stage::global_search).empty());
+TEST_CASE("sweeps that keep their pairs are refused with what they cannot follow, and say why") {
+    for (const char* sweep : {"incremental", "subdivided"}) {
+        const auto refusal = [&](const char* sort, const char* partition) {
+            return std::string(refusal_of(composed({{strategy_kind::sort, sort},
+                                                    {strategy_kind::partition, partition},
+                                                    {strategy_kind::sweep, sweep}}),
+                                          stage::global_search));
+        };
+        for (const char* sort : {"shell", "std"}) CHECK(refusal(sort, "none").ends_with("it goes with insertion only"));
+        for (const char* partition : {"axial_cut", "uniform_grid"})
+            CHECK(refusal("insertion", partition).ends_with("it goes with none only"));
+        CHECK(refusal("insertion", "none").empty());
+    }
 }
