@@ -48,7 +48,18 @@ contender contender_of(const aabb::composition& c, bool meshes) {
 }
 
 contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
-    contender who = contender_of(composed_of(select_strategies(named, outlook_of(scene))), scene.meshes() != nullptr);
+    const auto selected = [named, outlook = outlook_of(scene)] {
+        return composed_of(select_strategies(named, outlook));
+    };
+    contender who = contender_of(selected(), scene.meshes() != nullptr);
+    // To select is part of making the stages, and of their time.
+    who.make_global = [selected](aabb::instrumentation counted) {
+        return aabb::compose_global_search(selected(), counted);
+    };
+    if (who.make_local)
+        who.make_local = [selected](aabb::instrumentation counted) {
+            return aabb::compose_local_detection(selected(), counted);
+        };
     // It has one name in all scenes, whatever is selected.
     who.name = {};
     who.name.engine = contender_name::automatic;

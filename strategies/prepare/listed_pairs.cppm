@@ -1,9 +1,12 @@
 module;
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <vector>
 
 export module aabb.prepare.listed_pairs;
 
@@ -54,6 +57,19 @@ inline std::size_t store_meeting(std::span<const box> boxes, std::span<const ind
         end += static_cast<std::size_t>(meet(boxes[pair.a], boxes[pair.b]));
     }
     return end;
+}
+
+/// Appends those that overlap. A part at a time, so that what they are stored in stays in the cache, and room that they
+/// turn out not to need is not made.
+inline void append_meeting(std::span<const box> boxes, std::span<const index_pair> list,
+                           std::vector<index_pair>& pairs) {
+    constexpr std::size_t at_a_time = 1024;
+    std::array<index_pair, at_a_time + simd::width / 2> met;
+    for (std::size_t i = 0; i < list.size(); i += at_a_time) {
+        const std::size_t found =
+            store_meeting(boxes, list.subspan(i, std::min(at_a_time, list.size() - i)), met.data());
+        pairs.insert(pairs.end(), met.begin(), met.begin() + static_cast<std::ptrdiff_t>(found));
+    }
 }
 
 }  // namespace aabb

@@ -182,10 +182,7 @@ void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
         pairs.insert(pairs.end(), list_.begin(), list_.end());
     } else {
         if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-        append_whole(pairs, [&] {
-            pairs.resize(before + list_.size() + simd::width / 2);
-            pairs.resize(before + store_meeting(boxes_, list_, pairs.data() + before));
-        });
+        append_whole(pairs, [&] { append_meeting(boxes_, list_, pairs); });
     }
     found_ = pairs.size() - before;
 }
@@ -293,7 +290,8 @@ void neighbour_list_stage::leave_alone() {
 }
 
 /// A frame that is searched as it is. A few boxes are looked at until they say that a list may pay: where even those
-/// move too far for any, all do, and are not looked at for the rest of the eight frames.
+/// move too far for any, all do, and are not looked at for the rest of the eight frames. Where all eight were in vain,
+/// the memory of the last list goes.
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     --left_;
     const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
@@ -307,7 +305,12 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
         }
         move_too_far_ = std::isinf(plan.cost);
     }
-    if (left_ == 0) left_ = glimpse::longest;
+    if (left_ == 0) {
+        left_ = glimpse::longest;
+        release(kept_);
+        release(grown_);
+        release(list_);
+    }
     if (left_ == glimpse::longest) {
         look_anew_at_other_sizes(boxes);
         glimpse_.keep(boxes, drawn_);
@@ -441,7 +444,8 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     search_->search(list_);
     if (foreseen_ > 0) correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     margin_ = margin;
-    is_too_long_ = foreseen_ > 0 && !pays(objects_.size(), found_, list_.size());
+    // Of the first list nothing is known before it has served a frame.
+    is_too_long_ = adapts() && margin > 0 && !is_first_ && !pays(objects_.size(), found_, list_.size());
     motion_.clear();
     rested_ = false;
     age_ = 0;

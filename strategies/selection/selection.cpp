@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,14 +22,17 @@ namespace {
 constexpr std::size_t fewest_frames_of_list = 4;
 
 /// From so many queries on, what `sah` takes longer to build than `median` comes back from queries that visit fewer
-/// nodes. Of two meshes a query visits about 21 pairs of nodes times the root of the triangles, and a twelfth less in
-/// trees by `sah`: counted with meshes of 5,000 to 200,000.
-double queries_that_repay_sah(std::size_t triangles) {
+/// nodes. A query of two meshes visits about 21 pairs of nodes times the root of their triangles, and a twelfth less in
+/// trees by `sah`: counted with meshes of 5,000 to 200,000. Meshes are taken to be alike.
+double queries_that_repay_sah(const scene_outlook& scene) {
     constexpr double visits_a_root = 21;
     constexpr double saved = 1.0 / 12;
     const cost_model& ns = machine_costs();
-    return (ns.sah_triangle - ns.median_triangle) / (ns.node_visit * visits_a_root * saved) *
-           std::sqrt(static_cast<double>(triangles));
+    const auto triangles = static_cast<double>(scene.triangles);
+    if (triangles == 0) return std::numeric_limits<double>::infinity();
+    const double of_two = 2 * triangles / static_cast<double>(scene.meshes);
+    return (ns.sah_triangle - ns.median_triangle) * triangles /
+           (ns.node_visit * visits_a_root * saved * std::sqrt(of_two));
 }
 
 selected_strategy selected_prepare(const scene_outlook& scene) {
@@ -43,7 +47,7 @@ selected_strategy selected_prepare(const scene_outlook& scene) {
 
 selected_strategy selected_build(const scene_outlook& scene) {
     constexpr double many = 1e18;
-    const double queries = std::ceil(queries_that_repay_sah(scene.triangles));
+    const double queries = std::ceil(queries_that_repay_sah(scene));
     const auto repaid = static_cast<std::size_t>(std::clamp(queries, 0.0, many));  // 0 where `sah` is built faster
     if (scene.queries < repaid)
         return {strategy_kind::build,
@@ -83,7 +87,9 @@ std::string rule_of(const std::string& why, strategy_kind kind, const std::strin
 }  // namespace
 
 scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames) {
-    scene_outlook scene{.frames = frames, .queries = frames * std::max<std::size_t>(objects / 2, 1)};
+    scene_outlook scene{.frames = frames,
+                        .queries = frames * std::max<std::size_t>(objects / 2, 1),
+                        .meshes = std::max<std::size_t>(meshes.size(), 1)};
     for (const mesh& m : meshes) scene.triangles += m.triangle_count();
     return scene;
 }

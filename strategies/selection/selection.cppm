@@ -18,7 +18,8 @@ export namespace aabb {
 struct scene_outlook {
     std::size_t frames = 1;
     std::size_t triangles = 0;  ///< of all meshes; 0 where there are boxes only
-    std::size_t queries = 1;    ///< of two meshes, that a tree is to serve
+    std::size_t queries = 1;    ///< of two meshes, that trees are to serve
+    std::size_t meshes = 2;     ///< that the triangles are of; at least 1
 };
 
 /// Of moving meshes: each object is held against one other a frame, as a guess.
