@@ -55,7 +55,7 @@ void add_atlas(CLI::App& program, int& status) {
     auto request = std::make_shared<atlas_request>();
     command->add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
     command->add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
-    command->add_option("--out", request->out, "Folder of results and maps (default results/atlas)")->type_name("DIR");
+    command->add_option("--out", request->out, "Folder of results and maps (default results/atlas; with --quick results/atlas-quick)")->type_name("DIR");
     command->callback([request, &status] { status = run(*request); });
 }
 

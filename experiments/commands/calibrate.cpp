@@ -89,7 +89,7 @@ void add_calibrate(CLI::App& program, int&) {
     auto* command = program.add_subcommand(
         "calibrate", "Measure what elementary work takes on this machine, and keep it: what strategies plan by");
     auto request = std::make_shared<calibrate_request>();
-    auto* quick = command->add_flag("--quick", request->quick, "In 20 seconds at most in place of two minutes");
+    auto* quick = command->add_flag("--quick", request->quick, "In about 20 seconds in place of two minutes");
     auto* out = command->add_option("--out", request->out, "Write it there, not where it is used")->type_name("FILE");
     command->add_flag("--reset", request->reset, "Remove what was kept: costs are as shipped again")
         ->excludes(quick)

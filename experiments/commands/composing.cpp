@@ -25,18 +25,12 @@ namespace aabblab {
 
 namespace {
 
-/// "bucket, or std with another partition or sweep", "as it serves the scene"
+/// "bucket, or what goes with what is named", "as it serves the scene"
 std::string usual_of(aabb::strategy_kind kind) {
     if (aabb::depends_on_scene(kind)) return "as it serves the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
-    std::string text(info.fallback);
-    if (info.beside == info.fallback) return text;
-    text += ", or " + std::string(info.beside) + " with another ";
-    std::string others;
-    for (const aabb::strategy_kind_info& other : aabb::strategy_kind_infos)
-        if (other.stage == info.stage && !other.apart && other.name != info.name)
-            others += (others.empty() ? "" : " or ") + std::string(other.name);
-    return text + others;
+    const std::string text(info.fallback);
+    return info.beside == info.fallback ? text : text + ", or what goes with what is named";
 }
 
 }  // namespace

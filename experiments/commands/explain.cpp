@@ -134,7 +134,8 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
 }
 
 /// What is selected and why, what comes of it, and what it saves.
-void explain_automatic(const scene_choice& choice, const aabb::named_strategies& named) {
+/// @returns whether all that was played finds the same
+bool explain_automatic(const scene_choice& choice, const aabb::named_strategies& named) {
     const scene_play scene(choice);
     std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene));
     const aabb::composition c = composed_of(selected);
@@ -145,31 +146,34 @@ void explain_automatic(const scene_choice& choice, const aabb::named_strategies&
     print_selected(selected);
     explain_contender(choice, contender_of(c, scene.meshes() != nullptr));
     print("\n");
-    print_savings(choice, c);
+    return print_savings(choice, c);
 }
 
-void explain_scene(const experiment& e, const scene_choice& scene) {
+bool explain_scene(const experiment& e, const scene_choice& scene) {
     explain_measures(scene);
     if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
         print(fmt::format("  bytes are those after {} of {} frames; run tells those after the last\n", explained_frames,
                           grouped(frames)));
     explain_unused(e, scene);
-    for (const aabb::named_strategies& named : e.automatic) explain_automatic(scene, named);
+    bool same = true;
+    for (const aabb::named_strategies& named : e.automatic) same &= explain_automatic(scene, named);
     for (const contender& who : contenders_for(e, scene))
         if (!who.name.is_automatic()) explain_contender(scene, who);
     print("\n");
+    return same;
 }
 
 void explain_costs() {
     print("strategies plan by " + costs_in_force() + "\n\n");
 }
 
-void explain(const std::vector<std::string>& what) {
+int explain(const std::vector<std::string>& what) {
+    bool same = true;
     if (what.size() == 1 && names_config(what.front())) {
         const experiment e = open_experiment(what.front(), false);
         explain_costs();
-        for (const scene_choice& scene : e.scenes) explain_scene(e, scene);
-        return;
+        for (const scene_choice& scene : e.scenes) same &= explain_scene(e, scene);
+        return same ? 0 : 1;
     }
     experiment e;
     e.automatic.emplace_back();
@@ -177,12 +181,13 @@ void explain(const std::vector<std::string>& what) {
     // What cannot be made is said before anything else.
     (void)scene_play(scene);
     explain_costs();
-    explain_scene(e, scene);
+    same = explain_scene(e, scene);
+    return same ? 0 : 1;
 }
 
 }  // namespace
 
-void add_explain(CLI::App& program, int&) {
+void add_explain(CLI::App& program, int& status) {
     auto* command = program.add_subcommand(
         "explain", "What a scene is like, which composition it gets and why, its bytes, and what is left out");
     auto what = std::make_shared<std::vector<std::string>>();
@@ -192,7 +197,7 @@ void add_explain(CLI::App& program, int&) {
             std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help)
         ->required()
         ->type_name("");
-    command->callback([what] { explain(*what); });
+    command->callback([what, &status] { status = explain(*what); });
 }
 
 }  // namespace aabblab

@@ -12,6 +12,7 @@
 // Imports, so it comes last.
 #include "explain_savings.hpp"
 
+import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabblab.numbers;
@@ -50,6 +51,16 @@ std::vector<alternative> others(const aabb::composition& selected, aabb::strateg
     return all;
 }
 
+/// The same with counters in its stages.
+contender with_counters(contender who) {
+    who.make_global = [make = who.make_global](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
+    if (who.make_local)
+        who.make_local = [make = who.make_local](aabb::instrumentation) {
+            return make(aabb::instrumentation::counters);
+        };
+    return who;
+}
+
 template <class Value>
 std::vector<double> values_of(std::span<const race_time> times, Value value) {
     std::vector<double> all;
@@ -80,7 +91,7 @@ void add_row(table& t, const std::string& kind, const std::string& name, std::sp
 
 }  // namespace
 
-void print_savings(const scene_choice& choice, const aabb::composition& selected) {
+bool print_savings(const scene_choice& choice, const aabb::composition& selected) {
     const scene_play scene(choice);
     const bool meshes = scene.meshes() != nullptr;
     const bool any = scene.objects() <= most_objects_of_any;
@@ -95,6 +106,7 @@ void print_savings(const scene_choice& choice, const aabb::composition& selected
     }
     std::vector<contender> playing{contender_of(selected, meshes)};
     for (const alternative& one : all) playing.push_back(contender_of(one.composition, meshes));
+    playing.push_back(with_counters(playing.front()));
     const auto times = play_in_turn(choice, playing, most_frames, rounds);
     table t{{{"kind", false},
              {"in its place", false},
@@ -107,6 +119,7 @@ void print_savings(const scene_choice& choice, const aabb::composition& selected
     add_row(t, "", "as selected", times[0], times[0]);
     for (std::size_t i = 0; i < all.size(); ++i)
         add_row(t, std::string(name_of(all[i].kind)), all[i].composition[all[i].kind].name, times[i + 1], times[0]);
+    add_row(t, "counters", "of all work", times.back(), times[0]);
     const auto print_line = [](const std::string& line) { print(wrapped(line) + "\n"); };
     print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} rounds of {}",
                            rounds, counted(std::min(scene.frames(), most_frames), "frame")));
@@ -122,7 +135,15 @@ void print_savings(const scene_choice& choice, const aabb::composition& selected
         "round.",
         hopeless_ratio));
     print_line(build_ms_text);
+    bool same = true;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (times[i + 1].front().digest == times[0].front().digest) continue;
+        same = false;
+        print_line(fmt::format("{} finds other pairs than what is selected: one of the two is wrong.",
+                               all[i].composition[all[i].kind].name));
+    }
     flush_output();
+    return same;
 }
 
 }  // namespace aabblab

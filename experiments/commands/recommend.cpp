@@ -108,7 +108,7 @@ double seconds_of(const std::string& text) {
     throw aabb::input_error("--seconds is how long to race: a number above 0, at most 1,000,000, not '" + text + "'");
 }
 
-void recommend(const recommend_request& request) {
+int recommend(const recommend_request& request) {
     const scene_choice scene = scene_of_arguments(request.what);
     std::optional<output_file> page;
     if (request.report) {
@@ -121,20 +121,22 @@ void recommend(const recommend_request& request) {
     flush_output();
     const race_result race = run_race(scene, starters(scene), request.seconds);
     print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
-                      race.finalists.size(), race.finalists.size() + race.dropped.size(),
+                      race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
                       100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
     print(to_text(table_of(race), output_width()) + "\n");
     for (const std::string& line : legend()) print(wrapped(line) + "\n");
     print("\n");
     for (const std::string& sentence : advice_of(race)) print(wrapped(sentence) + "\n");
-    if (!page) return;
-    page->write(page_of(name, race, told(measured)));
-    page->commit();
+    if (page) {
+        page->write(page_of(name, race, told(measured)));
+        page->commit();
+    }
+    return race.wrong.empty() ? 0 : 1;
 }
 
 }  // namespace
 
-void add_recommend(CLI::App& program, int&) {
+void add_recommend(CLI::App& program, int& status) {
     auto* command = program.add_subcommand(
         "recommend",
         "Which composition or engine is the fastest in a scene, from a race that drops the hopeless early");
@@ -146,7 +148,7 @@ void add_recommend(CLI::App& program, int&) {
             "About how long to race (default 60); the last rounds may take longer")
         ->type_name("S");
     command->add_option("--report", request->report, "Write all of it as a page, too")->type_name("FILE.html");
-    command->callback([request] { recommend(*request); });
+    command->callback([request, &status] { status = recommend(*request); });
 }
 
 }  // namespace aabblab

@@ -21,8 +21,6 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::size_t frames_measured = 4;
-
 /// Boxes by id, and who is there.
 struct seen_frame {
     std::vector<aabb::box> boxes;
@@ -83,6 +81,7 @@ scene_measures measure_scene(const scene_choice& choice) {
             if (frame.number == 0) {
                 const std::vector<aabb::box> there = now.of(now.present);
                 m.boxes = measure_boxes(there);
+                m.present = there.size();
                 m.pairs_an_object = static_cast<double>(frame.pairs.size()) /
                                     static_cast<double>(std::max<std::size_t>(there.size(), 1));
                 m.clustering =
@@ -104,12 +103,17 @@ scene_measures measure_scene(const scene_choice& choice) {
 }
 
 std::vector<told_measure> told(const scene_measures& m) {
-    std::vector<told_measure> all{{"objects", grouped(m.objects)}, {"frames", grouped(m.frames)}};
+    std::vector<told_measure> all{
+        {"objects", grouped(m.objects)},
+        {"frames", m.frames > frames_measured
+                       ? fmt::format("{}, of which the first {} are measured", grouped(m.frames), frames_measured)
+                       : grouped(m.frames)}};
+    if (m.present != m.objects) all.push_back({"present", grouped(m.present) + " of them in the first frame"});
     if (m.triangles) all.push_back({"triangles", grouped(*m.triangles) + " in the meshes"});
     const auto& o = m.boxes.overlaps;
     all.push_back({"spread", fmt::format("on x, y, z a box overlaps {:.3g}, {:.3g}, {:.3g} others", o[0], o[1], o[2])});
     for (std::size_t k = 0; k < 3; ++k)
-        if (m.objects > 2 && o[k] > 0.999 * static_cast<double>(m.objects - 1))
+        if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))
             all.push_back({"flat axis", std::string(1, "xyz"[k])});
     all.push_back({"size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
                                      ", longest edge over the median one"});

@@ -37,10 +37,14 @@ struct motion_measures {
 [[nodiscard]] motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after,
                                              std::size_t axis);
 
+/// So many frames are measured, if there are as many.
+inline constexpr std::size_t frames_measured = 4;
+
 /// Of a scene: means over its first frames.
 struct scene_measures {
     std::size_t objects = 0;
     std::size_t frames = 0;
+    std::size_t present = 0;                ///< objects that are there in frame 0
     std::optional<std::size_t> triangles;   ///< of all meshes; empty in scenes of boxes
     box_measures boxes;                     ///< of frame 0
     double pairs_an_object = 0;             ///< of boxes that overlap, in frame 0

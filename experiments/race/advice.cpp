@@ -103,6 +103,11 @@ std::vector<std::string> advice_of(const race_result& race) {
         sentences.push_back(fmt::format("The next, {}, {}.", race.finalists[1].name, beside_winner(race.finalists[1])));
     if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
     for (std::string& sentence : what_would_change_it(race)) sentences.push_back(std::move(sentence));
+    for (const racer& one : race.wrong)
+        sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", one.name));
+    if (race.held_against_cgal) return sentences;
+    sentences.emplace_back(
+        "Nobody was held against the exact pairs: CGAL takes longer to find them than the race may.");
     for (const racer& other : race.finalists)
         if (other.last->digest != winner.last->digest)
             sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));

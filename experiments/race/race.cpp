@@ -6,9 +6,11 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +36,7 @@ namespace {
 
 constexpr std::size_t first_frames = 4;
 constexpr std::size_t most_finalists = 6;
+constexpr std::size_t fewest_finalists = 2;
 constexpr std::size_t fewest_repeats = 5;
 constexpr std::size_t most_repeats = 15;
 constexpr double least_patience = 1;  // seconds
@@ -84,9 +87,11 @@ public:
             margin = std::max(last_margin, std::sqrt(margin));
             play_round(frames, margin);
         }
-        for (; running_.size() > most_finalists; running_.pop_back())
+        for (; running_.size() > most_finalists || (running_.size() > fewest_finalists && !final_fits());
+             running_.pop_back())
             result_.dropped.push_back(std::move(running_.back()));
         play_final();
+        hold_against_cgal();
         rank(running_);
         std::ranges::reverse(result_.dropped);
         result_.finalists = std::move(running_);
@@ -173,6 +178,12 @@ private:
         running_.erase(first_out, running_.end());
     }
 
+    [[nodiscard]] bool final_fits() const {
+        double ms = 0;
+        for (const racer& r : running_) ms += fewest_repeats * whole(r);
+        return ms / 1000 <= std::max(left(), seconds_ / 2);
+    }
+
     /// The whole scene, in turn, as often as there is time for. Who does not come to the end each time is dropped.
     void play_final() {
         progress shown("racing to the end", most_repeats);
@@ -188,6 +199,22 @@ private:
             shown.at(repeat + 1);
         }
         if (running_.empty()) throw aabb::input_error("nothing plays this scene to its end");
+    }
+
+    /// Who is wrong is no answer to what to use, however fast.
+    void hold_against_cgal() {
+        const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
+        const auto exact = play_apart(scene_, *contender_of(*cgal, has_meshes(scene_)), result_.frames,
+                                      least_patience + reading_s_ + seconds_);
+        result_.held_against_cgal = exact.has_value();
+        if (!exact) return;
+        const auto right = [&](const racer& r) {
+            return std::ranges::all_of(r.times, [&](const race_time& t) { return t.digest == exact->digest; });
+        };
+        const auto first_wrong = std::stable_partition(running_.begin(), running_.end(), right);
+        result_.wrong.assign(std::move_iterator(first_wrong), std::move_iterator(running_.end()));
+        running_.erase(first_wrong, running_.end());
+        if (running_.empty()) throw std::runtime_error("nobody finds the exact pairs of this scene");
     }
 
     const scene_choice& scene_;

@@ -84,10 +84,12 @@ struct racer {
 struct race_result {
     std::size_t objects = 0;
     std::size_t frames = 0;
-    std::vector<racer> finalists;  ///< from the fastest
-    std::vector<racer> dropped;    ///< from those who came farthest
-    std::size_t played = 0;        ///< frames of the scene, summed over all; those played again do not count
-    std::size_t of = 0;            ///< that all would have played
+    std::vector<racer> finalists;    ///< from the fastest
+    std::vector<racer> dropped;      ///< from those who came farthest
+    std::vector<racer> wrong;        ///< who would be finalists, but do not find what CGAL finds
+    bool held_against_cgal = true;   ///< false where CGAL takes longer than the race may
+    std::size_t played = 0;          ///< frames of the scene, summed over all; those played again do not count
+    std::size_t of = 0;              ///< that all would have played
 };
 
 /// All that can play the scene: `auto`, every composition of the stage that matters there but the one that `auto` is,
@@ -103,7 +105,7 @@ struct race_result {
 void rank(std::vector<racer>& finalists);
 
 /// What follows from a race, sentence by sentence: what to use, how far the next is behind, and `auto`, with how many
-/// frames it would be another, and whose answer is not the winner's.
+/// frames it would be another, and whose answer is wrong.
 [[nodiscard]] std::vector<std::string> advice_of(const race_result& race);
 
 }  // namespace aabblab

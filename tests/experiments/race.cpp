@@ -67,6 +67,29 @@ racer delayed(const std::string& name, Before before) {
     return r;
 }
 
+/// Loses a pair of each frame that has any.
+class losing_stage final : public aabb::global_stage {
+public:
+    void insert(std::uint32_t id) override { search_->insert(id); }
+    void remove(std::uint32_t id) override { search_->remove(id); }
+    void update(std::span<const aabb::box> boxes) override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        search_->update(boxes);
+    }
+    void search(std::vector<aabb::index_pair>& pairs) override {
+        const std::size_t before = pairs.size();
+        search_->search(pairs);
+        if (pairs.size() > before) pairs.pop_back();
+    }
+    [[nodiscard]] aabb::work_counters counters() const override { return search_->counters(); }
+    [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return search_->bytes(); }
+    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+
+private:
+    std::unique_ptr<aabb::global_stage> search_ =
+        aabb::compose_global_search(aabb::composition(), aabb::instrumentation::none);
+};
+
 const aabblab::scene_choice scene{"brownian", {{"objects", "200"}, {"frames", "24"}}, {}, 1, {}};
 
 bool holds(const std::vector<racer>& some, const std::string& name) {
@@ -131,6 +154,27 @@ TEST_CASE("A race counts the frames of the scene that were played, not those tha
     REQUIRE(race.finalists.size() + race.dropped.size() == 2);
     CHECK(race.of == 50);
     CHECK(race.played == 25 * race.finalists.size() + 4 * race.dropped.size());
+}
+
+TEST_CASE("Who finds other pairs than CGAL does not win a race") {
+    std::vector<racer> all{delayed("right", [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }),
+                           delayed("wrong", [] {})};
+    all.back().who.make_global = [](aabb::instrumentation) { return std::make_unique<losing_stage>(); };
+    const aabblab::race_result race = aabblab::run_race(scene, all, 2);
+    CHECK(race.held_against_cgal);
+    REQUIRE(race.finalists.size() == 1);
+    CHECK(race.finalists.front().name == "right");
+    CHECK(holds(race.wrong, "wrong"));
+    CHECK(aabblab::advice_of(race).back() == "wrong is out of the race: it does not find the exact pairs.");
+    CHECK_THROWS_AS(aabblab::run_race(scene, {all.back()}, 2), std::runtime_error);
+}
+
+TEST_CASE("As many finish a race as there is time for, but two") {
+    std::vector<racer> all;
+    for (const char* name : {"a", "b", "c", "d"})
+        all.push_back(delayed(name, [] { std::this_thread::sleep_for(std::chrono::milliseconds(4)); }));
+    CHECK(aabblab::run_race(scene, all, 30).finalists.size() == 4);
+    CHECK(aabblab::run_race(scene, all, 0.5).finalists.size() == 2);
 }
 
 TEST_CASE("Each repeat of a race begins with another racer") {
