@@ -62,6 +62,12 @@ const atlas_line& atlas_scene::fastest(span_of_time of) const {
     return *best;
 }
 
+double atlas_scene::least_ms(span_of_time of) const {
+    double least = fastest(of).ms(of);
+    for (const atlas_line& line : lines) least = std::min(least, line.ms(of));
+    return least;
+}
+
 double atlas_scene::number(std::string_view parameter) const {
     const auto set = std::ranges::find(scene.settings, parameter, &aabb::setting::name);
     if (set != scene.settings.end()) return number_in(set->value);

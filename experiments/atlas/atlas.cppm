@@ -48,6 +48,8 @@ struct atlas_scene {
     [[nodiscard]] const atlas_line* find(std::string_view label) const;
     /// The fastest that is not `auto`.
     [[nodiscard]] const atlas_line& fastest(span_of_time of) const;
+    /// Of the fastest, `auto` among them.
+    [[nodiscard]] double least_ms(span_of_time of) const;
     /// A parameter of the scene as a number, its default where it is not set; NaN where it has none of that name.
     [[nodiscard]] double number(std::string_view parameter) const;
 };
@@ -67,10 +69,11 @@ struct atlas_scene {
 [[nodiscard]] table winners_table(const std::vector<atlas_scene>& atlas);
 /// Scene by scene: what it is like, who is the fastest and by how much, and the regret of `auto`.
 [[nodiscard]] table cells_table(const std::vector<atlas_scene>& atlas);
-/// What it costs to use one of them everywhere, against the fastest of each scene.
+/// What it costs to use one of them everywhere, against the fastest of each scene, `auto` among them.
 [[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of);
 
-/// Where the fastest of one scene becomes slower than that of the next, along one parameter, all others equal.
+/// Where the fastest of one scene becomes slower than that of the next, along one parameter, all others equal. Lines
+/// that differ in parameters only, as lists by their margin, are one: the fastest of them.
 struct border {
     std::string before;
     std::string after;

@@ -16,6 +16,8 @@ module;
 
 module aabblab.atlas;
 
+import :labels;
+import :noise;
 import aabb.policy;
 import aabblab.numbers;
 import aabblab.scenes;
@@ -57,17 +59,32 @@ std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     return {share(from.value, to.value), {shares[draws / 40], shares[draws - 1 - draws / 40]}};
 }
 
+/// The fastest of a family; none where none of it plays.
+const atlas_line* fastest_of(const atlas_scene& scene, const std::string& family) {
+    const atlas_line* best = nullptr;
+    for (const atlas_line& line : scene.lines)
+        if (!line.automatic && family_of(line.label) == family &&
+            (!best || line.ms(span_of_time::frame) < best->ms(span_of_time::frame)))
+            best = &line;
+    return best;
+}
+
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
-    const std::string& before = from.fastest(span_of_time::frame).label;
-    const std::string& after = to.fastest(span_of_time::frame).label;
-    const atlas_line* after_at_first = from.find(after);
-    const atlas_line* before_at_last = to.find(before);
-    if (before == after || !after_at_first || !before_at_last) return std::nullopt;
+    const atlas_line& first_best = from.fastest(span_of_time::frame);
+    const atlas_line& last_best = to.fastest(span_of_time::frame);
+    const std::string before = family_of(first_best.label);
+    const std::string after = family_of(last_best.label);
+    if (before == after) return std::nullopt;
+    const atlas_line* after_at_first = fastest_of(from, after);
+    const atlas_line* before_at_last = fastest_of(to, before);
+    if (!after_at_first || !before_at_last) return std::nullopt;
     const double first = std::log(from.number(parameter));
     const double way = std::log(to.number(parameter)) - first;
     if (!std::isfinite(first)) return std::nullopt;
-    const auto [share, range] = crossing(log_ratio(*from.find(before), *after_at_first, span_of_time::frame),
-                                         log_ratio(*before_at_last, *to.find(after), span_of_time::frame));
+    const estimate at_first = log_ratio_in(from, first_best, *after_at_first, span_of_time::frame);
+    const estimate at_last = log_ratio_in(to, *before_at_last, last_best, span_of_time::frame);
+    if (!at_first.known() || !at_last.known()) return std::nullopt;
+    const auto [share, range] = crossing(at_first, at_last);
     return border{before,
                   after,
                   std::string(parameter),

@@ -31,7 +31,7 @@ using panel_key = std::tuple<double, double, double>;  // clouds, density, ratio
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most = 7;
     std::map<std::string, std::size_t> wins;
-    for (const atlas_scene& scene : atlas) ++wins[scene.fastest(frame).label];
+    for (const atlas_scene& scene : atlas) ++wins[family_of(scene.fastest(frame).label)];
     std::vector<std::string> labels;
     for (const auto& [label, count] : wins) labels.push_back(label);
     std::ranges::stable_sort(labels, [&](const auto& a, const auto& b) { return wins[a] > wins[b]; });
@@ -75,7 +75,7 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
             place->second = {fmt::format("density {:g}, sizes 1 to {:g}", std::get<1>(key), std::get<2>(key)),
                              empty_series(winners),
                              {}};
-        add_point(place->second.lines, scene.fastest(frame).label, scene.number("objects"),
+        add_point(place->second.lines, family_of(scene.fastest(frame).label), scene.number("objects"),
                   scene.number("displacement"));
     }
     for (auto& [key, panel] : panels) f.panels.push_back(std::move(panel));
@@ -95,7 +95,7 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
              .marks = {}};
     for (const atlas_scene& scene : atlas)
         if (scene.measures.motion && scene.measures.motion->inversions > 0)
-            add_point(f.lines, scene.fastest(frame).label, static_cast<double>(scene.measures.objects),
+            add_point(f.lines, family_of(scene.fastest(frame).label), static_cast<double>(scene.measures.objects),
                       scene.measures.motion->inversions);
     return f;
 }
@@ -125,10 +125,6 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
     if (f.lines.size() > most) f.lines.resize(most);
     return f;
 }
-
-}  // namespace
-
-namespace {
 
 void add_maps(std::vector<figure>& all, const std::vector<atlas_scene>& atlas, const std::string& among) {
     const std::vector<std::string> winners = most_frequent_winners(atlas);

@@ -9,6 +9,7 @@ module;
 
 module aabblab.atlas;
 
+import :noise;
 import :statement;
 import aabblab.numbers;
 import aabblab.statistics;
@@ -23,22 +24,6 @@ struct measured_ratio {
     estimate log{std::nan(""), 0, 1};
 };
 
-/// Where both have one repeat, repeats of others say how much they differ; nothing is known where those have one too.
-estimate with_noise_of(const atlas_scene& scene, const estimate& one) {
-    if (one.error > 0) return one;
-    double squares = 0;
-    double degrees = 0;
-    for (const atlas_line& line : scene.lines) {
-        const auto count = static_cast<double>(line.frame_ms.size());
-        double mean = 0;
-        for (const double ms : line.frame_ms) mean += std::log(ms) / count;
-        for (const double ms : line.frame_ms) squares += (std::log(ms) - mean) * (std::log(ms) - mean);
-        degrees += count - 1;
-    }
-    if (degrees == 0) return {std::nan(""), 0, 1};
-    return {one.value, std::sqrt(2 * squares / degrees), degrees};
-}
-
 /// The mean over the scenes that both play, which know nothing of each other.
 measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& in) {
     std::vector<estimate> all;
@@ -47,8 +32,7 @@ measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_rati
         const atlas_line* arm = scene.find(r.arm);
         const atlas_line* base = scene.find(r.base);
         if (!arm || !base) continue;
-        if (const estimate one = with_noise_of(scene, log_ratio(*arm, *base, span_of_time::frame)); one.known())
-            all.push_back(one);
+        if (const estimate one = log_ratio_in(scene, *arm, *base, span_of_time::frame); one.known()) all.push_back(one);
     }
     return all.empty() ? measured_ratio() : measured_ratio{all.size(), mean_of(all)};
 }

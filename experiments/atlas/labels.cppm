@@ -1,6 +1,8 @@
 module;
 #include <algorithm>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Who plays in an atlas, and what it costs to use one of them everywhere.
@@ -19,14 +21,22 @@ namespace aabblab {
     return labels;
 }
 
+/// What a line is made of, whatever the parameters: "neighbour_list + bucket + columns + simd".
+[[nodiscard]] inline std::string family_of(std::string_view label) {
+    std::string family;
+    for (std::size_t at = 0; at < label.size(); ++at) {
+        if (label[at] == ':') at = std::min(label.find(' ', at), label.size());
+        if (at < label.size()) family += label[at];
+    }
+    return family;
+}
+
 /// Times over those of the fastest, of each scene that it plays, in ascending order.
 [[nodiscard]] inline std::vector<double> regrets_of(const std::vector<atlas_scene>& atlas, const std::string& label,
                                                     span_of_time of) {
     std::vector<double> regrets;
     for (const atlas_scene& scene : atlas)
-        if (const atlas_line* line = scene.find(label))
-            // auto may be faster than whoever it is held against.
-            regrets.push_back(std::max(1.0, line->ms(of) / scene.fastest(of).ms(of)));
+        if (const atlas_line* line = scene.find(label)) regrets.push_back(line->ms(of) / scene.least_ms(of));
     std::ranges::sort(regrets);
     return regrets;
 }

@@ -84,7 +84,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
              {"second_ratio"},
              {"second_low"},
              {"second_high"},
-             {"auto_regret"}},
+             {"auto_ratio"}},
             {}};
     for (const atlas_scene& scene : atlas) {
         const atlas_line& best = scene.fastest(frame);
