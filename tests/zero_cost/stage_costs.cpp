@@ -16,9 +16,12 @@
 
 import aabb;
 import aabb.partition.axial_cut;
+import aabb.partition.columns;
 import aabb.partition.none;
+import aabb.sort.bucket;
 import aabb.sort.insertion;
 import aabb.sweep.one_axis;
+import aabb.sweep.simd;
 
 namespace {
 std::size_t held = 0;  // on the heap
@@ -75,6 +78,27 @@ private:
     std::vector<aabb::index_pair> pairs_;
 };
 
+/// The same of what cuts before it sorts.
+class columns_by_hand {
+public:
+    void insert(unsigned id) { objects_.insert(id); }
+    std::span<const aabb::index_pair> pairs(std::span<const aabb::box> boxes) {
+        objects_.require_boxes_for_all(boxes.size());
+        search_.update(boxes, objects_, counters_);
+        objects_.settle();
+        pairs_.clear();
+        search_.search(pairs_, counters_);
+        return pairs_;
+    }
+
+private:
+    aabb::column_search<aabb::bucket_sort, aabb::columns_partition, aabb::simd_sweep, aabb::no_counters> search_{
+        {}, {}, {}};
+    [[no_unique_address]] aabb::no_counters counters_;
+    aabb::membership objects_;
+    std::vector<aabb::index_pair> pairs_;
+};
+
 /// A prepare that looks at every box, and changes none.
 struct copying_prepare {
     static constexpr std::string_view name = "copying";
@@ -110,6 +134,10 @@ using counted =
     aabb::global_search<aabb::insertion_sort, aabb::none_partition, aabb::one_axis_sweep, aabb::work_counters>;
 using cut = aabb::global_search<aabb::insertion_sort, aabb::axial_cut_partition, aabb::one_axis_sweep>;
 using prepared = aabb::prepared_search<copying_prepare, bare>;
+using columns = aabb::global_search<aabb::bucket_sort, aabb::columns_partition, aabb::simd_sweep>;
+using counted_columns =
+    aabb::global_search<aabb::bucket_sort, aabb::columns_partition, aabb::simd_sweep, aabb::work_counters>;
+using prepared_columns = aabb::prepared_search<copying_prepare, columns>;
 
 /// It cuts, whether that pays or not.
 aabb::axial_cut_partition into_segments() {
@@ -161,4 +189,8 @@ int main(int argc, char** argv) {
     if (way == "counted") play(objects, [] { return aabb::detector<counted>(); });
     if (way == "cut") play(objects, [] { return aabb::detector<cut>(cut({}, into_segments(), {})); });
     if (way == "prepared") play(objects, [] { return aabb::detector<prepared>(); });
+    if (way == "columns_by_hand") play(objects, [] { return columns_by_hand(); });
+    if (way == "columns") play(objects, [] { return aabb::detector<columns>(); });
+    if (way == "counted_columns") play(objects, [] { return aabb::detector<counted_columns>(); });
+    if (way == "prepared_columns") play(objects, [] { return aabb::detector<prepared_columns>(); });
 }
