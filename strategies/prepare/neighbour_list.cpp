@@ -20,12 +20,12 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
-import aabb.prepare.glimpse;
 import aabb.prepare.grown_boxes;
+import aabb.prepare.list_forecast;
+import aabb.prepare.list_pause;
 import aabb.prepare.list_plan;
 import aabb.prepare.listed_pairs;
 import aabb.prepare.mean_extent;
-import aabb.prepare.reach;
 import aabb.prepare.relative_motion;
 import aabb.prepare.rest_watch;
 import aabb.simd;
@@ -71,25 +71,21 @@ private:
     [[nodiscard]] bool serves(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> watched(std::span<const box> boxes, bool same_objects);
-    void leave_alone();
     void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
     [[nodiscard]] bool repeats_plan(std::span<const box> boxes);
     [[nodiscard]] double first_margin(std::span<const box> boxes);
-    [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin);
-    void look_anew(std::span<const box> boxes);
-    void look_anew_at_other_sizes(std::span<const box> boxes);
-    void correct(double beside);
+    [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
+        return forecast_.is_far_too_long(boxes, objects_, margin, found_);
+    }
+    [[nodiscard]] list_outlook outlook() const { return forecast_.outlook(motion_, objects_.size(), found_); }
     void search_as_it_is(std::span<const box> boxes);
     void keep(std::span<const box> boxes, double margin);
     void judge_first_list(std::span<const box> boxes);
     void keep_those_that_meet(std::span<const box> boxes);
 
-    /// Where no list pays, boxes are watched so many frames, or less if they move on and on, then left alone so many,
-    /// and then a few of them looked at.
+    /// Where no list pays, boxes are watched so many frames, or less if they move on and on, and then left alone.
     static constexpr std::uint32_t longest_watch = 8;
-    static constexpr unsigned shortest_pause = 6;
-    static constexpr unsigned longest_pause = 96;
     /// A list that costs so many times what a search does is not waited for.
     static constexpr double hopeless = 3;
     /// Fewer are searched in the time that it takes to watch them.
@@ -123,22 +119,14 @@ private:
     double planned_for_ = 0;      // the farthest that boxes had moved when that was reckoned
     unsigned repeated_ = 0;       // lists made since by the same plan
     std::size_t found_ = 0;       // pairs of the frame before
-    growth_of_pairs growth_;
-    double extent_ = 0;        // of boxes, when that was looked at
-    double foreseen_ = 0;      // pairs of the list beside those that overlap, as they were reckoned
-    double correction_ = 1;    // of that
-    double looked_up_ = 0;     // a margin for which a sample said how long the list would be, or the first list did
-    std::uint32_t drawn_ = 0;  // boxes, for samples
+    list_forecast forecast_;
     rest_watch rest_;
     bool came_to_rest_ = false;
-    bool rested_ = false;              // since the list was kept
-    double cost_ = 0;                  // of the cheapest list that was thought of last, over that of a search
-    bool watches_ = false;             // how far boxes are from those that are kept, without a list
-    bool watches_long_ = false;        // before anything is planned
-    unsigned left_ = 0;                // frames that are searched as they are before one is kept again
-    unsigned pause_ = shortest_pause;  // as long as the next one is
-    glimpse glimpse_;
-    bool move_too_far_ = false;  // the few boxes, for any list
+    bool rested_ = false;        // since the list was kept
+    double cost_ = 0;            // of the cheapest list that was thought of last, over that of a search
+    bool watches_ = false;       // how far boxes are from those that are kept, without a list
+    bool watches_long_ = false;  // before anything is planned
+    list_pause pause_;
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
@@ -154,7 +142,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
     if (adapts() && objects_.size() < fewest_boxes_of_list) {
         search_as_it_is(boxes);
-    } else if (left_ > 0) {
+    } else if (pause_.lasts()) {
         pass_over(boxes);
         search_as_it_is(boxes);
     } else if (!is_kept_ || comes_any || !rests(boxes)) {
@@ -249,7 +237,7 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
 /// The margin of the list that is to be kept now; none where none pays. After a pause a frame is kept as it is, to see
 /// how boxes move, and one of boxes that came to rest, to be the answer until they move.
 std::optional<double> neighbour_list_stage::next_margin(std::span<const box> boxes) {
-    foreseen_ = 0;
+    forecast_.foresee_nothing();
     if (config_.margin) return mean_extents(*config_.margin, boxes, objects_);
     const bool comes_to_rest = std::exchange(came_to_rest_, false);
     if (adapts() && is_first_) return first_margin(boxes);
@@ -262,7 +250,7 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
     // What jiggles about its place shows it only after some frames.
     watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
-    if (!watches_) leave_alone();
+    if (!watches_) pause_.begin();
     return std::nullopt;
 }
 
@@ -279,72 +267,37 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
         if (!watches_long_ || age_ == longest_watch) margin = paying_margin(boxes);
     }
     watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
-    if (!watches_ && !margin) leave_alone();
+    if (!watches_ && !margin) pause_.begin();
     return margin;
 }
 
-/// Where a few boxes say that a list may pay and all of them that none does, ever longer.
-void neighbour_list_stage::leave_alone() {
-    left_ = pause_ + glimpse::longest;
-    pause_ = std::min(2 * pause_, longest_pause);
-}
-
-/// A frame that is searched as it is. A few boxes are looked at until they say that a list may pay: where even those
-/// move too far for any, all do, and are not looked at for the rest of the eight frames. Where all eight were in vain,
-/// the memory of the last list goes.
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
-    --left_;
-    const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
-    if (std::has_single_bit(age) && !move_too_far_) {
-        const list_outlook seen{glimpse_.least_motion(boxes, objects_, age), objects_.size(), found_, growth_,
-                                correction_};
-        const list_plan plan = plan_list(seen, worth_a_list, worth_a_list);
-        if (plan.frames > 1) {
-            left_ = 0;
-            return;
-        }
-        move_too_far_ = std::isinf(plan.cost);
-    }
-    if (left_ == 0) {
-        left_ = glimpse::longest;
-        release(kept_);
-        release(grown_);
-        release(list_);
-    }
-    if (left_ == glimpse::longest) {
-        look_anew_at_other_sizes(boxes);
-        glimpse_.keep(boxes, drawn_);
-        move_too_far_ = false;
-    }
+    if (!pause_.pass(boxes, objects_, found_, forecast_)) return;
+    release(kept_);
+    release(grown_);
+    release(list_);
 }
 
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
     const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
     if (lasted_as_planned && repeats_plan(boxes)) return margin_;
     if (age_ <= 1)
-        look_anew(boxes);
+        forecast_.look_anew(boxes, objects_);
     else
-        look_anew_at_other_sizes(boxes);
+        forecast_.look_anew_at_other_sizes(boxes, objects_);
     planned_for_ = motion_.empty() ? 0 : motion_.back();
     repeated_ = 0;
     for (;;) {
-        const list_outlook seen{motion_, objects_.size(), found_, growth_, correction_};
-        const list_plan plan = plan_list(seen, lasted_as_planned ? worth_another_list : worth_a_list);
+        const list_plan plan = plan_list(outlook(), lasted_as_planned ? worth_another_list : worth_a_list);
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
-        foreseen_ = pairs_listed(seen, plan.margin) - pairs_listed(seen, 0);
-        const bool is_to_be_looked_up = objects_.size() >= fewest_boxes_of_long_list && foreseen_ > 0 &&
-                                        (pays ? plan.margin > 2 * looked_up_ : looked_up_ == 0 && cost_ < hopeless);
+        const bool may_be_wrong =
+            forecast_.foresee(outlook(), plan.margin) > 0 && objects_.size() >= fewest_boxes_of_long_list &&
+            (pays ? plan.margin > 2 * forecast_.looked_up() : forecast_.looked_up() == 0 && cost_ < hopeless);
         if (pays && is_far_too_long(boxes, plan.margin)) return std::nullopt;
-        if (!is_to_be_looked_up) return pays ? std::optional(plan.margin) : std::nullopt;
-        // A list may hold each box with every other, or as boxes on a surface fewer than are reckoned.
-        looked_up_ = plan.margin;
-        const double beside = pairs_in_reach(boxes, objects_, drawn_, plan.margin) - static_cast<double>(found_);
-        if (pays && beside <= 2 * foreseen_ + static_cast<double>(objects_.size())) return plan.margin;
-        // Where none pays, only fewer of them change that.
-        if (!pays && beside >= foreseen_) return std::nullopt;
-        correct(beside);
+        if (!may_be_wrong || !forecast_.look_up(boxes, objects_, plan.margin, found_, pays))
+            return pays ? std::optional(plan.margin) : std::nullopt;
     }
 }
 
@@ -359,43 +312,11 @@ bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
     return true;
 }
 
-/// @param beside pairs that a list holds beside those that overlap, where others were foreseen
-void neighbour_list_stage::correct(double beside) {
-    correction_ = std::clamp(correction_ * beside / foreseen_, 0.3, 1000.0);
-}
-
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
 double neighbour_list_stage::first_margin(std::span<const box> boxes) {
     const double margin = mean_extents(extents_of_first_margin, boxes, objects_);
     found_ = 0;
     return is_far_too_long(boxes, margin) ? 0 : margin;
-}
-
-/// Whether half of that list would not pay: it may hold each box with every other, whatever is reckoned.
-bool neighbour_list_stage::is_far_too_long(std::span<const box> boxes, double margin) {
-    constexpr std::size_t by_chance = 8;
-    const rough_reach reach = rough_reach_of(boxes, objects_, drawn_, margin);
-    const auto overlapping = std::max(found_, static_cast<std::size_t>(reach.overlapping));
-    return reach.counted >= by_chance &&
-           !pays(objects_.size(), overlapping, static_cast<std::size_t>(reach.in_reach / 2));
-}
-
-void neighbour_list_stage::look_anew(std::span<const box> boxes) {
-    std::array<box, 16> some;
-    const std::span<const box> drawn = drawn_boxes(boxes, objects_, drawn_, some);
-    growth_ = growth_of_pairs(drawn);
-    extent_ = median_extent(drawn);
-}
-
-/// Where boxes are by far shorter or longer than those that were looked at, what lists held tells nothing.
-void neighbour_list_stage::look_anew_at_other_sizes(std::span<const box> boxes) {
-    constexpr double by_far = 4;
-    std::array<box, 8> some;
-    const double now = median_extent(drawn_boxes(boxes, objects_, drawn_, some));
-    if (now > extent_ / by_far && now < by_far * extent_) return;
-    look_anew(boxes);
-    correction_ = 1;
-    looked_up_ = 0;
 }
 
 void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
@@ -408,11 +329,10 @@ void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
 void neighbour_list_stage::judge_first_list(std::span<const box> boxes) {
     is_first_ = false;
     if (margin_ == 0) return;
-    look_anew(boxes);
-    const list_outlook seen{{}, objects_.size(), found_, growth_, correction_};
-    foreseen_ = pairs_listed(seen, margin_) - pairs_listed(seen, 0);
-    if (foreseen_ > 0) correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
-    looked_up_ = margin_;
+    forecast_.look_anew(boxes, objects_);
+    forecast_.foresee(outlook(), margin_);
+    forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
+    forecast_.take_as_looked_up(margin_);
     is_too_long_ = !pays(objects_.size(), found_, list_.size());
 }
 
@@ -435,14 +355,14 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     if (margin > 0) {
         // Grown, an inverted box may be none. As they are, the search looks at them.
         require_valid(boxes);
-        pause_ = shortest_pause;
+        pause_.shorten();
         grown_.resize(boxes.size());
         grow(boxes, margin, grown_);
     }
     search_->update(margin > 0 ? std::span<const box>(grown_) : boxes);
     list_.clear();
     search_->search(list_);
-    if (foreseen_ > 0) correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
+    forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     margin_ = margin;
     // Of the first list nothing is known before it has served a frame.
     is_too_long_ = adapts() && margin > 0 && !is_first_ && !pays(objects_.size(), found_, list_.size());

@@ -447,8 +447,14 @@ TEST_CASE("where no list pays, a few boxes are looked at and nothing is kept") {
         }
         return kept;
     };
+    const auto held = [&] {
+        const std::vector<part_bytes> parts = stage->bytes();
+        return std::ranges::find(parts, std::string("prepare"), &part_bytes::part)->bytes;
+    };
     CHECK(kept_frames(3, 10) > 0);
+    CHECK(held() > n * sizeof(box));
     CHECK(kept_frames(3, 40) == 0);
+    CHECK(held() < n * sizeof(box));
     CHECK(kept_frames(1e-4F, 20) > 10);
 }
 

@@ -105,4 +105,7 @@ TEST_CASE("auto keeps lists where frames follow each other, and builds well what
     // A larger mesh takes longer to build, and more queries to repay it.
     CHECK(selected(strategy_kind::build, {}, {100, 10'000, 100}) == "sah");
     CHECK(selected(strategy_kind::build, {}, {100, 1'000'000, 100}) == "median");
+    // Of as many triangles in a hundred meshes, a query meets two hundredths, and saves less.
+    CHECK(selected(strategy_kind::build, {}, {100, 10'000, 100, 2}) == "sah");
+    CHECK(selected(strategy_kind::build, {}, {100, 10'000, 100, 100}) == "median");
 }

@@ -86,8 +86,9 @@ public:
         objects_.require_boxes_for_all(boxes.size());
         search_.update(boxes, objects_, counters_);
         objects_.settle();
+        has_frame_ = true;
         pairs_.clear();
-        search_.search(pairs_, counters_);
+        if (has_frame_) search_.search(pairs_, counters_);
         return pairs_;
     }
 
@@ -96,6 +97,7 @@ private:
         {}, {}, {}};
     [[no_unique_address]] aabb::no_counters counters_;
     aabb::membership objects_;
+    bool has_frame_ = false;
     std::vector<aabb::index_pair> pairs_;
 };
 
