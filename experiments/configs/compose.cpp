@@ -106,7 +106,7 @@ bool is_automatic(const document& doc, const node& compose) {
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
     for (const aabb::named_strategies& named : named_by(doc, compose, automatic.size())) {
         each_once<aabb::composition> alone;
-        add_composition(doc, compose.line, composed_of(select_strategies(named, {})), alone);
+        add_composition(doc, compose.line, select_composition(named, {}), alone);
         if (std::ranges::find(automatic, named) != automatic.end()) doc.fail(compose.line, "this auto is listed twice");
         automatic.push_back(named);
     }

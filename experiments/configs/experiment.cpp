@@ -257,7 +257,7 @@ experiment read_experiment(const std::filesystem::path& file, experiment_size si
 
 std::vector<aabb::composition> every_composition(const experiment& e) {
     std::vector<aabb::composition> all = e.compositions;
-    for (const aabb::named_strategies& named : e.automatic) all.push_back(composed_of(select_strategies(named, {})));
+    for (const aabb::named_strategies& named : e.automatic) all.push_back(select_composition(named, {}));
     return all;
 }
 

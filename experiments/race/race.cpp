@@ -255,7 +255,7 @@ std::vector<racer> starters(const scene_choice& choice) {
         one.who = std::move(who);
         one.name = std::move(name);
     };
-    const auto automatic = contender_of(composed_of(select_strategies({}, outlook_of(scene))), meshes).name;
+    const auto automatic = contender_of(select_composition({}, outlook_of(scene)), meshes).name;
     add(contender_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");
     const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
     for (const aabb::composition& c : aabb::every_composition(stage)) {

@@ -5,6 +5,7 @@ module;
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 module aabb.selection;
@@ -35,29 +36,31 @@ double queries_that_repay_sah(const scene_outlook& scene) {
            (ns.node_visit * visits_a_root * saved * std::sqrt(of_two));
 }
 
-selected_strategy selected_prepare(const scene_outlook& scene) {
-    if (scene.frames < fewest_frames_of_list)
-        return {strategy_kind::prepare,
-                {"none", {}},
-                "fewer than four frames: a list of neighbours would not repay its making"};
-    return {strategy_kind::prepare,
-            {"neighbour_list", {}},
-            "frames follow each other: a list of neighbours is kept while boxes move little, and only then"};
+std::size_t least_queries_of_sah(const scene_outlook& scene) {
+    constexpr double many = 1e18;
+    return static_cast<std::size_t>(std::clamp(std::ceil(queries_that_repay_sah(scene)), 0.0, many));
 }
 
-selected_strategy selected_build(const scene_outlook& scene) {
-    constexpr double many = 1e18;
-    const double queries = std::ceil(queries_that_repay_sah(scene));
-    const auto repaid = static_cast<std::size_t>(std::clamp(queries, 0.0, many));  // 0 where `sah` is built faster
-    if (scene.queries < repaid)
-        return {strategy_kind::build,
-                {"median", {}},
-                "built fastest: queries are to be " + std::to_string(scene.queries) + ", and only from " +
-                    std::to_string(repaid) + " on they repay a better tree"};
-    return {strategy_kind::build,
-            {"sah", {}},
-            "queries are to be " + std::to_string(scene.queries) + ", and from " + std::to_string(repaid) +
-                " on they repay a better tree"};
+const char* prepare_for(const scene_outlook& scene) {
+    return scene.frames < fewest_frames_of_list ? "none" : "neighbour_list";
+}
+const char* build_for(const scene_outlook& scene) {
+    return scene.queries < least_queries_of_sah(scene) ? "median" : "sah";
+}
+
+std::string rule_of_prepare(const scene_outlook& scene) {
+    return scene.frames < fewest_frames_of_list
+               ? "fewer than " + std::to_string(fewest_frames_of_list) +
+                     " frames: a list of neighbours would not repay its making"
+               : "frames follow each other: a list of neighbours is kept while boxes move little, and only then";
+}
+std::string rule_of_build(const scene_outlook& scene) {
+    const std::string queries = std::to_string(scene.queries);
+    const std::string repaid = std::to_string(least_queries_of_sah(scene));
+    return scene.queries < least_queries_of_sah(scene)
+               ? "built fastest: queries are to be " + queries + ", and only from " + repaid +
+                     " on they repay a better tree"
+               : "queries are to be " + queries + ", and from " + repaid + " on they repay a better tree";
 }
 
 /// What is named among what is fastest by itself; where that is refused, among what usually goes with what is named,
@@ -98,21 +101,26 @@ bool depends_on_scene(strategy_kind kind) {
     return kind == strategy_kind::prepare || kind == strategy_kind::build;
 }
 
+composition select_composition(const named_strategies& named, const scene_outlook& scene) {
+    const bool any = std::ranges::any_of(strategy_kinds, [&](strategy_kind kind) { return named[kind].has_value(); });
+    composition whole = any ? completed(named) : composition();
+    if (!named[strategy_kind::prepare]) whole[strategy_kind::prepare] = {prepare_for(scene), {}};
+    if (!named[strategy_kind::build]) whole[strategy_kind::build] = {build_for(scene), {}};
+    return whole;
+}
+
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
     const composition usual;
-    const composition whole = completed(named);
+    const composition whole = select_composition(named, scene);
     std::vector<selected_strategy> all;
     for (const strategy_kind kind : strategy_kinds) {
-        if (named[kind])
-            all.push_back({kind, *named[kind], "as it is named"});
-        else if (kind == strategy_kind::prepare)
-            all.push_back(selected_prepare(scene));
-        else if (kind == strategy_kind::build)
-            all.push_back(selected_build(scene));
-        else
-            all.push_back({kind, whole[kind],
-                           rule_of(whole[kind] == usual[kind] ? "the usual one" : "what goes with what is named", kind,
-                                   whole[kind].name)});
+        std::string rule = named[kind]                      ? "as it is named"
+                           : kind == strategy_kind::prepare ? rule_of_prepare(scene)
+                           : kind == strategy_kind::build
+                               ? rule_of_build(scene)
+                               : rule_of(whole[kind] == usual[kind] ? "the usual one" : "what goes with what is named",
+                                         kind, whole[kind].name);
+        all.push_back({kind, whole[kind], std::move(rule)});
     }
     return all;
 }

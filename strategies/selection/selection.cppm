@@ -35,12 +35,14 @@ struct selected_strategy {
 /// Whether what is selected for the kind depends on the scene.
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
-/// A strategy for each kind, in their order: what is named stays; `prepare` and `build` are what serves the scene; the
-/// others are what is fastest by itself, or where that cannot be composed with it, what can.
+/// A strategy for each kind: what is named stays; `prepare` and `build` are what serves the scene; the others are what
+/// is fastest by itself, or where that cannot be composed with it, what can. In a microsecond where nothing is named.
 /// @throws input_error on an unknown name or parameter.
+[[nodiscard]] composition select_composition(const named_strategies& named, const scene_outlook& scene);
+
+/// The same with the rules that it follows from, in the order of the kinds.
 [[nodiscard]] std::vector<selected_strategy> select_strategies(const named_strategies& named,
                                                                const scene_outlook& scene);
-
 [[nodiscard]] composition composed_of(const std::vector<selected_strategy>& selected);
 
 }  // namespace aabb

@@ -123,7 +123,7 @@ TEST_CASE("auto selects what is exact, whatever work costs") {
         const these_costs costs(any_costs());
         const scene_outlook scene{*rc::gen::inRange<std::size_t>(0, 100), *rc::gen::inRange<std::size_t>(0, 1'000'000),
                                   *rc::gen::inRange<std::size_t>(0, 1'000'000)};
-        const composition c = composed_of(select_strategies({}, scene));
+        const composition c = select_composition({}, scene);
         for (const enum stage of : {stage::global_search, stage::local_detection}) {
             RC_ASSERT(refusal_of(c, of).empty());
             RC_ASSERT(is_exact(c, of));
@@ -210,7 +210,7 @@ TEST_CASE("a list is planned where testing its pairs is cheap, and none where it
 
 TEST_CASE("auto builds by sah from fewer queries on where visiting nodes costs more") {
     const auto build_for = [](std::size_t queries) {
-        return composed_of(select_strategies({}, {1, 100'000, queries}))[strategy_kind::build].name;
+        return select_composition({}, {1, 100'000, queries})[strategy_kind::build].name;
     };
     CHECK(build_for(20) == "median");
     cost_model slow;

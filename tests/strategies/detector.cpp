@@ -272,7 +272,7 @@ TEST_CASE("an auto_detector says what it selected and by which rule, and what it
         return one == all.end() ? "" : to_text(one->choice) + ", " + one->rule;
     };
     CHECK(rule_of(boxes, strategy_kind::sort) == "shell:gaps=ciura, as it is named");
-    CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than four frames"));
+    CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than 4 frames"));
     CHECK(rule_of(boxes, strategy_kind::tree).empty());
     CHECK(std::ranges::count(boxes.left_out(), "no local detection: no meshes, no trees, no triangle test") == 1);
     CHECK(std::ranges::count(boxes.left_out(), "no work counters") == 1);

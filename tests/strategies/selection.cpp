@@ -16,7 +16,7 @@ using namespace aabb;
 namespace {
 
 std::string selected(strategy_kind kind, const named_strategies& named, const scene_outlook& scene) {
-    return to_text(composed_of(select_strategies(named, scene))[kind]);
+    return to_text(select_composition(named, scene)[kind]);
 }
 
 std::vector<strategy_kind> kinds_of(enum stage of) {
@@ -77,7 +77,7 @@ TEST_CASE("auto keeps what is named, whatever it is, and completes it where it c
                         named_strategies named;
                         named[second] = strategy_choice{other.name, {}};
                         named[first] = one;
-                        const composition c = composed_of(select_strategies(named, {}));
+                        const composition c = select_composition(named, {});
                         INFO(to_text(one) << " with " << other.name << ": " << to_text(c, of));
                         for (const strategy_kind kind : {first, second}) REQUIRE(c[kind] == *named[kind]);
                         REQUIRE(refusal_of(c, of).empty() == can_be_completed(named));
@@ -88,7 +88,7 @@ TEST_CASE("auto keeps what is named, whatever it is, and completes it where it c
     const auto beside = [](strategy_kind kind, const char* name) {
         named_strategies named;
         named[kind] = strategy_choice{name, {}};
-        return text_of_global(composed_of(select_strategies(named, {})));
+        return text_of_global(select_composition(named, {}));
     };
     CHECK(beside(strategy_kind::sweep, "incremental") == "insertion + none + incremental");
     // Beside what is named stands what is fastest, not what is usual in papers.
