@@ -37,12 +37,13 @@ int run(const atlas_request& request) {
     std::vector<std::string> failures;
     if (!request.judge) failures = measure_atlas(folder, request.quick);
     const std::vector<atlas_scene> atlas = measured_atlas(folder);
+    for (const std::string& missing : unfinished_parts(folder)) note(missing);
     if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + folder.string());
     write_atlas(folder, atlas);
     print(to_text(winners_table(atlas), output_width()) + "\n");
     print(to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
-        print(fmt::format("{:<4} {}\n     {} ({}).\n", s.id, s.says, text_of(s.verdict), s.source));
+        print(wrapped(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source)) + "\n");
     print("\nMaps, borders and every ratio are in " + visible((folder / "atlas.html").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
@@ -55,7 +56,10 @@ void add_atlas(CLI::App& program, int& status) {
     auto request = std::make_shared<atlas_request>();
     command->add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
     command->add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
-    command->add_option("--out", request->out, "Folder of results and maps (default results/atlas; with --quick results/atlas-quick)")->type_name("DIR");
+    command
+        ->add_option("--out", request->out,
+                     "Folder of results and maps (default results/atlas; with --quick results/atlas-quick)")
+        ->type_name("DIR");
     command->callback([request, &status] { status = run(*request); });
 }
 

@@ -43,6 +43,18 @@ std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool
     return failures;
 }
 
+std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
+    std::vector<std::string> sentences;
+    for (const part& one : parts) {
+        if (!std::filesystem::exists(folder / one.name / "manifest.json"))
+            sentences.push_back(fmt::format("of {} nothing was played yet", one.name));
+        else if (!read_manifest(folder / one.name).finished)
+            sentences.push_back(
+                fmt::format("{} is not finished; scenes of it that were not played are missing", one.name));
+    }
+    return sentences;
+}
+
 std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder) {
     std::vector<atlas_scene> atlas;
     for (const part& one : parts)

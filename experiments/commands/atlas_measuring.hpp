@@ -15,6 +15,9 @@ namespace aabblab {
 /// @returns a sentence for each composition that is wrong
 [[nodiscard]] std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick);
 
+/// A sentence for each experiment of which results are missing.
+[[nodiscard]] std::vector<std::string> unfinished_parts(const std::filesystem::path& folder);
+
 /// Of the results that are in the folder; none where there are none.
 [[nodiscard]] std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder);
 

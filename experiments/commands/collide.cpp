@@ -88,7 +88,7 @@ detection_method method_of(const collide_request& request, const aabb::scene_out
     }
     aabb::named_strategies named;
     request.local.add_to(named);
-    const aabb::composition composition = composed_of(select_strategies(named, outlook));
+    const aabb::composition composition = select_composition(named, outlook);
     detection_method method{aabb::to_text(composition, aabb::stage::local_detection),
                             aabb::is_exact(composition, aabb::stage::local_detection),
                             aabb::compose_local_detection(composition, aabb::instrumentation::none),

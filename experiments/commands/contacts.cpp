@@ -68,7 +68,7 @@ both_stages stages_of(const contacts_request& request, const aabb::scene_outlook
     aabb::named_strategies named;
     request.global.add_to(named);
     request.local.add_to(named);
-    const aabb::composition c = composed_of(select_strategies(named, outlook));
+    const aabb::composition c = select_composition(named, outlook);
     const std::string global = to_text(c, aabb::stage::global_search);
     const bool exact = is_exact(c, aabb::stage::global_search);
     if (request.engine) {

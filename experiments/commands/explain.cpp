@@ -107,7 +107,8 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 void explain_measures(const scene_choice& scene) {
     table t{{{"measured", false}, {"", false}}, {}};
     for (const told_measure& one : told(measure_scene(scene))) t.rows.push_back({one.name, one.value});
-    print(scene.kind + " (" + visible(parameters_text(scene)) + ")\n" + to_text(t, output_width()) + "\n");
+    print(wrapped(scene.kind + " (" + visible(parameters_text(scene)) + ")") + "\n" + to_text(t, output_width()) +
+          "\n");
     flush_output();
 }
 

@@ -135,6 +135,7 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
         "round.",
         hopeless_ratio));
     print_line(build_ms_text);
+    print_line("bytes: held after the last of these frames; counters: the same with all work counted.");
     bool same = true;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (times[i + 1].front().digest == times[0].front().digest) continue;

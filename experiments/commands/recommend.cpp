@@ -95,7 +95,11 @@ std::string page_of(const std::string& scene, const race_result& race, const std
            "0 .6em;text-align:left}</style></head><body>\n<h1>" +
            html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
            "<p>" + html_text(joined(legend())) + "</p>\n" + to_html(measures) + to_html(dropped_table_of(race)) +
-           "<p>" + html_text(origin()) + "</p>\n</body></html>\n";
+           "<p>Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in "
+           "those "
+           "after the first; stopped: who took far longer than that, or failed. Strategies play with their default "
+           "parameters.</p>\n<p>" +
+           html_text(origin()) + "</p>\n</body></html>\n";
 }
 
 double seconds_of(const std::string& text) {
@@ -116,8 +120,10 @@ int recommend(const recommend_request& request) {
         page.emplace(*request.report);
     }
     const scene_measures measured = measure_scene(scene);
+    if (measured.objects < 2)
+        throw aabb::input_error("nothing to search: the scene has " + counted(measured.objects, "object"));
     const std::string name = scene.kind + " (" + visible(parameters_text(scene)) + ")";
-    print(name + ": " + counted(measured.objects, "object") + ", " + counted(measured.frames, "frame") + "\n");
+    print(wrapped(name + ": " + counted(measured.objects, "object") + ", " + counted(measured.frames, "frame")) + "\n");
     flush_output();
     const race_result race = run_race(scene, starters(scene), request.seconds);
     print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
@@ -145,7 +151,7 @@ void add_recommend(CLI::App& program, int& status) {
     command
         ->add_option_function<std::string>(
             "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text); },
-            "About how long to race (default 60); the last rounds may take longer")
+            "For how long to race at most (default 60), about: fewer seconds where nobody is left to be dropped")
         ->type_name("S");
     command->add_option("--report", request->report, "Write all of it as a page, too")->type_name("FILE.html");
     command->callback([request, &status] { status = recommend(*request); });

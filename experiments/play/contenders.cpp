@@ -48,9 +48,7 @@ contender contender_of(const aabb::composition& c, bool meshes) {
 }
 
 contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
-    const auto selected = [named, outlook = outlook_of(scene)] {
-        return composed_of(select_strategies(named, outlook));
-    };
+    const auto selected = [named, outlook = outlook_of(scene)] { return select_composition(named, outlook); };
     contender who = contender_of(selected(), scene.meshes() != nullptr);
     // To select is part of making the stages, and of their time.
     who.make_global = [selected](aabb::instrumentation counted) {
@@ -64,7 +62,10 @@ contender contender_of(const aabb::named_strategies& named, const scene_play& sc
     who.name = {};
     who.name.engine = contender_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (named[kind]) who.name.engine += " + " + to_text(*named[kind]);
+        if (named[kind])
+            who.name.engine += " + " +
+                               (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
+                               to_text(*named[kind]);
     return who;
 }
 

@@ -58,6 +58,11 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
         resumed_manifest before = resume_manifest(manifest, experiment_);
         date_ = std::move(before.date);
         digests_ = std::move(before.digests);
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            if (!digests_.contains(rows_[i].scene))
+                throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) +
+                                        ": manifest.json knows no scene " + rows_[i].scene.kind +
+                                        " with these parameters; was the row altered?");
         if (std::filesystem::exists(folder_ / "differences.csv"))
             differences_ = read_differences(folder_ / "differences.csv");
     }

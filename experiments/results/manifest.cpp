@@ -227,7 +227,8 @@ manifest_summary read_manifest(const std::filesystem::path& folder) {
                              made.value("compiler", ""),
                              made.value("cpu", ""),
                              manifest.value("notes", std::vector<std::string>{}),
-                             manifest["config"].value("quick", false)};
+                             manifest["config"].value("quick", false),
+                             manifest.contains("seal")};
     if (made.value("dirty", false)) summary.commit += " (changed)";
     return summary;
 }

@@ -195,6 +195,7 @@ struct manifest_summary {
     std::string cpu;
     std::vector<std::string> notes;
     bool quick = false;
+    bool finished = false;  ///< all was played
 };
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -215,6 +216,12 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
             0);
     const program_result made = run_program({"atlas", "--judge", "--out", (folder / "map").string()});
     CHECK(made.status == 0);
+    CHECK(made.err.find("of atlas_large nothing was played yet") != std::string::npos);
+    std::istringstream lines(made.out.substr(made.out.find("B1: ")));
+    for (std::string line; std::getline(lines, line);) {
+        INFO(line);
+        CHECK((line.size() <= 80 || line.starts_with("Maps, borders")));
+    }
     for (const char* file : {"atlas.html", "atlas.md", "cells.csv", "borders.csv", "statement_ratios.csv",
                              "figures/map_1.svg", "figures/regret.svg"}) {
         INFO(file);

@@ -61,6 +61,8 @@ TEST_CASE("A config leaves all to auto, or what it does not name") {
     CHECK(aabblab::text_of(all[0].name) == "bucket + columns + simd");
     CHECK(aabblab::text_of(all[1].name) == "auto + radix");
     CHECK(aabblab::text_of(all[2].name) == "auto + std");
+    const aabblab::experiment without = parsed("[[compose]]\nauto = true\nprepare = \"none\"\n");
+    CHECK(aabblab::text_of(aabblab::contenders_for(without, without.scenes[0])[0].name) == "auto + prepare none");
     CHECK(hash_of(whole) != hash_of(some));
     CHECK(hash_of(whole) != hash_of(parsed("compose = \"auto\"\nengines = [\"cgal\"]")));
     CHECK(parsed("[[compose]]\nauto = false").automatic.empty());

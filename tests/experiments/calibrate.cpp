@@ -262,6 +262,15 @@ TEST_CASE("calibrate keeps what it measured, as a table too") {
     CHECK(user.run({"explain", "icosphere", "icosphere"}).out.find(kept.date) != std::string::npos);
 }
 
+TEST_CASE("calibrate writes over no file but one of costs") {
+    const temporary_folder folder;
+    const std::string text = folder.write("notes.md", "# Notes\n");
+    const program_result refused = run_program({"calibrate", "--quick", "--out", text});
+    CHECK(refused.status == 2);
+    CHECK(is_one_sentence(refused.err));
+    CHECK(bytes_of_file(text) == "# Notes\n");
+}
+
 TEST_CASE("calibrate says where costs cannot be kept, before it measures") {
     const configured user;
     user.folder.write("file", "");

@@ -424,6 +424,11 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
                                std::string(seconds) + "'") != std::string::npos);
     }
     CHECK(run_program({"recommend", (folder / "none.aabbs").string()}).status == 2);
+    const std::string one = (folder / "one.aabbs").string();
+    REQUIRE(run_program({"scene", "pile", "--n", "1", "--frames", "2", "--out", one}).status == 0);
+    const program_result alone = run_program({"recommend", one});
+    CHECK(alone.status == 2);
+    CHECK(alone.err.find("nothing to search: the scene has 1 object") != std::string::npos);
     const program_result of_config = run_program({"recommend", "still.toml"});
     CHECK(of_config.status == 2);
     CHECK(of_config.err.find("still.toml is a config, one of which explain and run take alone") != std::string::npos);

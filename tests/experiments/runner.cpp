@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +23,7 @@ import aabblab.configs;
 import aabblab.results;
 import aabblab.play;
 import aabblab.scenes;
+import aabblab.tables;
 
 using aabblab::contender;
 using aabblab::existing_results;
@@ -238,6 +241,8 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     };
     CHECK(rows_of("slow") == 1);
     CHECK(rows_of("std") == 4);
+    CHECK(aabblab::heading_of(aabblab::summarise(results.rows())[0]).find("for want of patience: slow") !=
+          std::string::npos);
     const std::size_t all = results.rows().size();
     const std::string text = bytes_of_file(folder / "r/results.csv");
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
@@ -254,6 +259,13 @@ TEST_CASE("Results of another config are not continued") {
     }
     const experiment other = boxes(5);
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(other), existing_results::resume), aabb::input_error);
+    // A row of a scene that the manifest does not know.
+    std::string text = bytes_of_file(folder / "r/results.csv");
+    REQUIRE_NOTHROW(results_folder(folder / "r", record_of(boxes()), existing_results::resume));
+    text.replace(text.rfind("brownian"), 8, "hollow_x");
+    folder.write("r/results.csv", text);
+    REQUIRE_THROWS_WITH(results_folder(folder / "r", record_of(boxes()), existing_results::resume),
+                        Catch::Matchers::ContainsSubstring("manifest.json knows no scene hollow_x"));
     std::filesystem::remove(folder / "r/manifest.json");
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(boxes()), existing_results::resume), aabb::input_error);
 }

@@ -135,8 +135,14 @@ std::string heading_of(const scene_summary& scene) {
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
+    const auto any_of = [&](auto is) {
+        return std::ranges::any_of(scene.lines, [&](const summary_line& line) { return (line.name.*is)(); });
+    };
     if (!scene.common.empty())
-        text += (scene.differing.empty() ? "this composition: " : "all compositions: ") + scene.common + "\n";
+        text += (scene.differing.empty()                 ? "this composition: "
+                 : any_of(&contender_name::is_automatic) ? "all compositions but auto: "
+                                                         : "all compositions: ") +
+                scene.common + "\n";
     std::string same;
     for (const shared_column& one : shared_columns(ranking_of(scene)))
         if (one.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(one.above), one.cells[0]);
@@ -145,6 +151,12 @@ std::string heading_of(const scene_summary& scene) {
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
     const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
     if (inexact) text += "an answer -3 +5 misses 3 of the exact answer and invents 5\n";
+    std::size_t repeats = 0;
+    for (const summary_line& line : scene.lines) repeats = std::max(repeats, line.repeats);
+    std::string given_up;
+    for (const summary_line& line : scene.lines)
+        if (line.repeats < repeats) given_up += (given_up.empty() ? "" : ", ") + line.label;
+    if (!given_up.empty()) text += "repeated less often, for want of patience: " + given_up + "\n";
     const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
     if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
         text += (inexact ? "exact answers before inexact ones, each fastest first; ratio to "
