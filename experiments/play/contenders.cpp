@@ -48,7 +48,9 @@ contender contender_of(const aabb::composition& c, bool meshes) {
 }
 
 contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
-    const auto selected = [named, outlook = outlook_of(scene)] { return select_composition(named, outlook); };
+    const auto selected = [named, outlook = outlook_of(scene), whole = aabb::complete_composition(named)] {
+        return select_composition(whole, named, outlook);
+    };
     contender who = contender_of(selected(), scene.meshes() != nullptr);
     // To select is part of making the stages, and of their time.
     who.make_global = [selected](aabb::instrumentation counted) {

@@ -51,11 +51,12 @@ public:
     }
     /// The next list is not reckoned.
     void foresee_nothing() noexcept { foreseen_ = 0; }
+    [[nodiscard]] bool is_reckoned() const noexcept { return foreseen_ > 0; }
 
     /// What was reckoned turned out otherwise.
     /// @param beside pairs that the list held beside those that overlapped
     void correct(double beside) {
-        if (foreseen_ > 0) correction_ = std::clamp(correction_ * beside / foreseen_, 0.3, 1000.0);
+        if (is_reckoned()) correction_ = std::clamp(correction_ * beside / foreseen_, 0.3, 1000.0);
     }
 
     /// The longest margin of which it is known how long a list is, from one or from a sample; 0 where there was none.

@@ -364,8 +364,7 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
     search_->search(list_);
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     margin_ = margin;
-    // Of the first list nothing is known before it has served a frame.
-    is_too_long_ = adapts() && margin > 0 && !is_first_ && !pays(objects_.size(), found_, list_.size());
+    is_too_long_ = forecast_.is_reckoned() && !pays(objects_.size(), found_, list_.size());
     motion_.clear();
     rested_ = false;
     age_ = 0;

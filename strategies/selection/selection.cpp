@@ -45,7 +45,7 @@ const char* prepare_for(const scene_outlook& scene) {
     return scene.frames < fewest_frames_of_list ? "none" : "neighbour_list";
 }
 const char* build_for(const scene_outlook& scene) {
-    return scene.queries < least_queries_of_sah(scene) ? "median" : "sah";
+    return scene.triangles == 0 || scene.queries < least_queries_of_sah(scene) ? "median" : "sah";
 }
 
 std::string rule_of_prepare(const scene_outlook& scene) {
@@ -101,12 +101,19 @@ bool depends_on_scene(strategy_kind kind) {
     return kind == strategy_kind::prepare || kind == strategy_kind::build;
 }
 
-composition select_composition(const named_strategies& named, const scene_outlook& scene) {
+composition complete_composition(const named_strategies& named) {
     const bool any = std::ranges::any_of(strategy_kinds, [&](strategy_kind kind) { return named[kind].has_value(); });
-    composition whole = any ? completed(named) : composition();
-    if (!named[strategy_kind::prepare]) whole[strategy_kind::prepare] = {prepare_for(scene), {}};
-    if (!named[strategy_kind::build]) whole[strategy_kind::build] = {build_for(scene), {}};
+    return any ? completed(named) : composition();
+}
+
+composition select_composition(composition whole, const named_strategies& named, const scene_outlook& scene) {
+    if (!named[strategy_kind::prepare]) whole[strategy_kind::prepare].name = prepare_for(scene);
+    if (!named[strategy_kind::build]) whole[strategy_kind::build].name = build_for(scene);
     return whole;
+}
+
+composition select_composition(const named_strategies& named, const scene_outlook& scene) {
+    return select_composition(complete_composition(named), named, scene);
 }
 
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {

@@ -36,9 +36,15 @@ struct selected_strategy {
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
 /// A strategy for each kind: what is named stays; `prepare` and `build` are what serves the scene; the others are what
-/// is fastest by itself, or where that cannot be composed with it, what can. In a microsecond where nothing is named.
+/// is fastest by itself, or where that cannot be composed with it, what can.
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] composition select_composition(const named_strategies& named, const scene_outlook& scene);
+
+/// The same in two steps: what does not depend on the scene, which may take ten microseconds, and what does, which
+/// takes less than one.
+[[nodiscard]] composition complete_composition(const named_strategies& named);
+[[nodiscard]] composition select_composition(composition completed, const named_strategies& named,
+                                             const scene_outlook& scene);
 
 /// The same with the rules that it follows from, in the order of the kinds.
 [[nodiscard]] std::vector<selected_strategy> select_strategies(const named_strategies& named,
