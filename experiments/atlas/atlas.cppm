@@ -67,7 +67,7 @@ struct atlas_scene {
 
 /// Who wins, and where: a line for everybody.
 [[nodiscard]] table winners_table(const std::vector<atlas_scene>& atlas);
-/// Scene by scene: what it is like, who is the fastest and by how much, and the regret of `auto`.
+/// Scene by scene: what it is like, who is the fastest and by how much, and the time of `auto` over that.
 [[nodiscard]] table cells_table(const std::vector<atlas_scene>& atlas);
 /// What it costs to use one of them everywhere, against the fastest of each scene, `auto` among them.
 [[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of);

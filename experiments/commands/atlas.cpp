@@ -37,8 +37,8 @@ int run(const atlas_request& request) {
     std::vector<std::string> failures;
     if (!request.judge) failures = measure_atlas(folder, request.quick);
     const std::vector<atlas_scene> atlas = measured_atlas(folder);
-    for (const std::string& missing : unfinished_parts(folder)) note(missing);
     if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + folder.string());
+    for (const std::string& missing : unfinished_parts(folder)) note(missing);
     write_atlas(folder, atlas);
     print(to_text(winners_table(atlas), output_width()) + "\n");
     print(to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");

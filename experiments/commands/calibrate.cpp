@@ -68,7 +68,8 @@ void calibrate(const calibrate_request& request) {
     const std::filesystem::path file = file_of(request);
     if (request.reset) return reset(file);
     // What is no file of costs is somebody's else.
-    if (request.out && std::filesystem::exists(file)) (void)read_costs(file);
+    if (request.out && std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) > 0)
+        (void)read_costs(file);
     // Opened before anything is measured, so that a file that cannot be written costs no time.
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     output_file out(file);

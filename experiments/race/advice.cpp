@@ -107,7 +107,7 @@ std::vector<std::string> advice_of(const race_result& race) {
         sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", one.name));
     if (race.held_against_cgal) return sentences;
     sentences.emplace_back(
-        "Nobody was held against the exact pairs: CGAL takes longer to find them than the race may.");
+        "Nobody was held against the exact pairs: CGAL fails to find them, or takes longer than the race may.");
     for (const racer& other : race.finalists)
         if (other.last->digest != winner.last->digest)
             sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));

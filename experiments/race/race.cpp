@@ -95,7 +95,7 @@ public:
         rank(running_);
         std::ranges::reverse(result_.dropped);
         result_.finalists = std::move(running_);
-        for (const std::vector<racer>* some : {&result_.finalists, &result_.dropped})
+        for (const std::vector<racer>* some : {&result_.finalists, &result_.dropped, &result_.wrong})
             for (const racer& r : *some) result_.played += r.frames;
         return std::move(result_);
     }

@@ -87,7 +87,7 @@ struct race_result {
     std::vector<racer> finalists;   ///< from the fastest
     std::vector<racer> dropped;     ///< from those who came farthest
     std::vector<racer> wrong;       ///< who would be finalists, but do not find what CGAL finds
-    bool held_against_cgal = true;  ///< false where CGAL takes longer than the race may
+    bool held_against_cgal = true;  ///< false where CGAL fails, or takes longer than the race may
     std::size_t played = 0;         ///< frames of the scene, summed over all; those played again do not count
     std::size_t of = 0;             ///< that all would have played
 };

@@ -55,6 +55,7 @@ std::string rule_of_prepare(const scene_outlook& scene) {
                : "frames follow each other: a list of neighbours is kept while boxes move little, and only then";
 }
 std::string rule_of_build(const scene_outlook& scene) {
+    if (scene.triangles == 0) return "no meshes: nothing is built";
     const std::string queries = std::to_string(scene.queries);
     const std::string repaid = std::to_string(least_queries_of_sah(scene));
     return scene.queries < least_queries_of_sah(scene)

@@ -36,8 +36,8 @@ export namespace aabb {
 /// overlapped there are looked at. A frame in which these steps were as many as starting anew would take is started
 /// anew, with another grid, and so is one in which twice or half as many objects are present.
 ///
-/// Memory is 48 bytes an object and region, 33 an object, 80 a region, and 16 to 32 bytes a pair, of as many as there
-/// were at most.
+/// Memory is 48 bytes an object and region, 37 an object, 80 a region, and 16 to 32 bytes a pair, of as many as there
+/// were at most of each.
 class subdivided_sweep {
 public:
     static constexpr std::string_view name = "subdivided";
@@ -136,6 +136,11 @@ private:
                 if (!other.holds(i, j)) visit(i * count_[1] + j);
     }
 
+    [[nodiscard]] static std::uint64_t regions_in(const region_range& range) noexcept {
+        return (range.last[0] - range.first[0] + std::uint64_t{1}) *
+               (range.last[1] - range.first[1] + std::uint64_t{1});
+    }
+
     void touch(std::uint32_t r) {
         if (!regions_[r].is_touched) touched_.push_back(r);
         regions_[r].is_touched = true;
@@ -151,11 +156,14 @@ private:
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
         for (std::uint32_t id = 0; id < places_.size(); ++id) {
             if (places_[id] == region_range{} || !objects.is_leaving(id)) continue;
-            for_each_region(places_[id], {}, [&](std::uint32_t r) {
-                take_out(regions_[r], [&](std::uint32_t other) { return objects.is_leaving(other); });
-            });
+            for_each_region(places_[id], {}, [&](std::uint32_t r) { touch(r); });
             places_[id] = {};
         }
+        for (const std::uint32_t r : touched_) {
+            take_out(regions_[r], [&](std::uint32_t id) { return objects.is_leaving(id); });
+            regions_[r].is_touched = false;
+        }
+        touched_.clear();
     }
 
     /// Brings lists and pairs up to the frame, for as long as steps are left.
@@ -166,6 +174,8 @@ private:
             if (!objects.contains(id) || (!objects.is_arrival(id) && boxes[id] == before_[id])) continue;
             moved_[id] = 1;
             const region_range now = range_of(boxes[id]);
+            spend(regions_in(now));
+            if (steps_left_ == 0) return;
             for_each_region(now, {}, [&](std::uint32_t r) { touch(r); });
             if (now == places_[id]) continue;
             for_each_region(places_[id], now, [&](std::uint32_t r) { leave(r, id, boxes, counters); });

@@ -124,3 +124,36 @@ TEST_CASE("subdivided takes a grid for as many objects as are present") {
     // At most half as many objects in a region's lists again.
     CHECK(moved(grown).swaps < 3 * swaps);
 }
+
+TEST_CASE("subdivided finds the pairs where many leave, frames end earlier, and boxes grow") {
+    random_boxes random(4);
+    for (const char* parameters : {"", ":regions=1", ":regions=9"}) {
+        std::uint32_t n = 400;
+        counted_search search(subdivided(parameters), n);
+        std::vector<box> boxes(n);
+        for (int frame = 0; frame < 24; ++frame) {
+            // From points to boxes of half the world.
+            for (box& b : boxes) b = random.in(60, 1 + static_cast<std::uint32_t>(frame % 8) * 4);
+            (void)search.play(boxes);
+            REQUIRE(search.pairs() == all_pairs(boxes, std::vector<bool>(n, true)));
+            if (frame % 8 == 3) {
+                for (std::uint32_t id = n / 2; id < n; ++id) search.stage().remove(id);
+                n /= 2;
+                boxes.resize(n);
+            } else if (frame % 8 == 7) {
+                // Who comes back lies where it never was.
+                for (std::uint32_t id = n; id < 2 * n; ++id) search.stage().insert(id);
+                n *= 2;
+                boxes.resize(n);
+            }
+        }
+        boxes[7].max[0] = boxes[7].min[0] - 1;
+        search.stage().remove(3);
+        CHECK_THROWS_AS(search.play(boxes), input_error);
+        boxes[7].max[0] = boxes[7].min[0] + 1;
+        (void)search.play(boxes);
+        std::vector<bool> present(n, true);
+        present[3] = false;
+        REQUIRE(search.pairs() == all_pairs(boxes, present));
+    }
+}

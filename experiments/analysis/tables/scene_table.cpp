@@ -156,7 +156,7 @@ std::string heading_of(const scene_summary& scene) {
     std::string given_up;
     for (const summary_line& line : scene.lines)
         if (line.repeats < repeats) given_up += (given_up.empty() ? "" : ", ") + line.label;
-    if (!given_up.empty()) text += "repeated less often, for want of patience: " + given_up + "\n";
+    if (!given_up.empty()) text += "repeated less often than others: " + given_up + "\n";
     const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
     if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
         text += (inexact ? "exact answers before inexact ones, each fastest first; ratio to "
