@@ -48,7 +48,7 @@ struct atlas_scene {
     [[nodiscard]] const atlas_line* find(std::string_view label) const;
     /// The fastest that is not `auto`.
     [[nodiscard]] const atlas_line& fastest(span_of_time of) const;
-    /// Of the fastest, `auto` among them.
+    /// Time of the fastest, `auto` among them.
     [[nodiscard]] double least_ms(span_of_time of) const;
     /// A parameter of the scene as a number, its default where it is not set; NaN where it has none of that name.
     [[nodiscard]] double number(std::string_view parameter) const;

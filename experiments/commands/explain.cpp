@@ -169,10 +169,10 @@ void explain_costs() {
 }
 
 int explain(const std::vector<std::string>& what) {
-    bool same = true;
     if (what.size() == 1 && names_config(what.front())) {
         const experiment e = open_experiment(what.front(), false);
         explain_costs();
+        bool same = true;
         for (const scene_choice& scene : e.scenes) same &= explain_scene(e, scene);
         return same ? 0 : 1;
     }
@@ -182,8 +182,7 @@ int explain(const std::vector<std::string>& what) {
     // What cannot be made is said before anything else.
     (void)scene_play(scene);
     explain_costs();
-    same = explain_scene(e, scene);
-    return same ? 0 : 1;
+    return explain_scene(e, scene) ? 0 : 1;
 }
 
 }  // namespace

@@ -97,9 +97,8 @@ std::string page_of(const std::string& scene, const race_result& race, const std
            html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
            "<p>" + html_text(joined(legend())) + "</p>\n" + to_html(measures) + to_html(dropped_table_of(race)) +
            "<p>Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in "
-           "those "
-           "after the first; stopped: who took far longer than that, or failed. Strategies play with their default "
-           "parameters.</p>\n<p>" +
+           "those after the first; stopped: who took far longer than that, or failed. Strategies play with their "
+           "default parameters.</p>\n<p>" +
            html_text(origin()) + "</p>\n</body></html>\n";
 }
 

@@ -21,6 +21,8 @@ namespace aabblab {
 
 namespace {
 
+constexpr std::size_t frames_measured = 4;
+
 /// Boxes by id, and who is there.
 struct seen_frame {
     std::vector<aabb::box> boxes;

@@ -37,9 +37,6 @@ struct motion_measures {
 [[nodiscard]] motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after,
                                              std::size_t axis);
 
-/// So many frames are measured, if there are as many.
-inline constexpr std::size_t frames_measured = 4;
-
 /// Of a scene: means over its first frames.
 struct scene_measures {
     std::size_t objects = 0;

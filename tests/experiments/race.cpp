@@ -40,7 +40,7 @@ namespace {
 
 /// Finds what the usual composition finds, and does something before each frame.
 template <class Before>
-class delayed_stage final : public aabb::global_stage {
+class delayed_stage : public aabb::global_stage {
 public:
     explicit delayed_stage(Before before) : before_(before) {}
 
@@ -69,27 +69,19 @@ racer delayed(const std::string& name, Before before) {
     return r;
 }
 
+struct long_wait {
+    void operator()() const { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
+};
 /// Loses a pair of each frame that has any.
-class losing_stage final : public aabb::global_stage {
+class losing_stage final : public delayed_stage<long_wait> {
 public:
-    void insert(std::uint32_t id) override { search_->insert(id); }
-    void remove(std::uint32_t id) override { search_->remove(id); }
-    void update(std::span<const aabb::box> boxes) override {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        search_->update(boxes);
-    }
+    losing_stage() : delayed_stage(long_wait()) {}
+
     void search(std::vector<aabb::index_pair>& pairs) override {
         const std::size_t before = pairs.size();
-        search_->search(pairs);
+        delayed_stage::search(pairs);
         if (pairs.size() > before) pairs.pop_back();
     }
-    [[nodiscard]] aabb::work_counters counters() const override { return search_->counters(); }
-    [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return search_->bytes(); }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
-
-private:
-    std::unique_ptr<aabb::global_stage> search_ =
-        aabb::compose_global_search(aabb::composition(), aabb::instrumentation::none);
 };
 
 const aabblab::scene_choice scene{"brownian", {{"objects", "200"}, {"frames", "24"}}, {}, 1, {}};
@@ -164,8 +156,7 @@ const aabblab::scene_choice short_scene{"brownian", {{"objects", "200"}, {"frame
 }  // namespace
 
 TEST_CASE("Who finds other pairs than CGAL does not win a race") {
-    std::vector<racer> all{delayed("right", [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }),
-                           delayed("wrong", [] {})};
+    std::vector<racer> all{delayed("right", long_wait()), delayed("wrong", [] {})};
     all.back().who.make_global = [](aabb::instrumentation) { return std::make_unique<losing_stage>(); };
     const aabblab::race_result race = aabblab::run_race(short_scene, all, 2);
     CHECK(race.held_against_cgal);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../compositions.hpp"
+#include "overlapping.hpp"
 
 import aabb.partition.axial_cut;
 import aabb.partition.columns;
@@ -44,14 +45,6 @@ box any_box(int world) {
         b.max[k] = b.min[k] + static_cast<float>(*rc::gen::element(0, 1, 2, 2, 3, 40)) / 4;
     }
     return b;
-}
-
-std::vector<index_pair> overlapping(const std::vector<box>& boxes) {
-    std::vector<index_pair> pairs;
-    for (std::uint32_t a = 0; a < boxes.size(); ++a)
-        for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
-            if (overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
-    return pairs;
 }
 
 /// A little, so that lists may serve.

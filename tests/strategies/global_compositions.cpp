@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../compositions.hpp"
+#include "overlapping.hpp"
 
 using namespace aabb;
 using Catch::Matchers::Message;
@@ -28,14 +29,6 @@ box any_box(int world) {
         b.max[k] = b.min[k] + static_cast<float>(*rc::gen::element(0, 0, 1, 1, 2, 3, 40)) / 2;
     }
     return b;
-}
-
-std::vector<index_pair> overlapping(const std::vector<box>& boxes, const std::vector<bool>& present) {
-    std::vector<index_pair> pairs;
-    for (std::uint32_t a = 0; a < boxes.size(); ++a)
-        for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
-            if (present[a] && present[b] && overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
-    return pairs;
 }
 
 /// Whether all boxes of a test are so few for it that none is sorted or cut.

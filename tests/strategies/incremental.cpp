@@ -9,6 +9,7 @@
 
 #include "../compositions.hpp"
 #include "counted_search.hpp"
+#include "overlapping.hpp"
 
 using namespace aabb;
 
@@ -112,11 +113,7 @@ TEST_CASE("incremental started anew finds the pairs, whoever comes, goes or begi
                 }
             }
             restarts += search.play(boxes).restarts;
-            std::vector<index_pair> expected;
-            for (std::uint32_t a = 0; a < n; ++a)
-                for (std::uint32_t b = a + 1; b < n; ++b)
-                    if (present[a] && present[b] && overlaps(boxes[a], boxes[b])) expected.push_back({a, b});
-            REQUIRE(search.pairs() == expected);
+            REQUIRE(search.pairs() == overlapping(boxes, present));
         }
     }
     CHECK(restarts > 40);

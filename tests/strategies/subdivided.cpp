@@ -8,6 +8,7 @@
 
 #include "../compositions.hpp"
 #include "counted_search.hpp"
+#include "overlapping.hpp"
 
 using namespace aabb;
 
@@ -37,14 +38,6 @@ private:
     std::mt19937 random_;
 };
 
-std::vector<index_pair> all_pairs(const std::vector<box>& boxes, const std::vector<bool>& present) {
-    std::vector<index_pair> pairs;
-    for (std::uint32_t a = 0; a < boxes.size(); ++a)
-        for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
-            if (present[a] && present[b] && overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
-    return pairs;
-}
-
 }  // namespace
 
 TEST_CASE("a frame in which nothing moved costs subdivided nothing, and one move what lies near it") {
@@ -66,7 +59,7 @@ TEST_CASE("a frame in which nothing moved costs subdivided nothing, and one move
     CHECK(third.restarts == 0);
     CHECK(third.swaps > 0);
     CHECK(third.swaps < 1000);
-    CHECK(search.pairs() == all_pairs(boxes, std::vector<bool>(boxes.size(), true)));
+    CHECK(search.pairs() == overlapping(boxes));
 }
 
 TEST_CASE("subdivided finds the pairs, whoever crosses regions, comes and goes") {
@@ -92,7 +85,7 @@ TEST_CASE("subdivided finds the pairs, whoever crosses regions, comes and goes")
             const work_of_frame spent = search.play(boxes);
             followed += spent.swaps > 0 && spent.restarts == 0 ? 1 : 0;
             restarts += spent.restarts;
-            REQUIRE(search.pairs() == all_pairs(boxes, present));
+            REQUIRE(search.pairs() == overlapping(boxes, present));
         }
     }
     CHECK(followed > 100);
@@ -135,7 +128,7 @@ TEST_CASE("subdivided finds the pairs where many leave, frames end earlier, and 
             // From points to boxes of half the world.
             for (box& b : boxes) b = random.in(60, 1 + static_cast<std::uint32_t>(frame % 8) * 4);
             (void)search.play(boxes);
-            REQUIRE(search.pairs() == all_pairs(boxes, std::vector<bool>(n, true)));
+            REQUIRE(search.pairs() == overlapping(boxes));
             if (frame % 8 == 3) {
                 for (std::uint32_t id = n / 2; id < n; ++id) search.stage().remove(id);
                 n /= 2;
@@ -154,6 +147,6 @@ TEST_CASE("subdivided finds the pairs where many leave, frames end earlier, and 
         (void)search.play(boxes);
         std::vector<bool> present(n, true);
         present[3] = false;
-        REQUIRE(search.pairs() == all_pairs(boxes, present));
+        REQUIRE(search.pairs() == overlapping(boxes, present));
     }
 }
