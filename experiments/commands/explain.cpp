@@ -15,6 +15,7 @@
 
 // Import, so they come last.
 #include "experiments.hpp"
+#include "explain_omissions.hpp"
 #include "explain_savings.hpp"
 #include "kept_costs.hpp"
 #include "scene_arguments.hpp"
@@ -59,16 +60,6 @@ std::string text_of(const contender_name& name, aabb::stage stage) {
     return text.empty() ? name.engine : text;
 }
 
-/// What a composition does without where it has this strategy that stands apart; stages say the rest themselves.
-std::string left_out_by(aabb::strategy_kind kind, const std::string& choice) {
-    if (!info_of(kind).apart) return {};
-    const auto found = std::ranges::find(aabb::strategies(kind), choice, &aabb::strategy_info::name);
-    return found == aabb::strategies(kind).end() ? "" : found->leaves_out;
-}
-
-/// So that buffers have grown and what is kept between frames is there.
-constexpr std::size_t explained_frames = 2;
-
 void explain_contender(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
     player p(who, scene, aabb::instrumentation::none);
@@ -79,11 +70,7 @@ void explain_contender(const scene_choice& choice, const contender& who) {
     print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     print_sentences("planned from what was seen", p.plans());
-    std::vector<std::string> left_out = p.left_out();
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (std::string sentence = left_out_by(kind, name[kind]); !sentence.empty())
-            left_out.push_back(std::move(sentence));
-    print_sentences("left out", left_out);
+    print_sentences("left out", omissions_of(name, p));
     flush_output();
 }
 

@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output.hpp"
 #include "told_times.hpp"
 
-// Imports, so it comes last.
+// Imports, so they come last.
+#include "explain_omissions.hpp"
 #include "explain_savings.hpp"
 
 import aabb.pipeline;
@@ -31,22 +33,16 @@ constexpr std::size_t rounds = 5;
 /// With more objects, what sorts or sweeps all of them slowly would take minutes.
 constexpr std::size_t most_objects_of_any = 20'000;
 
-/// A composition that differs from the selected one in one kind.
-struct alternative {
-    aabb::strategy_kind kind;
-    aabb::composition composition;
-};
-
-/// Those that make sense in the scene and are exact.
-std::vector<alternative> others(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
-    std::vector<alternative> all;
+/// Compositions that differ from the selected one in this kind, make sense in the scene and are exact.
+std::vector<other_way> others(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
+    std::vector<other_way> all;
     for (const aabb::strategy_info& info : aabb::strategies(kind)) {
         if (info.name == selected[kind].name) continue;
         aabb::composition c = selected;
         c[kind] = {info.name, {}};
         if (refusal_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
             (meshes || needs_meshes(c).empty()))
-            all.push_back({kind, c});
+            all.push_back({info.name, contender_of(c, meshes), {}});
     }
     return all;
 }
@@ -61,32 +57,37 @@ contender with_counters(contender who) {
     return who;
 }
 
-template <class Value>
-std::vector<double> values_of(std::span<const race_time> times, Value value) {
-    std::vector<double> all;
-    for (const race_time& t : times) all.push_back(value(t));
-    return all;
-}
-
 /// Ratio and range.
 std::vector<std::string> ratio_cells(std::span<const race_time> times, std::span<const race_time> selected) {
     if (times.size() < selected.size()) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
-    const auto ms = [](const race_time& t) { return t.frame_ms(); };
-    const paired_ratio ratio = paired_ratio_of(values_of(times, ms), values_of(selected, ms));
+    const paired_ratio ratio = paired_ratio_of(frame_ms_of(times), frame_ms_of(selected));
     return {fmt::format("{:.2f}{}", ratio.median, ratio.may_be_same() ? "?" : ""),
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
-void add_row(table& t, const std::string& kind, const std::string& name, std::span<const race_time> times,
-             std::span<const race_time> selected) {
-    const auto median = [&](auto value) { return quartiles_of(values_of(times, value)).median; };
-    const bool is_selected = times.data() == selected.data();
+void add_row(table& t, const std::string& kind, const other_way& one, const other_way& selected) {
+    std::vector<double> build_ms;
+    for (const race_time& time : one.times) build_ms.push_back(time.build_ms);
     const std::vector<std::string> ratio =
-        is_selected ? std::vector<std::string>{"1", "-"} : ratio_cells(times, selected);
-    t.rows.push_back({kind, name, fmt::format("{:.4g}", median([](const race_time& one) { return one.frame_ms(); })),
-                      ratio[0], ratio[1],
-                      fmt::format("{:.3g}", median([](const race_time& one) { return one.build_ms; })),
-                      grouped(times.back().bytes)});
+        &one == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells(one.times, selected.times);
+    t.rows.push_back({kind, one.name, fmt::format("{:.4g}", quartiles_of(frame_ms_of(one.times)).median), ratio[0],
+                      ratio[1], fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
+}
+
+void print_line(const std::string& line) {
+    print(wrapped(line) + "\n");
+}
+
+/// @returns whether there are none
+bool print_disagreements(const std::vector<other_way>& all) {
+    // What is inexact, or moves a scene that reacts, finds others by design.
+    if (!all.front().who.exact || !all.front().who.exact_boxes) return true;
+    std::vector<std::vector<race_time>> times;
+    for (const other_way& one : all) times.push_back(one.times);
+    const std::vector<std::size_t> wrong = who_disagrees(times);
+    for (const std::size_t i : wrong)
+        print_line(all[i].name + " finds other pairs than what is selected: one of the two is wrong.");
+    return wrong.empty();
 }
 
 }  // namespace
@@ -95,32 +96,34 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
     const scene_play scene(choice);
     const bool meshes = scene.meshes() != nullptr;
     const bool any = scene.objects() <= most_objects_of_any;
-    std::vector<alternative> all;
+    std::vector<other_way> all{{"as selected", contender_of(selected, meshes), {}}};
+    std::vector<std::string> kinds{""};
     std::string alone;  // kinds of which nothing else goes with the rest
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
         if (!any && !info_of(kind).apart) continue;
-        const std::vector<alternative> some = others(selected, kind, meshes);
+        const std::vector<other_way> some = others(selected, kind, meshes);
         all.insert(all.end(), some.begin(), some.end());
+        kinds.resize(all.size(), std::string(name_of(kind)));
         if (some.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    std::vector<contender> playing{contender_of(selected, meshes)};
-    for (const alternative& one : all) playing.push_back(contender_of(one.composition, meshes));
-    playing.push_back(with_counters(playing.front()));
-    const auto times = play_in_turn(choice, playing, most_frames, rounds);
+    all.push_back({"of all work", with_counters(all.front().who), {}});
+    kinds.emplace_back("counters");
+    for (other_way& one : ways_by_settings(selected, meshes)) all.push_back(std::move(one));
+    std::vector<contender> playing;
+    for (const other_way& one : all) playing.push_back(one.who);
+    auto times = play_in_turn(choice, playing, most_frames, rounds);
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].times = std::move(times[i]);
+
     table t{{{"kind", false},
              {"in its place", false},
              {"ms/frame"},
              {"ratio"},
              {"range"},
-             {"build ms", true, 1},
-             {"bytes", true, 2}},
+             {"build ms", true, 2},
+             {"bytes", true, 1}},
             {}};
-    add_row(t, "", "as selected", times[0], times[0]);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        add_row(t, std::string(name_of(all[i].kind)), all[i].composition[all[i].kind].name, times[i + 1], times[0]);
-    add_row(t, "counters", "of all work", times.back(), times[0]);
-    const auto print_line = [](const std::string& line) { print(wrapped(line) + "\n"); };
+    for (std::size_t i = 0; i < kinds.size(); ++i) add_row(t, kinds[i], all[i], all[0]);
     print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} rounds of {}",
                            rounds, counted(std::min(scene.frames(), most_frames), "frame")));
     print(to_text(t, output_width()) + "\n");
@@ -136,17 +139,12 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
         hopeless_ratio));
     print_line(build_ms_text);
     print_line("bytes: held after the last of these frames; counters: the same with all work counted.");
-    // What is inexact, or moves a scene that reacts, finds others by design.
-    bool same = true;
-    const bool comparable = playing.front().exact && playing.front().exact_boxes;
-    for (std::size_t i = 1; comparable && i < times.size(); ++i) {
-        if (times[i].front().digest == times[0].front().digest) continue;
-        same = false;
-        print_line(fmt::format("{} finds other pairs than what is selected: one of the two is wrong.",
-                               i <= all.size() ? all[i - 1].composition[all[i - 1].kind].name : "what is counted"));
-    }
+    print("\n");
+    print_line(
+        "what is left out saves so much, against the way of having it that takes least time; -: none here has it");
+    print_omissions(choice, all);
     flush_output();
-    return same;
+    return print_disagreements(all);
 }
 
 }  // namespace aabblab

@@ -52,6 +52,12 @@ inline constexpr double hopeless_ms = 100;
                                                                std::span<const contender> all, std::size_t frames,
                                                                std::size_t rounds);
 
+/// Those of them, by place, who find other pairs than the first.
+[[nodiscard]] std::vector<std::size_t> who_disagrees(std::span<const std::vector<race_time>> times);
+
+/// By round.
+[[nodiscard]] std::vector<double> frame_ms_of(std::span<const race_time> times);
+
 /// Of the times of two in the same rounds, one's over the other's.
 struct paired_ratio {
     double median = 1;

@@ -35,6 +35,19 @@ std::vector<std::vector<race_time>> play_in_turn(const scene_choice& scene, std:
     return times;
 }
 
+std::vector<std::size_t> who_disagrees(std::span<const std::vector<race_time>> times) {
+    std::vector<std::size_t> all;
+    for (std::size_t i = 1; i < times.size(); ++i)
+        if (times[i].front().digest != times[0].front().digest) all.push_back(i);
+    return all;
+}
+
+std::vector<double> frame_ms_of(std::span<const race_time> times) {
+    std::vector<double> ms;
+    for (const race_time& t : times) ms.push_back(t.frame_ms());
+    return ms;
+}
+
 paired_ratio paired_ratio_of(std::span<const double> ms, std::span<const double> of_other) {
     std::vector<double> ratios;
     for (std::size_t round = 0; round < std::min(ms.size(), of_other.size()); ++round)

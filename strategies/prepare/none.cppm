@@ -13,7 +13,7 @@ export namespace aabb {
 struct none_prepare {
     static constexpr std::string_view name = "none";
     static constexpr std::string_view summary = "boxes are searched as they are";
-    static constexpr std::string_view leaves_out = "no preparation: large objects are searched whole";
+    static constexpr std::string_view leaves_out = "no list of neighbours";
 
     [[nodiscard]] static std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search, instrumentation) {
         return search;

@@ -192,6 +192,27 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     CHECK(run_program({"explain", file, file}).err.find("a recording is a scene of its own") != std::string::npos);
 }
 
+TEST_CASE("explain says what all that is left out saves, with whom it is had, or that nobody has it") {
+    const temporary_folder folder;
+    const std::string file = (folder / "p.aabbs").string();
+    REQUIRE(run_program({"scene", "free_fall", "--n", "50", "--frames", "6", "--out", file}).status == 0);
+    const std::string told = run_program({"explain", file}).out;
+    const std::string table = told.substr(told.find("\nleft out  "));
+    INFO(table);
+    const auto line_of = [&](const std::string& what) {
+        const std::size_t at = table.find("\n" + what + " ");
+        return at == std::string::npos ? "" : table.substr(at + 1, table.find('\n', at + 1) - at - 1);
+    };
+    for (const char* what : {"no columns, no sort", "no projection list of the x axis",
+                             "no projection list of the y axis", "no projection list of the z axis"}) {
+        CHECK(line_of(what).size() > 30);
+        CHECK_FALSE(line_of(what).ends_with("-"));
+    }
+    CHECK(line_of("no work counters").find("of all work") != std::string::npos);
+    CHECK(line_of("no work counters").ends_with(" 0"));
+    CHECK(line_of("no local detection").ends_with(" -"));
+}
+
 TEST_CASE("explain takes meshes, and a motion with its meshes") {
     const temporary_folder folder;
     const std::string motion = (folder / "m.txt").string();

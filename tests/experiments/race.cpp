@@ -167,6 +167,12 @@ TEST_CASE("Who finds other pairs than CGAL does not win a race") {
     CHECK_THROWS_WITH(aabblab::run_race(short_scene, {all.back()}, 2), "nobody finds the exact pairs of this scene");
 }
 
+TEST_CASE("Who finds other pairs than the first of those who play in turn is known") {
+    std::vector<aabblab::contender> all{delayed("a", [] {}).who, delayed("b", [] {}).who, delayed("c", [] {}).who};
+    all[2].make_global = [](aabb::instrumentation) { return std::make_unique<losing_stage>(); };
+    CHECK(aabblab::who_disagrees(aabblab::play_in_turn(short_scene, all, 4, 2)) == std::vector<std::size_t>{2});
+}
+
 TEST_CASE("As many finish a race as there is time for, but two") {
     std::vector<racer> all;
     for (const char* name : {"a", "b", "c"})
