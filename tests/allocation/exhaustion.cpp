@@ -203,15 +203,16 @@ namespace {
 
 /// A sheet with waves, of which some cross the others.
 mesh sheet(float height) {
+    constexpr std::uint32_t squares = 3;  // on a side
     mesh m;
-    for (std::uint32_t i = 0; i <= 4; ++i)
-        for (std::uint32_t j = 0; j <= 4; ++j)
+    for (std::uint32_t i = 0; i <= squares; ++i)
+        for (std::uint32_t j = 0; j <= squares; ++j)
             m.vertices.push_back({static_cast<float>(i), static_cast<float>(j), (i + j) % 2 == 0 ? height : -height});
-    for (std::uint32_t i = 0; i < 4; ++i)
-        for (std::uint32_t j = 0; j < 4; ++j) {
-            const std::uint32_t v = i * 5 + j;
-            m.triangles.push_back({v, v + 1, v + 5});
-            m.triangles.push_back({v + 1, v + 6, v + 5});
+    for (std::uint32_t i = 0; i < squares; ++i)
+        for (std::uint32_t j = 0; j < squares; ++j) {
+            const std::uint32_t v = i * (squares + 1) + j;
+            m.triangles.push_back({v, v + 1, v + squares + 1});
+            m.triangles.push_back({v + 1, v + squares + 2, v + squares + 1});
         }
     return m;
 }

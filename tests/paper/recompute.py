@@ -8,6 +8,7 @@ its third digit or a verdict differs.
 """
 
 import csv
+import functools
 import json
 import math
 import pathlib
@@ -36,6 +37,14 @@ def splitmix(state):
     return state, z ^ (z >> 31)
 
 
+class Cells(dict):
+    """Logarithms of what was measured, a list of repeats by process and seed."""
+
+    @functools.cached_property
+    def medians(self):
+        return {place: statistics.median(cell) for place, cell in self.items()}
+
+
 class Draw:
     """One level drawn anew: "none", "processes", "seeds" or "repeats"."""
 
@@ -54,21 +63,21 @@ class Draw:
         return found
 
     def mean(self, cells):
-        """Over cells, a dictionary by process and seed, the mean of the medians of their repeats."""
+        """Over cells, the mean of the medians of their repeats."""
         state, medians = self.state, []
         for p in self.processes:
             for s in self.seeds:
                 cell = cells.get((p, s))
                 if not cell:
                     continue
-                if self.level == "repeats":
-                    drawn = []
-                    for _ in cell:
-                        state, number = splitmix(state)
-                        drawn.append(cell[number % len(cell)])
-                    medians.append(statistics.median(drawn))
-                else:
-                    medians.append(statistics.median(cell))
+                if self.level != "repeats":
+                    medians.append(cells.medians[p, s])
+                    continue
+                drawn = []
+                for _ in cell:
+                    state, number = splitmix(state)
+                    drawn.append(cell[number % len(cell)])
+                medians.append(statistics.median(drawn))
         return sum(medians) / len(medians) if medians else math.nan
 
 
@@ -233,7 +242,7 @@ class Rows:
         return int(row["process"]), self.seeds.index(int(row["seed"]) if row["seed"] else -1)
 
     def logs(self, who, name, an_object=False):
-        found = {}
+        found = Cells()
         for r in self.of(who):
             value = metric(name, r)
             if value:
@@ -244,7 +253,7 @@ class Rows:
 
     def log_ratios(self, arm, base, name):
         against = {(r["seed"], r["repeat"]): r for r in self.of(base)}
-        found = {}
+        found = Cells()
         for r in self.of(arm):
             other = against.get((r["seed"], r["repeat"]))
             value, below = metric(name, r), other and metric(name, other)
@@ -383,7 +392,7 @@ def between_conditions(results, experiment, text, where):
 
 def of_tests(folder, text):
     arm, _, base = text.partition(" over ")
-    cells = {}
+    cells = Cells()
     for process in range(1000):
         file = folder / "c6" / f"process-{process}.json"
         if not file.exists():
