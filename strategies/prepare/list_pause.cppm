@@ -21,8 +21,8 @@ class list_pause {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
 
-    void begin() noexcept {
-        left_ = next_ + glimpse::longest;
+    void begin(std::size_t boxes) noexcept {
+        left_ = std::max(next_, rest(boxes)) + glimpse::longest;
         next_ = std::min(2 * next_, longest);
     }
     /// A list is kept: the next pause is short again.
@@ -45,7 +45,7 @@ public:
             move_too_far_ = std::isinf(plan.cost);
         }
         const bool in_vain = left_ == 0;
-        if (in_vain) left_ = glimpse::longest;
+        if (in_vain) left_ = glimpse::longest + rest(objects.size());
         if (left_ == glimpse::longest) {
             forecast.look_anew_at_other_sizes(boxes, objects);
             glimpse_.keep(boxes, forecast.drawn());
@@ -57,6 +57,12 @@ public:
 private:
     static constexpr unsigned shortest = 6;
     static constexpr unsigned longest = 96;
+
+    /// Frames between looks: eight frames of looking take as long as searching 70 boxes, and are to take no more than a
+    /// twentieth of all.
+    [[nodiscard]] static unsigned rest(std::size_t boxes) noexcept {
+        return 1400 / static_cast<unsigned>(std::max<std::size_t>(boxes, 1));
+    }
 
     unsigned left_ = 0;         // frames that are searched as they are before one is kept again
     unsigned next_ = shortest;  // as long as the next one is

@@ -250,7 +250,7 @@ std::optional<double> neighbour_list_stage::next_margin(std::span<const box> box
     if (const std::optional<double> margin = paying_margin(boxes)) return margin;
     // What jiggles about its place shows it only after some frames.
     watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
-    if (!watches_) pause_.begin();
+    if (!watches_) pause_.begin(objects_.size());
     return std::nullopt;
 }
 
@@ -267,7 +267,7 @@ std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, 
         if (!watches_long_ || age_ == longest_watch) margin = paying_margin(boxes);
     }
     watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
-    if (!watches_ && !margin) pause_.begin();
+    if (!watches_ && !margin) pause_.begin(objects_.size());
     return margin;
 }
 

@@ -18,6 +18,8 @@
 #include "../validation/support.hpp"
 
 import aabb.prepare.glimpse;
+import aabb.prepare.list_forecast;
+import aabb.prepare.list_pause;
 import aabb.prepare.list_plan;
 import aabb.prepare.relative_motion;
 import aabb.simd;
@@ -456,6 +458,36 @@ TEST_CASE("where no list pays, a few boxes are looked at and nothing is kept") {
     CHECK(kept_frames(3, 40) == 0);
     CHECK(held() < n * sizeof(box));
     CHECK(kept_frames(1e-4F, 20) > 10);
+}
+
+TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") {
+    const auto frames_from_look_to_look = [](std::uint32_t n) {
+        membership objects;
+        for (std::uint32_t id = 0; id < n; ++id) objects.insert(id);
+        objects.settle();
+        std::vector<box> boxes(n);
+        list_forecast forecast;
+        list_pause pause;
+        pause.begin(n);
+        const auto look_in_vain = [&] {
+            for (int frames = 1;; ++frames) {
+                for (std::uint32_t id = 0; id < n; ++id)
+                    boxes[id] = cube(boxes[id].min[0] + (id % 2 == 0 ? 50.0F : -50.0F));
+                if (pause.pass(boxes, objects, 0, forecast)) return frames;
+                REQUIRE(pause.lasts());
+            }
+        };
+        (void)look_in_vain();
+        return look_in_vain();
+    };
+    CHECK(frames_from_look_to_look(50) == 8 + 28);
+    CHECK(frames_from_look_to_look(2000) == 8);
+}
+
+TEST_CASE("pairs among few boxes cost no more to find than to find again") {
+    constexpr auto few = static_cast<std::size_t>(few_boxes);
+    CHECK_FALSE(pays(few, 60 * few, 60 * few));
+    CHECK(pays(few + 1, 60 * few, 60 * few));
 }
 
 TEST_CASE("a few boxes never say that all moved further than they did") {
