@@ -60,6 +60,9 @@ std::string text_of(const contender_name& name, aabb::stage stage) {
     return text.empty() ? name.engine : text;
 }
 
+/// So that buffers have grown and what is kept between frames is there.
+constexpr std::size_t explained_frames = 2;
+
 void explain_contender(const scene_choice& choice, const contender& who) {
     scene_play scene(choice);
     player p(who, scene, aabb::instrumentation::none);
@@ -70,7 +73,7 @@ void explain_contender(const scene_choice& choice, const contender& who) {
     print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     print_sentences("planned from what was seen", p.plans());
-    print_sentences("left out", omissions_of(name, p));
+    print_sentences("left out", omissions_of(name, p.left_out()));
     flush_output();
 }
 

@@ -29,32 +29,27 @@ namespace aabblab {
 
 namespace {
 
-/// What a composition does without where it has this strategy that stands apart; stages say the rest themselves.
-std::string left_out_by(aabb::strategy_kind kind, const std::string& choice) {
-    if (!info_of(kind).apart) return {};
-    const auto found = std::ranges::find(aabb::strategies(kind), choice, &aabb::strategy_info::name);
-    return found == aabb::strategies(kind).end() ? "" : found->leaves_out;
+double median_ms(std::span<const race_time> times) {
+    return quartiles_of(frame_ms_of(times)).median;
 }
 
-/// What is left out, without the reason.
-std::string omitted(std::string_view sentence) {
-    return std::string(sentence.substr(0, sentence.find(':')));
-}
-
-/// After its first frames.
-std::vector<std::string> omitted_by(const scene_choice& choice, const contender& who) {
-    scene_play scene(choice);
-    player p(who, scene, aabb::instrumentation::none);
-    play(scene, p, [](const played_frame&) {}, explained_frames);
+/// What is left out, without reasons.
+std::vector<std::string> omitted_by(const other_way& one) {
     std::vector<std::string> all;
-    for (const std::string& sentence : omissions_of(who.name, p))
-        if (std::string one = omitted(sentence); std::ranges::find(all, one) == all.end())
-            all.push_back(std::move(one));
+    for (const std::string& sentence : omissions_of(one.who.name, one.times.front().left_out))
+        if (std::string what = sentence.substr(0, sentence.find(':')); std::ranges::find(all, what) == all.end())
+            all.push_back(std::move(what));
     return all;
 }
 
-double median_ms(std::span<const race_time> times) {
-    return quartiles_of(frame_ms_of(times)).median;
+/// Of those that leave it out not, the one that takes least time a frame; null where all do.
+const other_way* fastest_with(const std::string& what, std::span<const other_way> all) {
+    const other_way* fastest = nullptr;
+    for (const other_way& one : all)
+        if (std::ranges::count(omitted_by(one), what) == 0 &&
+            (!fastest || median_ms(one.times) < median_ms(fastest->times)))
+            fastest = &one;
+    return fastest;
 }
 
 /// With its sign.
@@ -64,48 +59,44 @@ std::string more(std::uint64_t bytes, std::uint64_t than) {
 
 }  // namespace
 
-std::vector<std::string> omissions_of(const contender_name& who, const player& playing) {
-    std::vector<std::string> all = playing.left_out();
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (std::string sentence = left_out_by(kind, who[kind]); !sentence.empty()) all.push_back(std::move(sentence));
-    return all;
+std::vector<std::string> omissions_of(const contender_name& who, std::vector<std::string> by_stages) {
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        // Stages say the rest themselves.
+        if (!info_of(kind).apart || who[kind].empty()) continue;
+        const std::span<const aabb::strategy_info> all = aabb::strategies(kind);
+        const auto found = std::ranges::find(all, aabb::parse_strategy(who[kind]).name, &aabb::strategy_info::name);
+        by_stages.insert(by_stages.end(), found->leaves_out.begin(), found->leaves_out.end());
+    }
+    return by_stages;
 }
 
-std::vector<other_way> ways_by_settings(const aabb::composition& selected, bool meshes) {
-    const auto with = [&](aabb::strategy_kind kind, aabb::strategy_choice choice) {
-        aabb::composition c = selected;
-        c[kind] = std::move(choice);
-        return c;
-    };
+std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
+    std::vector<aabb::strategy_choice> choices;
+    if (kind == aabb::strategy_kind::prepare) choices = {{"neighbour_list", {{"margin", "0.1"}}}};
+    if (kind == aabb::strategy_kind::partition)
+        choices = {{"columns", {{"few", "0"}}}, {"axial_cut", {{"axes", "3"}, {"segments", "2"}}}};
     std::vector<other_way> all;
-    for (const aabb::composition& c :
-         {with(aabb::strategy_kind::prepare, {"neighbour_list", {{"margin", "0.1"}}}),
-          with(aabb::strategy_kind::partition, {"columns", {{"few", "0"}}}),
-          with(aabb::strategy_kind::partition, {"axial_cut", {{"axes", "3"}, {"segments", "2"}}})})
-        for (const aabb::strategy_kind kind : {aabb::strategy_kind::prepare, aabb::strategy_kind::partition})
-            if (c[kind] != selected[kind] && refusal_of(c, aabb::stage::global_search).empty())
-                all.push_back({to_text(c[kind]), contender_of(c, meshes), {}});
+    for (const aabb::strategy_choice& choice : choices) {
+        aabb::composition c = selected;
+        c[kind] = choice;
+        if (c != selected && refusal_of(c, info_of(kind).stage).empty())
+            all.push_back({to_text(choice), contender_of(c, meshes), {}});
+    }
     return all;
 }
 
-void print_omissions(const scene_choice& scene, std::span<const other_way> all) {
-    std::vector<std::vector<std::string>> omitted_by_all;
-    for (const other_way& one : all) omitted_by_all.push_back(omitted_by(scene, one.who));
+void print_omissions(std::span<const other_way> all) {
     const std::vector<race_time>& times = all[0].times;
     const std::vector<std::string> heads{"left out", "is had with", "ms/frame", "bytes"};
     std::vector<std::vector<std::string>> rows;
-    for (const std::string& what : omitted_by_all[0]) {
-        const other_way* least = nullptr;
-        for (std::size_t i = 1; i < all.size(); ++i)
-            if (std::ranges::find(omitted_by_all[i], what) == omitted_by_all[i].end() &&
-                (!least || median_ms(all[i].times) < median_ms(least->times)))
-                least = &all[i];
+    for (const std::string& what : omitted_by(all[0])) {
         rows.push_back({what, "-", "-", "-"});
-        if (!least) continue;
-        const bool open = paired_ratio_of(frame_ms_of(least->times), frame_ms_of(times)).may_be_same();
-        rows.back() = {what, least->name,
-                       fmt::format("{:.3g}{}", median_ms(least->times) - median_ms(times), open ? "?" : ""),
-                       more(least->times.back().bytes, times.back().bytes)};
+        const other_way* with = fastest_with(what, all.subspan(1));
+        if (!with) continue;
+        const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
+        rows.back() = {what, with->name,
+                       fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
+                       more(with->times.back().bytes, times.back().bytes)};
     }
     std::size_t others = 0;
     for (std::size_t column = 1; column < heads.size(); ++column) {
@@ -122,7 +113,9 @@ void print_omissions(const scene_choice& scene, std::span<const other_way> all) 
             std::ranges::fill(cells, "");
         }
     }
-    print(to_text(t));
+    print("what is left out saves, against the fastest way of having it\n");
+    print(to_text(t) + "\n");
+    print(wrapped("-: none that was played has it. Below 0: having it takes less. ?: as above.") + "\n");
 }
 
 }  // namespace aabblab

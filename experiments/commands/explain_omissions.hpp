@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,15 +8,12 @@ import aabb.registry;
 import aabblab.play;
 import aabblab.race;
 import aabblab.results;
-import aabblab.scenes;
 
 namespace aabblab {
 
-/// So that buffers have grown and what is kept between frames is there.
-inline constexpr std::size_t explained_frames = 2;
-
-/// What a contender does without in the scene it has begun to play, sentence by sentence; a reason follows a colon.
-[[nodiscard]] std::vector<std::string> omissions_of(const contender_name& who, const player& playing);
+/// What a contender does without, sentence by sentence; a reason follows a colon.
+/// @param by_stages what its stages say of themselves
+[[nodiscard]] std::vector<std::string> omissions_of(const contender_name& who, std::vector<std::string> by_stages);
 
 /// A way of playing the scene, played in the same rounds as the others.
 struct other_way {
@@ -26,11 +22,12 @@ struct other_way {
     std::vector<race_time> times;
 };
 
-/// Compositions that have what others leave out for their settings' sake, not for a strategy's.
-[[nodiscard]] std::vector<other_way> ways_by_settings(const aabb::composition& selected, bool meshes);
+/// Compositions that have what the selected one leaves out for the sake of this kind's settings, not of its strategy.
+[[nodiscard]] std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb::strategy_kind kind,
+                                                      bool meshes);
 
 /// Prints a line for all that the first one, which is selected, leaves out: which of the others has it and takes the
 /// least time, and what it takes more.
-void print_omissions(const scene_choice& scene, std::span<const other_way> all);
+void print_omissions(std::span<const other_way> all);
 
 }  // namespace aabblab

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -98,6 +99,7 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
     const bool any = scene.objects() <= most_objects_of_any;
     std::vector<other_way> all{{"as selected", contender_of(selected, meshes), {}}};
     std::vector<std::string> kinds{""};
+    std::vector<other_way> by_settings;
     std::string alone;  // kinds of which nothing else goes with the rest
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
@@ -105,11 +107,12 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
         const std::vector<other_way> some = others(selected, kind, meshes);
         all.insert(all.end(), some.begin(), some.end());
         kinds.resize(all.size(), std::string(name_of(kind)));
+        std::ranges::move(ways_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
         if (some.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    all.push_back({"of all work", with_counters(all.front().who), {}});
-    kinds.emplace_back("counters");
-    for (other_way& one : ways_by_settings(selected, meshes)) all.push_back(std::move(one));
+    all.push_back({"counters of all work", with_counters(all.front().who), {}});
+    kinds.emplace_back("");
+    std::ranges::move(by_settings, std::back_inserter(all));
     std::vector<contender> playing;
     for (const other_way& one : all) playing.push_back(one.who);
     auto times = play_in_turn(choice, playing, most_frames, rounds);
@@ -140,11 +143,10 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
     print_line(build_ms_text);
     print_line("bytes: held after the last of these frames; counters: the same with all work counted.");
     print("\n");
-    print_line(
-        "what is left out saves so much, against the way of having it that takes least time; -: none here has it");
-    print_omissions(choice, all);
+    print_omissions(all);
+    const bool same = print_disagreements(all);
     flush_output();
-    return print_disagreements(all);
+    return same;
 }
 
 }  // namespace aabblab

@@ -49,6 +49,7 @@ std::string to_line(const race_time& t) {
     std::ostringstream text;
     text.precision(17);
     text << t.build_ms << ' ' << t.first_ms << ' ' << t.rest_ms << ' ' << t.frames << ' ' << t.bytes << ' ' << t.digest;
+    for (const std::string& one : t.left_out) text << '\n' << one;
     return text.str();
 }
 
@@ -56,6 +57,7 @@ race_time from_line(const std::string& line) {
     std::istringstream text(line);
     race_time t;
     text >> t.build_ms >> t.first_ms >> t.rest_ms >> t.frames >> t.bytes >> t.digest;
+    for (std::string one; std::getline(text >> std::ws, one);) t.left_out.push_back(one);
     return t;
 }
 
@@ -243,6 +245,7 @@ race_time time_frames(const scene_choice& choice, const contender& who, std::siz
         frames);
     time.bytes = p->held_bytes();
     time.digest = found.digest();
+    time.left_out = p->left_out();
     return time;
 }
 

@@ -50,7 +50,7 @@ public:
 
     [[nodiscard]] std::vector<std::string> left_out() const override {
         std::vector<std::string> absent;
-        if constexpr (requires { Tree::leaves_out; }) absent.emplace_back(Tree::leaves_out);
+        if constexpr (requires { Tree::leaves_out; }) absent.assign(Tree::leaves_out.begin(), Tree::leaves_out.end());
         if constexpr (!Counters::enabled) absent.emplace_back("no work counters");
         return absent;
     }

@@ -57,7 +57,8 @@ public:
         if constexpr (!really_cuts<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
         if constexpr (ColumnPartition<Partition>)
             if (search_.is_uncut())
-                absent.emplace_back("no columns, no sort: so few boxes are tested each against each");
+                for (const char* what : {"no partition", "no sort"})
+                    absent.push_back(std::string(what) + ": so few boxes are tested each against each");
         if constexpr (CoherentSweep<Sweep>)
             absent.emplace_back("no projection lists beside those that the sweep keeps for itself");
         for (std::size_t k = 0; k < 3; ++k)

@@ -16,7 +16,8 @@ import aabb.prepare.list_plan;
 export namespace aabb {
 
 /// Frames that are searched as they are, since no list of neighbours paid: ever more each time, and then a few boxes
-/// are looked at until they say that one may.
+/// are looked at for eight frames, and again after a rest, until they say that one may. Of 50 boxes that have come to
+/// rest, 35 more frames may be searched, of which each is cheap.
 class list_pause {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
@@ -30,7 +31,7 @@ public:
 
     /// A frame of it. Where even a few boxes move too far for any list, all do, and are not looked at for the rest of
     /// the eight frames.
-    /// @returns whether all eight were in vain; others are looked at now
+    /// @returns whether all eight were in vain; others are looked at next
     bool pass(std::span<const box> boxes, const membership& objects, std::size_t found, list_forecast& forecast) {
         --left_;
         const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
@@ -58,8 +59,8 @@ private:
     static constexpr unsigned shortest = 6;
     static constexpr unsigned longest = 96;
 
-    /// Frames between looks: eight frames of looking take as long as searching 70 boxes, and are to take no more than a
-    /// twentieth of all.
+    /// Frames between looks: eight frames of looking take about as long as searching 70 boxes, however many there are,
+    /// and are to take no more than a twentieth of all.
     [[nodiscard]] static unsigned rest(std::size_t boxes) noexcept {
         return 1400 / static_cast<unsigned>(std::max<std::size_t>(boxes, 1));
     }

@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -13,7 +14,8 @@ export namespace aabb {
 struct none_prepare {
     static constexpr std::string_view name = "none";
     static constexpr std::string_view summary = "boxes are searched as they are";
-    static constexpr std::string_view leaves_out = "no list of neighbours";
+    static constexpr std::array leaves_out{std::string_view("no list of neighbours"),
+                                           std::string_view("no division of large objects")};
 
     [[nodiscard]] static std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search, instrumentation) {
         return search;

@@ -29,7 +29,7 @@ export namespace aabb {
 struct split_large_prepare {
     static constexpr std::string_view name = "split_large";
     static constexpr std::string_view summary = "boxes much longer than the mean are divided into pieces";
-    static constexpr std::string_view leaves_out = "no list of neighbours";
+    static constexpr std::array leaves_out{std::string_view("no list of neighbours")};
 
     struct config {
         double size = 4;

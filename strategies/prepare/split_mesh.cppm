@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -22,7 +23,7 @@ struct split_mesh_prepare {
     static constexpr std::string_view name = "split_mesh";
     static constexpr std::string_view summary =
         "meshes much longer than the mean are divided into parts with boxes and trees of their own";
-    static constexpr std::string_view leaves_out = "no list of neighbours";
+    static constexpr std::array leaves_out{std::string_view("no list of neighbours")};
     static constexpr std::string_view needs_meshes =
         "split_mesh divides meshes, and there are only boxes here; split_large divides boxes";
 

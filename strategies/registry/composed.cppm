@@ -25,8 +25,8 @@ struct entry {
 
 template <Strategy S>
 [[nodiscard]] entry entry_of() {
-    std::string leaves_out;
-    if constexpr (requires { S::leaves_out; }) leaves_out = S::leaves_out;
+    std::vector<std::string> leaves_out;
+    if constexpr (requires { S::leaves_out; }) leaves_out.assign(S::leaves_out.begin(), S::leaves_out.end());
     std::string needs_meshes;
     if constexpr (requires { S::needs_meshes; }) needs_meshes = S::needs_meshes;
     return {{std::string(S::name), std::string(S::summary), strategy_is_exact<S>, parameters_of<S>(), leaves_out,

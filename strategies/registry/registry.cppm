@@ -26,8 +26,8 @@ struct strategy_info {
     std::string summary;
     bool exact;  ///< false for one that approximates, whatever its parameters: its results are compared, not refused
     std::vector<parameter_info> parameters;
-    std::string leaves_out;    ///< what a stage with it does without, a sentence; empty where it does not say
-    std::string needs_meshes;  ///< why it has no use for boxes alone, a sentence; empty where it has
+    std::vector<std::string> leaves_out;  ///< what a stage with it does without, as `left_out` of a stage has it
+    std::string needs_meshes;             ///< why it has no use for boxes alone, a sentence; empty where it has
 };
 
 /// The strategies of a kind, in the order of `strategies/CMakeLists.txt`.

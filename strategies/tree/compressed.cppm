@@ -26,7 +26,7 @@ public:
     static constexpr std::string_view name = "compressed";
     static constexpr std::string_view summary =
         "the paper's compressed nodes without loss: no leaves, six planes and a symbol for two siblings";
-    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
     static constexpr bool has_leaf_boxes = false;
     static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 

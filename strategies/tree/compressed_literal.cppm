@@ -28,7 +28,7 @@ public:
     static constexpr std::string_view name = "compressed_literal";
     static constexpr std::string_view summary =
         "table 1 of the paper to the letter: three planes a node, the rest from its parent, some boxes larger";
-    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
     static constexpr bool has_leaf_boxes = false;
 
     using config = leafless_config;

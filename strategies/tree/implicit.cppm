@@ -32,7 +32,8 @@ public:
     static constexpr std::string_view name = "implicit";
     static constexpr std::string_view summary =
         "eight children a node in 64 bytes, no indices, no leaf boxes, walked in batches: fastest";
-    static constexpr std::string_view leaves_out = "no indices of nodes, and no boxes of single triangles";
+    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles"),
+                                           std::string_view("no indices of nodes")};
     static constexpr bool has_leaf_boxes = true;
 
     /// How the vertices of a leaf are found.

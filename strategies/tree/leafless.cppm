@@ -23,7 +23,7 @@ public:
     static constexpr std::string_view name = "leafless";
     static constexpr std::string_view summary =
         "internal nodes of 32 bytes, no leaves: triangle indices stand in the parent";
-    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
     static constexpr bool has_leaf_boxes = false;
 
     using config = leafless_config;

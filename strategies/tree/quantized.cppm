@@ -36,7 +36,7 @@ public:
     static constexpr std::string_view name = "quantized";
     static constexpr std::string_view summary =
         "compressed further: planes in 4 to 16 bits each, rounded outward, and one index for two siblings";
-    static constexpr std::string_view leaves_out = "no leaves: no boxes of single triangles";
+    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
     static constexpr bool has_leaf_boxes = false;
     static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 

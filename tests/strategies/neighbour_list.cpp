@@ -17,6 +17,7 @@
 #include "../compositions.hpp"
 #include "../validation/support.hpp"
 
+import aabb.partition.columns;
 import aabb.prepare.glimpse;
 import aabb.prepare.list_forecast;
 import aabb.prepare.list_pause;
@@ -485,9 +486,10 @@ TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") 
 }
 
 TEST_CASE("pairs among few boxes cost no more to find than to find again") {
-    constexpr auto few = static_cast<std::size_t>(few_boxes);
-    CHECK_FALSE(pays(few, 60 * few, 60 * few));
-    CHECK(pays(few + 1, 60 * few, 60 * few));
+    REQUIRE(most_uncut_boxes == columns_partition::config().few);
+    constexpr auto few = static_cast<std::size_t>(most_uncut_boxes);
+    CHECK_FALSE(pays(few, 10 * few, 15 * few));
+    CHECK(pays(few + 1, 10 * few, 15 * few));
 }
 
 TEST_CASE("a few boxes never say that all moved further than they did") {
