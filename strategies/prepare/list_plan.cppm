@@ -11,7 +11,6 @@ export module aabb.prepare.list_plan;
 
 import aabb.costs;
 import aabb.geometry;
-import aabb.simd;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -71,9 +70,6 @@ struct list_outlook {
     double correction = 1;  ///< pairs that the last list held beside those that overlapped, over what was reckoned
 };
 
-/// Of so many boxes or fewer `columns` cuts none, unless it is told to.
-inline constexpr double most_uncut_boxes = 4 * simd::width;
-
 /// The cheapest list: for how many frames it is to serve, its own included, and the margin by which boxes are grown for
 /// that.
 struct list_plan {
@@ -118,10 +114,9 @@ inline constexpr double worth_another_list = 0.95;
     return found * (1 + seen.correction * (seen.growth.at(margin) - 1));
 }
 
-/// What a frame costs that is searched as it is, and one that a list serves. Of few boxes, which are tested each
-/// against each, a pair is found for no more than it is found again in a list.
+/// What a frame costs that is searched as it is, and one that a list serves.
 [[nodiscard]] inline double cost_of_search(double boxes, double pairs, const cost_model& cost) {
-    return boxes * cost.search_box + pairs * (boxes <= most_uncut_boxes ? cost.test_pair : cost.search_pair);
+    return boxes * cost.search_box + pairs * cost.search_pair;
 }
 [[nodiscard]] inline double cost_of_service(double boxes, double listed, const cost_model& cost) {
     return boxes * cost.watch_box + listed * cost.test_pair;

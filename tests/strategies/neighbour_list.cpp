@@ -17,7 +17,6 @@
 #include "../compositions.hpp"
 #include "../validation/support.hpp"
 
-import aabb.partition.columns;
 import aabb.prepare.glimpse;
 import aabb.prepare.list_forecast;
 import aabb.prepare.list_pause;
@@ -483,13 +482,6 @@ TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") 
     };
     CHECK(frames_from_look_to_look(50) == 8 + 28);
     CHECK(frames_from_look_to_look(2000) == 8);
-}
-
-TEST_CASE("pairs among few boxes cost no more to find than to find again") {
-    REQUIRE(most_uncut_boxes == columns_partition::config().few);
-    constexpr auto few = static_cast<std::size_t>(most_uncut_boxes);
-    CHECK_FALSE(pays(few, 10 * few, 15 * few));
-    CHECK(pays(few + 1, 10 * few, 15 * few));
 }
 
 TEST_CASE("a few boxes never say that all moved further than they did") {
