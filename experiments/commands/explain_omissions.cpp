@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <sstream>
@@ -65,6 +66,7 @@ std::vector<std::string> omissions_of(const contender_name& who, std::vector<std
         if (!info_of(kind).apart || who[kind].empty()) continue;
         const std::span<const aabb::strategy_info> all = aabb::strategies(kind);
         const auto found = std::ranges::find(all, aabb::parse_strategy(who[kind]).name, &aabb::strategy_info::name);
+        assert(found != all.end());
         by_stages.insert(by_stages.end(), found->leaves_out.begin(), found->leaves_out.end());
     }
     return by_stages;
@@ -80,9 +82,13 @@ std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb:
         aabb::composition c = selected;
         c[kind] = choice;
         if (c != selected && refusal_of(c, info_of(kind).stage).empty())
-            all.push_back({to_text(choice), contender_of(c, meshes), {}});
+            all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}});
     }
     return all;
+}
+
+std::string called(const other_way& one) {
+    return one.name == "none" ? one.kind + " none" : one.name;
 }
 
 void print_omissions(std::span<const other_way> all) {
@@ -94,7 +100,7 @@ void print_omissions(std::span<const other_way> all) {
         const other_way* with = fastest_with(what, all.subspan(1));
         if (!with) continue;
         const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
-        rows.back() = {what, with->name,
+        rows.back() = {what, called(*with),
                        fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
                        more(with->times.back().bytes, times.back().bytes)};
     }

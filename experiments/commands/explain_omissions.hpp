@@ -17,7 +17,8 @@ namespace aabblab {
 
 /// A way of playing the scene, played in the same rounds as the others.
 struct other_way {
-    std::string name;
+    std::string kind;  ///< in which it differs from what is selected; empty where it does not
+    std::string name;  ///< of what stands in its place
     contender who;
     std::vector<race_time> times;
 };
@@ -25,6 +26,9 @@ struct other_way {
 /// Compositions that have what the selected one leaves out for the sake of this kind's settings, not of its strategy.
 [[nodiscard]] std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb::strategy_kind kind,
                                                       bool meshes);
+
+/// What it is called where its kind does not stand beside it.
+[[nodiscard]] std::string called(const other_way& one);
 
 /// Prints a line for all that the first one, which is selected, leaves out: which of the others has it and takes the
 /// least time, and what it takes more.

@@ -43,7 +43,7 @@ std::vector<other_way> others(const aabb::composition& selected, aabb::strategy_
         c[kind] = {info.name, {}};
         if (refusal_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
             (meshes || needs_meshes(c).empty()))
-            all.push_back({info.name, contender_of(c, meshes), {}});
+            all.push_back({std::string(name_of(kind)), info.name, contender_of(c, meshes), {}});
     }
     return all;
 }
@@ -66,12 +66,12 @@ std::vector<std::string> ratio_cells(std::span<const race_time> times, std::span
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
-void add_row(table& t, const std::string& kind, const other_way& one, const other_way& selected) {
+void add_row(table& t, const other_way& one, const other_way& selected) {
     std::vector<double> build_ms;
     for (const race_time& time : one.times) build_ms.push_back(time.build_ms);
     const std::vector<std::string> ratio =
         &one == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells(one.times, selected.times);
-    t.rows.push_back({kind, one.name, fmt::format("{:.4g}", quartiles_of(frame_ms_of(one.times)).median), ratio[0],
+    t.rows.push_back({one.kind, one.name, fmt::format("{:.4g}", quartiles_of(frame_ms_of(one.times)).median), ratio[0],
                       ratio[1], fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
 }
 
@@ -87,7 +87,7 @@ bool print_disagreements(const std::vector<other_way>& all) {
     for (const other_way& one : all) times.push_back(one.times);
     const std::vector<std::size_t> wrong = who_disagrees(times);
     for (const std::size_t i : wrong)
-        print_line(all[i].name + " finds other pairs than what is selected: one of the two is wrong.");
+        print_line(called(all[i]) + " finds other pairs than what is selected: one of the two is wrong.");
     return wrong.empty();
 }
 
@@ -97,8 +97,7 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
     const scene_play scene(choice);
     const bool meshes = scene.meshes() != nullptr;
     const bool any = scene.objects() <= most_objects_of_any;
-    std::vector<other_way> all{{"as selected", contender_of(selected, meshes), {}}};
-    std::vector<std::string> kinds{""};
+    std::vector<other_way> all{{"", "as selected", contender_of(selected, meshes), {}}};
     std::vector<other_way> by_settings;
     std::string alone;  // kinds of which nothing else goes with the rest
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -106,12 +105,11 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
         if (!any && !info_of(kind).apart) continue;
         const std::vector<other_way> some = others(selected, kind, meshes);
         all.insert(all.end(), some.begin(), some.end());
-        kinds.resize(all.size(), std::string(name_of(kind)));
         std::ranges::move(ways_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
         if (some.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    all.push_back({"counters of all work", with_counters(all.front().who), {}});
-    kinds.emplace_back("");
+    all.push_back({"", "counters of all work", with_counters(all.front().who), {}});
+    const std::size_t in_one_kind = all.size();
     std::ranges::move(by_settings, std::back_inserter(all));
     std::vector<contender> playing;
     for (const other_way& one : all) playing.push_back(one.who);
@@ -126,7 +124,7 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
              {"build ms", true, 2},
              {"bytes", true, 1}},
             {}};
-    for (std::size_t i = 0; i < kinds.size(); ++i) add_row(t, kinds[i], all[i], all[0]);
+    for (std::size_t i = 0; i < in_one_kind; ++i) add_row(t, all[i], all[0]);
     print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} rounds of {}",
                            rounds, counted(std::min(scene.frames(), most_frames), "frame")));
     print(to_text(t, output_width()) + "\n");

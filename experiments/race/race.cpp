@@ -49,7 +49,6 @@ std::string to_line(const race_time& t) {
     std::ostringstream text;
     text.precision(17);
     text << t.build_ms << ' ' << t.first_ms << ' ' << t.rest_ms << ' ' << t.frames << ' ' << t.bytes << ' ' << t.digest;
-    for (const std::string& one : t.left_out) text << '\n' << one;
     return text.str();
 }
 
@@ -57,7 +56,6 @@ race_time from_line(const std::string& line) {
     std::istringstream text(line);
     race_time t;
     text >> t.build_ms >> t.first_ms >> t.rest_ms >> t.frames >> t.bytes >> t.digest;
-    for (std::string one; std::getline(text >> std::ws, one);) t.left_out.push_back(one);
     return t;
 }
 

@@ -25,7 +25,7 @@ struct race_time {
     std::size_t frames = 0;
     std::uint64_t bytes = 0;
     std::string digest;
-    std::vector<std::string> left_out;  ///< by the stages, after the last of these frames
+    std::vector<std::string> left_out;  ///< by the stages, after the last of these frames; not told of whom plays apart
 
     /// Of so many frames, the further ones as fast as those that were played.
     [[nodiscard]] double over(double all_frames) const {

@@ -16,8 +16,8 @@ import aabb.prepare.list_plan;
 export namespace aabb {
 
 /// Frames that are searched as they are, since no list of neighbours paid: ever more each time, and then a few boxes
-/// are looked at for eight frames, and again after a rest, until they say that one may. Of 50 boxes that have come to
-/// rest, 35 more frames may be searched, of which each is cheap.
+/// are looked at for eight frames, and again after a rest, until they say that one may. The fewer boxes there are, the
+/// longer it takes to see that they have come to rest, and the less each of these frames costs.
 class list_pause {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
@@ -59,8 +59,8 @@ private:
     static constexpr unsigned shortest = 6;
     static constexpr unsigned longest = 96;
 
-    /// Frames between looks: eight frames of looking take about as long as searching 70 boxes, however many there are,
-    /// and are to take no more than a twentieth of all.
+    /// Frames between looks. Eight frames of looking take about as long as searching 70 boxes, however many there are:
+    /// that is to be about a twentieth of what searching takes meanwhile.
     [[nodiscard]] static unsigned rest(std::size_t boxes) noexcept {
         return 1400 / static_cast<unsigned>(std::max<std::size_t>(boxes, 1));
     }

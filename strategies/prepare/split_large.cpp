@@ -152,7 +152,9 @@ std::vector<part_bytes> split_large_stage::bytes() const {
 }
 
 std::vector<std::string> split_large_stage::left_out() const {
-    return search_->left_out();
+    std::vector<std::string> absent = search_->left_out();
+    if (splits_.empty()) absent.emplace_back("no division of large objects: none is large");
+    return absent;
 }
 
 split_large_stage::cut_interval split_large_stage::cut(float lower, float upper, double longest) {

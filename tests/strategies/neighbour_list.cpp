@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "../compositions.hpp"
@@ -477,11 +478,11 @@ TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") 
                 REQUIRE(pause.lasts());
             }
         };
-        (void)look_in_vain();
-        return look_in_vain();
+        const int first = look_in_vain();
+        return std::pair(first, look_in_vain());
     };
-    CHECK(frames_from_look_to_look(50) == 8 + 28);
-    CHECK(frames_from_look_to_look(2000) == 8);
+    CHECK(frames_from_look_to_look(50) == std::pair(28 + 8, 28 + 8));
+    CHECK(frames_from_look_to_look(2000) == std::pair(6 + 8, 8));
 }
 
 TEST_CASE("a few boxes never say that all moved further than they did") {
