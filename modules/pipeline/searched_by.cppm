@@ -55,13 +55,10 @@ public:
     [[nodiscard]] std::vector<std::string> left_out() const override {
         std::vector<std::string> absent;
         if constexpr (!really_cuts<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
-        if constexpr (ColumnPartition<Partition>) {
+        if constexpr (ColumnPartition<Partition>)
             if (search_.is_uncut())
                 for (const char* what : {"no partition", "no sort"})
                     absent.push_back(std::string(what) + ": so few boxes are tested each against each");
-            else if (search_.plan().columns() == 1)
-                absent.emplace_back("no partition: no cut pays");
-        }
         if constexpr (CoherentSweep<Sweep>)
             absent.emplace_back("no projection lists beside those that the sweep keeps for itself");
         for (std::size_t k = 0; k < 3; ++k)

@@ -83,6 +83,8 @@ private:
     void keep(std::span<const box> boxes, double margin);
     void judge_first_list(std::span<const box> boxes);
     void keep_those_that_meet(std::span<const box> boxes);
+    [[nodiscard]] bool stays_in_place() const;
+    void shorten_list();
 
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, and then left alone.
     static constexpr std::uint32_t longest_watch = 8;
@@ -95,6 +97,8 @@ private:
     static constexpr std::size_t longest_history = 256;
     /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
     static constexpr unsigned longest_repetition = 8;
+    /// Boxes that move about where they were get a margin so many times as long as they moved.
+    static constexpr double in_place = 1.3;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
 
@@ -150,7 +154,10 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         if (adapts() && is_kept_ && is_first_) judge_first_list(boxes);
         if (is_kept_ && same_objects && serves(boxes) && !is_too_long_) {
             require_valid(boxes);
-            if (came_to_rest_) keep_those_that_meet(boxes);
+            if (came_to_rest_)
+                keep_those_that_meet(boxes);
+            else if (adapts() && stays_in_place())
+                shorten_list();
         } else if (const std::optional<double> margin = watches_ ? watched(boxes, same_objects) : next_margin(boxes)) {
             keep(boxes, *margin);
         } else {
@@ -347,6 +354,22 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
     rested_ = true;
     age_ = 0;
     from_ = source::whole;
+}
+
+/// Whether boxes move about where they were when the list was made, and by far less than it allows; ever less often
+/// looked at.
+bool neighbour_list_stage::stays_in_place() const {
+    constexpr std::uint32_t first_look = 16;
+    if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return false;
+    return motion_.back() < 1.2 * motion_[age_ / 2 - 1] && in_place * motion_.back() < 0.7 * margin_;
+}
+
+/// The list that a smaller margin would have made, without a search.
+void neighbour_list_stage::shorten_list() {
+    margin_ = in_place * motion_.back();
+    grow(kept_, margin_, grown_);
+    if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
+    list_.resize(store_meeting(grown_, list_, list_.data()));
 }
 
 void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {

@@ -17,6 +17,7 @@
 
 #include "../compositions.hpp"
 #include "../validation/support.hpp"
+#include "overlapping.hpp"
 
 import aabb.prepare.glimpse;
 import aabb.prepare.list_forecast;
@@ -539,6 +540,55 @@ TEST_CASE("what swings about its place gets a list that lasts, though the first 
         if (frame >= 40) kept += says(*stage, "no list of neighbours") ? 0 : 1;
     }
     CHECK(kept == 40);
+}
+
+TEST_CASE("what moves by little about its place gets a shorter list without a search") {
+    constexpr std::size_t n = 600;
+    std::uint64_t random = 1;
+    const auto any = [&] {
+        random = random * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<float>(random >> 40U) * 0x1p-24F - 0.5F;
+    };
+    std::vector<vec3f> homes(n);
+    for (vec3f& home : homes) home = {5 * any(), 5 * any(), 5 * any()};
+    std::vector<vec3f> ways(n);
+    for (vec3f& way : ways) way = {any(), any(), any()};
+    // Tests of the listed pairs, frame by frame, and how often all was searched.
+    struct played {
+        std::vector<std::uint64_t> tests;
+        std::uint64_t searches;
+    };
+    const auto play = [&](int frames, auto displacement) {
+        aabb::composition c = composed({{strategy_kind::prepare, "neighbour_list"}});
+        c[strategy_kind::sort] = {"std", {}};
+        c[strategy_kind::partition] = {"uniform_grid", {{"cell_size", "2"}}};
+        c[strategy_kind::sweep] = {"one_axis", {}};
+        const auto stage = stage_of(c, n);
+        played p{{}, 0};
+        for (int frame = 0; frame < frames; ++frame) {
+            std::vector<box> boxes;
+            for (std::size_t i = 0; i < n; ++i) {
+                vec3f at = homes[i];
+                for (int k = 0; k < 3; ++k) at[k] += displacement(frame) * ways[i][k];
+                boxes.push_back({at, at + vec3f{1, 1, 1}});
+            }
+            const work_counters before = stage->counters();
+            REQUIRE(pairs_of(*stage, boxes) == overlapping(boxes));
+            p.tests.push_back(stage->counters()[work::box_tests] - before[work::box_tests]);
+            p.searches += stage->counters()[work::subsets] > before[work::subsets] ? 1 : 0;
+        }
+        return p;
+    };
+    const auto swings = [](int frame) { return 0.01F * std::sin(0.8F * static_cast<float>(frame)); };
+    const played swinging = play(30, swings);
+    CHECK(swinging.searches == 1);
+    CHECK(static_cast<double>(swinging.tests[20]) < 0.9 * static_cast<double>(swinging.tests[10]));
+    // Where they turn out to go further than the shorter list allows, all is searched again.
+    CHECK(play(40, [&](int frame) { return frame < 30 ? swings(frame) : 0.05F; }).searches > 1);
+    // What drifts keeps its list.
+    const played drifting = play(24, [](int frame) { return 0.001F * static_cast<float>(frame); });
+    CHECK(drifting.searches == 1);
+    CHECK(drifting.tests[20] == drifting.tests[10]);
 }
 
 TEST_CASE("a few boxes are not watched") {
