@@ -195,8 +195,8 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
 TEST_CASE("explain says what all that is left out saves, with whom it is had, or that nobody has it") {
     const temporary_folder folder;
     const std::string file = (folder / "p.aabbs").string();
-    const auto table_of = [&](const char* scene) {
-        REQUIRE(run_program({"scene", scene, "--n", "8", "--frames", "6", "--out", file}).status == 0);
+    const auto table_of = [&](const char* scene, const char* objects) {
+        REQUIRE(run_program({"scene", scene, "--n", objects, "--frames", "6", "--out", file}).status == 0);
         const std::string told = run_program({"explain", file}).out;
         return told.substr(told.find("\nleft out  "));
     };
@@ -204,7 +204,7 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
         const std::size_t at = table.find("\n" + what + " ");
         return at == std::string::npos ? "" : table.substr(at + 1, table.find('\n', at + 1) - at - 1);
     };
-    const std::string table = table_of("free_fall");
+    const std::string table = table_of("free_fall", "8");
     INFO(table);
     for (const char* what : {"no partition", "no sort", "no projection list of the x axis",
                              "no projection list of the y axis", "no projection list of the z axis"}) {
@@ -218,7 +218,8 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
     CHECK(line_of(table, "no work counters").ends_with(" 0"));
     CHECK(line_of(table, "no local detection").ends_with(" -"));
     CHECK(table.find("  none ") == std::string::npos);
-    CHECK(line_of(table_of("one_huge"), "no division of large objects").find("split_large ") != std::string::npos);
+    CHECK(line_of(table_of("one_huge", "100"), "no division of large objects").find("split_large ") !=
+          std::string::npos);
 }
 
 TEST_CASE("explain takes meshes, and a motion with its meshes") {
