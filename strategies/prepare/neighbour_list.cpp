@@ -74,6 +74,7 @@ private:
     void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
     [[nodiscard]] bool repeats_plan(std::span<const box> boxes);
+    [[nodiscard]] bool serves_few_well() const;
     [[nodiscard]] double first_margin(std::span<const box> boxes);
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
         return forecast_.is_far_too_long(boxes, objects_, margin, found_);
@@ -97,6 +98,8 @@ private:
     static constexpr std::size_t longest_history = 256;
     /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
     static constexpr unsigned longest_repetition = 8;
+    /// A list of few boxes that lasts so many frames is good enough.
+    static constexpr std::size_t frames_of_good_list = 8;
     /// Boxes that move about where they were get a margin so many times as long as they moved.
     static constexpr double in_place = 1.3;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
@@ -287,7 +290,10 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
 
 std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
     const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
-    if (lasted_as_planned && repeats_plan(boxes)) return margin_;
+    if (serves_few_well() || (lasted_as_planned && repeats_plan(boxes))) {
+        ++repeated_;
+        return margin_;
+    }
     if (age_ <= 1)
         forecast_.look_anew(boxes, objects_);
     else
@@ -312,11 +318,15 @@ std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> b
 /// takes as long as searching them.
 bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
     constexpr double alike = 1.02;
-    if (age_ != planned_ || motion_.back() > alike * planned_for_ || alike * motion_.back() < planned_for_ ||
-        repeated_ == longest_repetition || is_far_too_long(boxes, margin_))
-        return false;
-    ++repeated_;
-    return true;
+    return age_ == planned_ && motion_.back() <= alike * planned_for_ && planned_for_ <= alike * motion_.back() &&
+           repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
+}
+
+/// Whether the next list gets the margin of this one without a plan, since few boxes are searched in the time that a
+/// plan takes, and this one lasted.
+bool neighbour_list_stage::serves_few_well() const {
+    return is_kept_ && margin_ > 0 && !is_too_long_ && objects_.size() < fewest_boxes_of_long_list &&
+           repeated_ < longest_repetition && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
 }
 
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
@@ -383,11 +393,14 @@ void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
         grow(boxes, margin, grown_);
     }
     search_->update(margin > 0 ? std::span<const box>(grown_) : boxes);
+    const std::size_t listed_before = list_.size();
     list_.clear();
     search_->search(list_);
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     margin_ = margin;
-    is_too_long_ = forecast_.is_reckoned() && !pays(objects_.size(), found_, list_.size());
+    // Nobody reckons a list that repeats another: then it is to be about as long.
+    const bool is_judged = forecast_.is_reckoned() || (repeated_ > 0 && list_.size() > 2 * listed_before);
+    is_too_long_ = is_judged && !pays(objects_.size(), found_, list_.size());
     motion_.clear();
     rested_ = false;
     age_ = 0;

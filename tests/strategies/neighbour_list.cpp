@@ -591,6 +591,37 @@ TEST_CASE("what moves by little about its place gets a shorter list without a se
     CHECK(drifting.tests[20] == drifting.tests[10]);
 }
 
+TEST_CASE("few boxes repeat the margin of a list that lasted, unless that lists far more") {
+    const auto placed = [](std::size_t n, float spacing, int frame) {
+        std::vector<box> boxes;
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto id = static_cast<int>(i);
+            const vec3f at{
+                spacing * static_cast<float>(id % 5) + (id % 2 == 0 ? 0.002F : -0.002F) * static_cast<float>(frame),
+                spacing * static_cast<float>(id / 5 % 5), spacing * static_cast<float>(id / 25)};
+            boxes.push_back({at, at + vec3f{1, 1, 1}});
+        }
+        return boxes;
+    };
+    const auto margin_of = [](const global_stage& stage) {
+        const std::string plan = stage.plans().back();
+        return plan.substr(plan.find("grown by"));
+    };
+    for (const std::size_t n : {std::size_t{100}, std::size_t{300}}) {
+        INFO(n << " boxes");
+        const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+        (void)pairs_of(*stage, placed(n, 3, 0));
+        const std::string first = margin_of(*stage);
+        for (int frame = 1; frame <= 60; ++frame) (void)pairs_of(*stage, placed(n, 3, frame));
+        CHECK((margin_of(*stage) == first) == (n == 100));
+        if (n == 300) continue;
+        // All within reach of each other, of which none overlap.
+        for (int frame = 0; frame < 3; ++frame) CHECK(pairs_of(*stage, placed(n, 1.15F, frame)).empty());
+        const std::string plan = stage->plans().back();
+        CHECK(std::stoi(plan.substr(std::string_view("a list of ").size())) < 200);
+    }
+}
+
 TEST_CASE("a few boxes are not watched") {
     for (const std::size_t n : {std::size_t{2} * simd::width, std::size_t{2} * simd::width + 1}) {
         INFO(n << " boxes");
