@@ -596,9 +596,11 @@ TEST_CASE("few boxes repeat the margin of a list that lasted, unless that lists 
         std::vector<box> boxes;
         for (std::size_t i = 0; i < n; ++i) {
             const auto id = static_cast<int>(i);
-            const vec3f at{
-                spacing * static_cast<float>(id % 5) + (id % 2 == 0 ? 0.002F : -0.002F) * static_cast<float>(frame),
-                spacing * static_cast<float>(id / 5 % 5), spacing * static_cast<float>(id / 25)};
+            const int row = id / 5 % 5;
+            const int layer = id / 25;
+            const float moved = (id % 2 == 0 ? 0.002F : -0.002F) * static_cast<float>(frame);
+            const vec3f at{spacing * static_cast<float>(id % 5) + moved, spacing * static_cast<float>(row),
+                           spacing * static_cast<float>(layer)};
             boxes.push_back({at, at + vec3f{1, 1, 1}});
         }
         return boxes;
