@@ -19,6 +19,7 @@
 #include "explain_savings.hpp"
 #include "kept_costs.hpp"
 #include "scene_arguments.hpp"
+#include "wrapped_row.hpp"
 
 import aabb.pipeline;
 import aabb.policy;
@@ -113,14 +114,8 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
     const std::size_t before = kinds + 2 + choices + 2;
     const std::size_t room = std::max(output_width(), before + 20) - before;
     table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
-    for (const aabb::selected_strategy& one : selected) {
-        std::istringstream reason(wrapped(one.rule, room));
-        std::vector<std::string> cells{std::string(name_of(one.kind)), to_text(one.choice), {}};
-        while (std::getline(reason, cells[2])) {
-            t.rows.push_back(cells);
-            cells[0] = cells[1] = "";
-        }
-    }
+    for (const aabb::selected_strategy& one : selected)
+        add_wrapped_row(t, {std::string(name_of(one.kind)), to_text(one.choice), one.rule}, 2, room);
     print(to_text(t) + "\n");
 }
 

@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cstdint>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,8 +11,9 @@
 
 #include "output.hpp"
 
-// Imports, so it comes last.
+// Imports, so they come last.
 #include "explain_omissions.hpp"
+#include "wrapped_row.hpp"
 
 import aabb.pipeline;
 import aabb.policy;
@@ -112,13 +112,7 @@ void print_omissions(std::span<const other_way> all) {
     }
     const std::size_t room = std::max(output_width(), others + 20) - others;
     table t{{{heads[0], false}, {heads[1], false}, {heads[2]}, {heads[3]}}, {}};
-    for (std::vector<std::string>& cells : rows) {
-        std::istringstream lines(wrapped(cells[0], room));
-        while (std::getline(lines, cells[0])) {
-            t.rows.push_back(cells);
-            std::ranges::fill(cells, "");
-        }
-    }
+    for (const std::vector<std::string>& cells : rows) add_wrapped_row(t, cells, 0, room);
     print("what is left out saves, against the fastest way of having it\n");
     print(to_text(t) + "\n");
     print(wrapped("-: none that was played has it. Below 0: having it takes less. ?: as above.") + "\n");

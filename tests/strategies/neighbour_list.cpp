@@ -45,6 +45,18 @@ box cube(float at) {
     return {{at, 0, 0}, {at + 1, 1, 1}};
 }
 
+/// Anywhere in a cube of that edge around the origin.
+/// @param random what comes next
+std::vector<vec3f> scattered(std::size_t n, float edge, std::uint64_t& random) {
+    const auto any = [&] {
+        random = random * 6364136223846793005U + 1442695040888963407U;
+        return edge * (static_cast<float>(random >> 40U) * 0x1p-24F - 0.5F);
+    };
+    std::vector<vec3f> places(n);
+    for (vec3f& place : places) place = {any(), any(), any()};
+    return places;
+}
+
 /// Whether something that begins so is left out.
 bool says(const global_stage& stage, std::string_view beginning) {
     return std::ranges::any_of(stage.left_out(),
@@ -519,14 +531,8 @@ TEST_CASE("what swings about its place gets a list that lasts, though the first 
     constexpr std::size_t n = 600;
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
     std::uint64_t random = 1;
-    const auto any = [&] {
-        random = random * 6364136223846793005U + 1442695040888963407U;
-        return static_cast<float>(random >> 40U) * 0x1p-24F - 0.5F;
-    };
-    std::vector<vec3f> homes(n);
-    for (vec3f& home : homes) home = {5 * any(), 5 * any(), 5 * any()};
-    std::vector<vec3f> phases(n);
-    for (vec3f& phase : phases) phase = {any(), any(), any()};
+    const std::vector<vec3f> homes = scattered(n, 5, random);
+    const std::vector<vec3f> phases = scattered(n, 1, random);
     int kept = 0;
     for (int frame = 0; frame < 80; ++frame) {
         std::vector<box> boxes;
@@ -545,14 +551,8 @@ TEST_CASE("what swings about its place gets a list that lasts, though the first 
 TEST_CASE("what moves by little about its place gets a shorter list without a search") {
     constexpr std::size_t n = 600;
     std::uint64_t random = 1;
-    const auto any = [&] {
-        random = random * 6364136223846793005U + 1442695040888963407U;
-        return static_cast<float>(random >> 40U) * 0x1p-24F - 0.5F;
-    };
-    std::vector<vec3f> homes(n);
-    for (vec3f& home : homes) home = {5 * any(), 5 * any(), 5 * any()};
-    std::vector<vec3f> ways(n);
-    for (vec3f& way : ways) way = {any(), any(), any()};
+    const std::vector<vec3f> homes = scattered(n, 5, random);
+    const std::vector<vec3f> ways = scattered(n, 1, random);
     // Tests of the listed pairs, frame by frame, and how often all was searched.
     struct played {
         std::vector<std::uint64_t> tests;
