@@ -48,8 +48,10 @@ contender contender_of(const aabb::composition& c, bool meshes) {
 }
 
 contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
-    const auto selected = [named, outlook = outlook_of(scene), whole = aabb::complete_composition(named)] {
-        return select_composition(whole, named, outlook);
+    const auto whole = std::make_shared<aabb::composition>(aabb::complete_composition(named));
+    const auto selected = [named, outlook = outlook_of(scene), whole]() -> const aabb::composition& {
+        select_for_scene(*whole, named, outlook);
+        return *whole;
     };
     contender who = contender_of(selected(), scene.meshes() != nullptr);
     // To select is part of making the stages, and of their time.

@@ -66,13 +66,19 @@ private:
         search  ///< of these boxes, of which nothing is kept
     };
 
+    struct wanted_list {
+        double margin;
+        bool about_kept = false;  ///< of the boxes that are kept, about which those of now move; or of those of now
+    };
+
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool rests(std::span<const box> boxes);
     [[nodiscard]] bool serves(std::span<const box> boxes);
-    [[nodiscard]] std::optional<double> next_margin(std::span<const box> boxes);
-    [[nodiscard]] std::optional<double> watched(std::span<const box> boxes, bool same_objects);
+    [[nodiscard]] std::optional<wanted_list> next_list(std::span<const box> boxes, bool same_objects);
+    [[nodiscard]] std::optional<wanted_list> watched(std::span<const box> boxes, bool same_objects);
     void pass_over(std::span<const box> boxes);
-    [[nodiscard]] std::optional<double> paying_margin(std::span<const box> boxes);
+    [[nodiscard]] std::optional<wanted_list> paying_list(std::span<const box> boxes, bool same_objects);
+    [[nodiscard]] std::optional<double> margin_about_kept(const list_plan& plan) const;
     [[nodiscard]] bool repeats_plan(std::span<const box> boxes);
     [[nodiscard]] bool serves_few_well() const;
     [[nodiscard]] double first_margin(std::span<const box> boxes);
@@ -81,8 +87,9 @@ private:
     }
     [[nodiscard]] list_outlook outlook() const { return forecast_.outlook(motion_, objects_.size(), found_); }
     void search_as_it_is(std::span<const box> boxes);
-    void keep(std::span<const box> boxes, double margin);
-    void judge_first_list(std::span<const box> boxes);
+    void keep(std::span<const box> boxes, wanted_list next);
+    void judge_first_list();
+    void learn_from_first_list();
     void keep_those_that_meet(std::span<const box> boxes);
     [[nodiscard]] bool stays_in_place() const;
     void shorten_list();
@@ -117,8 +124,10 @@ private:
     std::vector<box> grown_;        // the same with their margin
     std::vector<index_pair> list_;  // that it found, less the pairs of objects that have left
     bool is_kept_ = false;          // false where that search failed, or there was none
+    bool is_about_older_ = false;   // kept_ is older than that search
     bool is_too_long_ = false;      // so that a search takes less time
     bool is_first_ = true;          // nothing is known of the scene yet
+    bool has_learned_ = false;      // from the first list, how long others are
     double margin_ = 0;
     std::vector<double> motion_;  // since then, at most until that frame, frame by frame
     std::uint32_t age_ = 0;       // frames since
@@ -154,15 +163,16 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         search_as_it_is(boxes);
     } else if (!is_kept_ || comes_any || !rests(boxes)) {
         const bool same_objects = !comes_any && boxes.size() == kept_.size();
-        if (adapts() && is_kept_ && is_first_) judge_first_list(boxes);
+        if (adapts() && is_kept_ && is_first_) judge_first_list();
         if (is_kept_ && same_objects && serves(boxes) && !is_too_long_) {
             require_valid(boxes);
             if (came_to_rest_)
                 keep_those_that_meet(boxes);
             else if (adapts() && stays_in_place())
                 shorten_list();
-        } else if (const std::optional<double> margin = watches_ ? watched(boxes, same_objects) : next_margin(boxes)) {
-            keep(boxes, *margin);
+        } else if (const std::optional<wanted_list> next =
+                       watches_ ? watched(boxes, same_objects) : next_list(boxes, same_objects)) {
+            keep(boxes, *next);
         } else {
             search_as_it_is(boxes);
         }
@@ -244,41 +254,43 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
     return moved.margin <= margin_;
 }
 
-/// The margin of the list that is to be kept now; none where none pays. After a pause a frame is kept as it is, to see
-/// how boxes move, and one of boxes that came to rest, to be the answer until they move.
-std::optional<double> neighbour_list_stage::next_margin(std::span<const box> boxes) {
+/// The list that is to be kept now; none where none pays. After a pause a frame is kept as it is, to see how boxes
+/// move, and one of boxes that came to rest, to be the answer until they move.
+auto neighbour_list_stage::next_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
+    constexpr wanted_list of_boxes_as_they_are{.margin = 0};
     forecast_.foresee_nothing();
-    if (config_.margin) return mean_extents(*config_.margin, boxes, objects_);
+    if (config_.margin) return wanted_list{mean_extents(*config_.margin, boxes, objects_)};
     const bool comes_to_rest = std::exchange(came_to_rest_, false);
-    if (adapts() && is_first_) return first_margin(boxes);
+    if (adapts() && is_first_) return wanted_list{first_margin(boxes)};
     // Whoever comes to boxes at rest does not make them move.
-    if (!is_kept_ || comes_to_rest || (rested_ && motion_.empty())) return 0;
-    if (config_.every > 0) return motion_.empty() || config_.every == 1 ? 0 : margin_after(motion_, config_.every - 1);
+    if (!is_kept_ || comes_to_rest || (rested_ && motion_.empty())) return of_boxes_as_they_are;
+    if (config_.every > 0)
+        return motion_.empty() || config_.every == 1 ? of_boxes_as_they_are
+                                                     : wanted_list{margin_after(motion_, config_.every - 1)};
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
     // Of a plan that was so wrong, less was known than it seemed.
     watches_long_ = margin_ > 0 && planned_ > 4 * std::size_t{age_};
-    if (const std::optional<double> margin = paying_margin(boxes)) return margin;
+    if (const std::optional<wanted_list> next = paying_list(boxes, same_objects)) return next;
     // What jiggles about its place shows it only after some frames.
     watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
     if (!watches_) pause_.begin(objects_.size());
     return std::nullopt;
 }
 
-/// The margin of the list that is to be kept now, while nothing is kept but boxes of some frames before; none where
-/// none pays yet.
-std::optional<double> neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects) {
+/// The list that is to be kept now, while nothing is kept but boxes of some frames before; none where none pays yet.
+auto neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
     ++age_;
-    std::optional<double> margin;
+    std::optional<wanted_list> next;
     bool drifts = false;
     if (same_objects && std::has_single_bit(age_)) {
         const double half_way = motion_.back();
         motion_.resize(age_, std::max(half_way, motion_between(kept_, boxes, objects_).margin));
         drifts = motion_.back() > 1.8 * half_way;
-        if (!watches_long_ || age_ == longest_watch) margin = paying_margin(boxes);
+        if (!watches_long_ || age_ == longest_watch) next = paying_list(boxes, same_objects);
     }
-    watches_ = same_objects && !margin && !drifts && age_ < longest_watch;
-    if (!watches_ && !margin) pause_.begin(objects_.size());
-    return margin;
+    watches_ = same_objects && !next && !drifts && age_ < longest_watch;
+    if (!watches_ && !next) pause_.begin(objects_.size());
+    return next;
 }
 
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
@@ -288,16 +300,17 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     release(list_);
 }
 
-std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> boxes) {
+auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
     const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
     if (serves_few_well() || (lasted_as_planned && repeats_plan(boxes))) {
         ++repeated_;
-        return margin_;
+        return wanted_list{margin_};
     }
     if (age_ <= 1)
         forecast_.look_anew(boxes, objects_);
     else
         forecast_.look_anew_at_other_sizes(boxes, objects_);
+    if (!has_learned_) learn_from_first_list();
     planned_for_ = motion_.empty() ? 0 : motion_.back();
     repeated_ = 0;
     for (;;) {
@@ -309,31 +322,48 @@ std::optional<double> neighbour_list_stage::paying_margin(std::span<const box> b
             forecast_.foresee(outlook(), plan.margin) > 0 && objects_.size() >= fewest_boxes_of_long_list &&
             (pays ? plan.margin > 2 * forecast_.looked_up() : forecast_.looked_up() == 0 && cost_ < hopeless);
         if (pays && is_far_too_long(boxes, plan.margin)) return std::nullopt;
-        if (!may_be_wrong || !forecast_.look_up(boxes, objects_, plan.margin, found_, pays))
-            return pays ? std::optional(plan.margin) : std::nullopt;
+        if (may_be_wrong && forecast_.look_up(boxes, objects_, plan.margin, found_, pays)) continue;
+        if (!pays) return std::nullopt;
+        if (const std::optional<double> margin = same_objects ? margin_about_kept(plan) : std::nullopt) {
+            planned_ += age_;
+            return wanted_list{*margin, true};
+        }
+        return wanted_list{plan.margin};
     }
+}
+
+/// The margin of a list of the boxes that are kept for as long as the plan has it; none where it is by far longer,
+/// since boxes move away. Where they move about their places it is known how far they are from those that are kept, but
+/// not from those of now, which may be at one end of their ways.
+std::optional<double> neighbour_list_stage::margin_about_kept(const list_plan& plan) const {
+    constexpr std::uint32_t fewest_frames = 4;
+    constexpr double by_far = 1.1;
+    if (age_ < fewest_frames || motion_.size() != age_) return std::nullopt;
+    const double margin = margin_after(motion_, age_ + plan.frames - 1);
+    return margin <= by_far * plan.margin ? std::optional(margin) : std::nullopt;
 }
 
 /// Whether the next list is made as the last one was, since boxes moved as they did before it: of a few boxes, planning
 /// takes as long as searching them.
 bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
     constexpr double alike = 1.02;
-    return age_ == planned_ && motion_.back() <= alike * planned_for_ && planned_for_ <= alike * motion_.back() &&
-           repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
+    return !is_about_older_ && age_ == planned_ && motion_.back() <= alike * planned_for_ &&
+           planned_for_ <= alike * motion_.back() && repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
 }
 
 /// Whether the next list gets the margin of this one without a plan, since few boxes are searched in the time that a
 /// plan takes, and this one lasted.
 bool neighbour_list_stage::serves_few_well() const {
-    return is_kept_ && margin_ > 0 && !is_too_long_ && objects_.size() < fewest_boxes_of_long_list &&
-           repeated_ < longest_repetition && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
+    return is_kept_ && margin_ > 0 && !is_too_long_ && !is_about_older_ &&
+           objects_.size() < fewest_boxes_of_long_list && repeated_ < longest_repetition &&
+           age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
 }
 
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
 double neighbour_list_stage::first_margin(std::span<const box> boxes) {
     const double margin = mean_extents(extents_of_first_margin, boxes, objects_);
     found_ = 0;
-    return is_far_too_long(boxes, margin) ? 0 : margin;
+    return objects_.size() >= fewest_boxes_of_long_list && is_far_too_long(boxes, margin) ? 0 : margin;
 }
 
 void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
@@ -343,14 +373,18 @@ void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
 }
 
 /// What the list of the first frame tells, which was kept before anything was known.
-void neighbour_list_stage::judge_first_list(std::span<const box> boxes) {
+void neighbour_list_stage::judge_first_list() {
     is_first_ = false;
+    is_too_long_ = margin_ > 0 && !pays(objects_.size(), found_, list_.size());
+}
+
+/// What the length of the first list tells of others, when one is planned for the first time.
+void neighbour_list_stage::learn_from_first_list() {
+    has_learned_ = true;
     if (margin_ == 0) return;
-    forecast_.look_anew(boxes, objects_);
     forecast_.foresee(outlook(), margin_);
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     forecast_.take_as_looked_up(margin_);
-    is_too_long_ = !pays(objects_.size(), found_, list_.size());
 }
 
 /// Of a list that serves boxes which came to rest.
@@ -382,30 +416,33 @@ void neighbour_list_stage::shorten_list() {
     list_.resize(store_meeting(grown_, list_, list_.data()));
 }
 
-void neighbour_list_stage::keep(std::span<const box> boxes, double margin) {
+void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
     is_kept_ = false;
-    kept_.assign(boxes.begin(), boxes.end());
-    if (margin > 0) {
+    is_about_older_ = next.about_kept;
+    margin_ = next.margin;
+    if (!is_about_older_) {
+        kept_.assign(boxes.begin(), boxes.end());
+        motion_.clear();
+        age_ = 0;
+    }
+    if (margin_ > 0) {
         // Grown, an inverted box may be none. As they are, the search looks at them.
         require_valid(boxes);
         pause_.shorten();
         grown_.resize(boxes.size());
-        grow(boxes, margin, grown_);
+        grow(kept_, margin_, grown_);
     }
-    search_->update(margin > 0 ? std::span<const box>(grown_) : boxes);
+    search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
     const std::size_t listed_before = list_.size();
     list_.clear();
     search_->search(list_);
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
-    margin_ = margin;
     // Nobody reckons a list that repeats another: then it is to be about as long.
     const bool is_judged = forecast_.is_reckoned() || (repeated_ > 0 && list_.size() > 2 * listed_before);
     is_too_long_ = is_judged && !pays(objects_.size(), found_, list_.size());
-    motion_.clear();
     rested_ = false;
-    age_ = 0;
     is_kept_ = true;
-    from_ = margin > 0 ? source::list : source::whole;
+    from_ = margin_ > 0 ? source::list : source::whole;
 }
 
 }  // namespace

@@ -107,14 +107,15 @@ composition complete_composition(const named_strategies& named) {
     return any ? completed(named) : composition();
 }
 
-composition select_composition(composition whole, const named_strategies& named, const scene_outlook& scene) {
-    if (!named[strategy_kind::prepare]) whole[strategy_kind::prepare].name = prepare_for(scene);
-    if (!named[strategy_kind::build]) whole[strategy_kind::build].name = build_for(scene);
-    return whole;
+void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene) {
+    if (!named[strategy_kind::prepare]) completed[strategy_kind::prepare].name = prepare_for(scene);
+    if (!named[strategy_kind::build]) completed[strategy_kind::build].name = build_for(scene);
 }
 
 composition select_composition(const named_strategies& named, const scene_outlook& scene) {
-    return select_composition(complete_composition(named), named, scene);
+    composition whole = complete_composition(named);
+    select_for_scene(whole, named, scene);
+    return whole;
 }
 
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {

@@ -57,6 +57,49 @@ std::vector<vec3f> scattered(std::size_t n, float edge, std::uint64_t& random) {
     return places;
 }
 
+/// What a list of neighbours took, frame by frame.
+struct played {
+    std::vector<std::uint64_t> tests;  // of the pairs that were listed
+    int searches = 0;                  // of all boxes
+    int last_search = 0;               // the frame
+    double margin = 0;                 // of the last list
+};
+
+/// Cubes of one about scattered homes.
+/// @param displacement of a frame and a box: how far on its own way, which is up to 1/2 on each axis
+template <class Displacement>
+played played_about_homes(int frames, Displacement displacement) {
+    constexpr std::size_t n = 600;
+    std::uint64_t random = 1;
+    const std::vector<vec3f> homes = scattered(n, 5, random);
+    const std::vector<vec3f> ways = scattered(n, 1, random);
+    aabb::composition c = composed({{strategy_kind::prepare, "neighbour_list"}});
+    c[strategy_kind::sort] = {"std", {}};
+    c[strategy_kind::partition] = {"uniform_grid", {{"cell_size", "2"}}};
+    c[strategy_kind::sweep] = {"one_axis", {}};
+    const auto stage = stage_of(c, n);
+    played p;
+    for (int frame = 0; frame < frames; ++frame) {
+        std::vector<box> boxes;
+        for (std::size_t i = 0; i < n; ++i) {
+            vec3f at = homes[i];
+            for (int k = 0; k < 3; ++k) at[k] += displacement(frame, i) * ways[i][k];
+            boxes.push_back({at, at + vec3f{1, 1, 1}});
+        }
+        const work_counters before = stage->counters();
+        REQUIRE(pairs_of(*stage, boxes) == overlapping(boxes));
+        p.tests.push_back(stage->counters()[work::box_tests] - before[work::box_tests]);
+        if (stage->counters()[work::subsets] == before[work::subsets]) continue;
+        ++p.searches;
+        p.last_search = frame;
+    }
+    constexpr std::string_view grown_by = "grown by ";
+    for (const std::string& plan : stage->plans())
+        if (const std::size_t at = plan.find(grown_by); at != std::string::npos)
+            p.margin = std::stod(plan.substr(at + grown_by.size()));
+    return p;
+}
+
 /// Whether something that begins so is left out.
 bool says(const global_stage& stage, std::string_view beginning) {
     return std::ranges::any_of(stage.left_out(),
@@ -392,7 +435,7 @@ TEST_CASE("whoever comes to boxes at rest does not unsettle them for long") {
     }
 }
 
-TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go and are refused") {
+TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, are refused and swing") {
     std::size_t kept = 0;
     std::size_t rested = 0;
     REQUIRE(rc::check([&] {
@@ -417,15 +460,24 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go and
             }
         };
         for (std::uint32_t id = 0; id < n; ++id) place(id);
-        // So many frames of each: moving on, still, one elsewhere, one come or gone, one refused.
+        const auto advance = [&](const std::vector<box>& from, float times) {
+            for (std::uint32_t i = 0; i < n; ++i)
+                for (int k = 0; k < 3; ++k) {
+                    boxes[i].min[k] = from[i].min[k] + times * ways[i][k];
+                    boxes[i].max[k] = from[i].max[k] + times * ways[i][k];
+                }
+        };
+        // So many frames of each: moving on, still, one elsewhere, one come or gone, one refused, and more often all
+        // about their places.
         for (int part = 0; part < 8; ++part) {
-            const int what = *rc::gen::inRange(0, 5);
+            const int what = *rc::gen::inRange(0, 8);
             const auto id = *rc::gen::inRange<std::uint32_t>(1, n);
-            for (int frame = *rc::gen::inRange(1, 6); frame > 0; --frame) {
-                if (what == 0)
-                    for (std::uint32_t i = 0; i < n; ++i) boxes[i] = {boxes[i].min + ways[i], boxes[i].max + ways[i]};
+            const std::vector<box> places = boxes;
+            for (int frame = *rc::gen::inRange(1, what >= 5 ? 30 : 6); frame > 0; --frame) {
+                if (what == 0) advance(boxes, 1);
                 if (what == 2) place(id);
                 if (what == 3) change(id);
+                if (what >= 5) advance(places, static_cast<float>(*rc::gen::inRange(-10, 11)));
                 if (what == 4 && present[id]) {
                     std::vector<box> refused = boxes;
                     refused[id].max[0] = std::numeric_limits<float>::quiet_NaN();
@@ -549,46 +601,36 @@ TEST_CASE("what swings about its place gets a list that lasts, though the first 
 }
 
 TEST_CASE("what moves by little about its place gets a shorter list without a search") {
-    constexpr std::size_t n = 600;
-    std::uint64_t random = 1;
-    const std::vector<vec3f> homes = scattered(n, 5, random);
-    const std::vector<vec3f> ways = scattered(n, 1, random);
-    // Tests of the listed pairs, frame by frame, and how often all was searched.
-    struct played {
-        std::vector<std::uint64_t> tests;
-        std::uint64_t searches;
-    };
-    const auto play = [&](int frames, auto displacement) {
-        aabb::composition c = composed({{strategy_kind::prepare, "neighbour_list"}});
-        c[strategy_kind::sort] = {"std", {}};
-        c[strategy_kind::partition] = {"uniform_grid", {{"cell_size", "2"}}};
-        c[strategy_kind::sweep] = {"one_axis", {}};
-        const auto stage = stage_of(c, n);
-        played p{{}, 0};
-        for (int frame = 0; frame < frames; ++frame) {
-            std::vector<box> boxes;
-            for (std::size_t i = 0; i < n; ++i) {
-                vec3f at = homes[i];
-                for (int k = 0; k < 3; ++k) at[k] += displacement(frame) * ways[i][k];
-                boxes.push_back({at, at + vec3f{1, 1, 1}});
-            }
-            const work_counters before = stage->counters();
-            REQUIRE(pairs_of(*stage, boxes) == overlapping(boxes));
-            p.tests.push_back(stage->counters()[work::box_tests] - before[work::box_tests]);
-            p.searches += stage->counters()[work::subsets] > before[work::subsets] ? 1 : 0;
-        }
-        return p;
-    };
-    const auto swings = [](int frame) { return 0.01F * std::sin(0.8F * static_cast<float>(frame)); };
-    const played swinging = play(30, swings);
+    const auto swings = [](int frame, std::size_t) { return 0.01F * std::sin(0.8F * static_cast<float>(frame)); };
+    const played swinging = played_about_homes(30, swings);
     CHECK(swinging.searches == 1);
     CHECK(static_cast<double>(swinging.tests[20]) < 0.9 * static_cast<double>(swinging.tests[10]));
     // Where they turn out to go further than the shorter list allows, all is searched again.
-    CHECK(play(40, [&](int frame) { return frame < 30 ? swings(frame) : 0.05F; }).searches > 1);
+    const auto swings_and_goes = [&](int frame, std::size_t i) { return frame < 30 ? swings(frame, i) : 0.05F; };
+    CHECK(played_about_homes(40, swings_and_goes).searches > 1);
     // What drifts keeps its list.
-    const played drifting = play(24, [](int frame) { return 0.001F * static_cast<float>(frame); });
+    const auto drifts = [](int frame, std::size_t) { return 0.001F * static_cast<float>(frame); };
+    const played drifting = played_about_homes(24, drifts);
     CHECK(drifting.searches == 1);
     CHECK(drifting.tests[20] == drifting.tests[10]);
+}
+
+TEST_CASE("what swings about where it was when its list ended gets the next one of there") {
+    constexpr float farthest = 0.17F;
+    const auto swings = [](int frame, std::size_t i) {
+        const float pace = 0.5F + 0.005F * static_cast<float>(i % 100);
+        return 2 * farthest * std::sin(pace * static_cast<float>(frame));
+    };
+    const played swinging = played_about_homes(60, swings);
+    // A list of any other frame would need twice that.
+    CHECK(swinging.margin > 0.9 * farthest);
+    CHECK(swinging.margin < 1.3 * farthest);
+    CHECK(swinging.last_search < 16);
+    // What drifts gets lists of where it is, which need less.
+    const auto drifts = [](int frame, std::size_t) { return 0.02F * static_cast<float>(frame); };
+    const played drifting = played_about_homes(60, drifts);
+    CHECK(drifting.searches > 3);
+    CHECK(drifting.margin < 0.2);
 }
 
 TEST_CASE("few boxes repeat the margin of a list that lasted, unless that lists far more") {
