@@ -78,15 +78,16 @@ struct list_plan {
     double cost = std::numeric_limits<double>::infinity();  ///< a frame, over that of a search
 };
 
-/// The margin that a list needs to serve so many frames after its own: what was seen; further on as much more with each
-/// doubling of time as the last two doublings tell; and a little more. So what jiggles about its place needs little
-/// more than it moved, what drifts ever more.
+/// The margin that a list needs to serve so many frames after its own: what was seen in as many, the first of them or,
+/// where boxes speed up, the last; further on as much more with each doubling of time as the last two doublings tell;
+/// and a little more. So what jiggles about its place needs little more than it moved, what drifts ever more.
 [[nodiscard]] inline double margin_after(std::span<const double> motion, std::size_t frames) {
     constexpr double a_little_more = 1.05;
     const std::size_t seen = motion.size();
     assert(frames > 0 && seen > 0);
-    if (frames <= seen) return a_little_more * motion[frames - 1];
     const auto moved_after = [&](std::size_t frame) { return frame > 0 ? motion[frame - 1] : 0; };
+    if (frames <= seen)
+        return a_little_more * std::max(moved_after(frames), moved_after(seen) - moved_after(seen - frames));
     // In half of that time, at the pace since the middle of it.
     const auto growth = [&](std::size_t frame, double moved) {
         const std::size_t middle = frame / 2;
@@ -114,9 +115,12 @@ inline constexpr double worth_another_list = 0.95;
     return found * (1 + seen.correction * (seen.growth.at(margin) - 1));
 }
 
-/// What a frame costs that is searched as it is, and one that a list serves.
+/// What a frame costs that is searched as it is, one in which a list is made, and one that it serves.
 [[nodiscard]] inline double cost_of_search(double boxes, double pairs, const cost_model& cost) {
     return boxes * cost.search_box + pairs * cost.search_pair;
+}
+[[nodiscard]] inline double cost_of_making(double boxes, double listed, const cost_model& cost) {
+    return boxes * cost.keep_box + cost_of_search(boxes, listed, cost);
 }
 [[nodiscard]] inline double cost_of_service(double boxes, double listed, const cost_model& cost) {
     return boxes * cost.watch_box + listed * cost.test_pair;
@@ -148,12 +152,28 @@ inline constexpr double worth_another_list = 0.95;
         const double listed = pairs_listed(seen, margin);
         const double served = cost_of_service(n, listed, cost) / search;
         if (served >= std::min(best.cost, most)) break;
-        const double made = (n * cost.keep_box + cost_of_search(n, listed, cost)) / search;
-        const double each = made / static_cast<double>(frames) + served;
+        const double each = cost_of_making(n, listed, cost) / search / static_cast<double>(frames) + served;
         if (each < best.cost) best = {frames, margin, each};
     }
     if (best.cost >= worth) best.frames = 1;
     return best;
+}
+
+/// The margin of a plan that pays, longer where that costs next to nothing: boxes may move farther than they seem to.
+[[nodiscard]] inline double spare_margin(const list_outlook& seen, const list_plan& plan,
+                                         const cost_model& cost = machine_costs()) {
+    constexpr double next_to_nothing = 1.01;
+    constexpr double longer = 1.5;
+    const auto n = static_cast<double>(seen.boxes);
+    const auto cost_of = [&](double margin) {
+        const double listed = pairs_listed(seen, margin);
+        return cost_of_making(n, listed, cost) / static_cast<double>(plan.frames) + cost_of_service(n, listed, cost);
+    };
+    const double most = next_to_nothing * cost_of(plan.margin);
+    double margin = plan.margin;
+    while (margin > 0 && longer * margin <= seen.growth.longest_margin() && cost_of(longer * margin) <= most)
+        margin *= longer;
+    return margin;
 }
 
 }  // namespace aabb

@@ -250,7 +250,8 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
         motion_.push_back(motion_.empty() ? moved.margin : std::max(motion_.back(), moved.margin));
     if (!moved.any && margin_ == 0) from_ = source::whole;
     if (config_.every > 0) return age_ < config_.every;
-    came_to_rest_ = adapts() && margin_ > 0 && (!moved.any || rest_.came_to_rest(boxes, moved.margin));
+    // What is about to fall stands still for one frame.
+    came_to_rest_ = adapts() && margin_ > 0 && ((!moved.any && age_ > 1) || rest_.came_to_rest(boxes, moved.margin));
     return moved.margin <= margin_;
 }
 
@@ -318,17 +319,17 @@ auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_obj
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
+        const double margin = pays ? spare_margin(outlook(), plan) : plan.margin;
         const bool may_be_wrong =
-            forecast_.foresee(outlook(), plan.margin) > 0 && objects_.size() >= fewest_boxes_of_long_list &&
-            (pays ? plan.margin > 2 * forecast_.looked_up() : forecast_.looked_up() == 0 && cost_ < hopeless);
-        if (pays && is_far_too_long(boxes, plan.margin)) return std::nullopt;
-        if (may_be_wrong && forecast_.look_up(boxes, objects_, plan.margin, found_, pays)) continue;
+            forecast_.foresee(outlook(), margin) > 0 && objects_.size() >= fewest_boxes_of_long_list &&
+            (pays ? margin > 2 * forecast_.looked_up() : forecast_.looked_up() == 0 && cost_ < hopeless);
+        if (pays && is_far_too_long(boxes, margin)) return std::nullopt;
+        if (may_be_wrong && forecast_.look_up(boxes, objects_, margin, found_, pays)) continue;
         if (!pays) return std::nullopt;
-        if (const std::optional<double> margin = same_objects ? margin_about_kept(plan) : std::nullopt) {
-            planned_ += age_;
-            return wanted_list{*margin, true};
-        }
-        return wanted_list{plan.margin};
+        const std::optional<double> about_kept = same_objects ? margin_about_kept(plan) : std::nullopt;
+        if (!about_kept) return wanted_list{margin};
+        planned_ += age_;
+        return wanted_list{std::max(margin, *about_kept), true};
     }
 }
 

@@ -1,5 +1,6 @@
 #include <rapidcheck.h>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
@@ -283,11 +284,11 @@ TEST_CASE("boxes that came to rest are not tested again") {
     CHECK(listed->counters()[work::moves] == searched);
 }
 
-TEST_CASE("boxes that never move are not tested again") {
+TEST_CASE("boxes that never move are not tested again after two frames") {
     const auto listed = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 1000);
     std::vector<box> boxes;
     for (int i = 0; i < 1000; ++i) boxes.push_back(cube(0.8F * static_cast<float>(i)));
-    for (int frame = 0; frame < 2; ++frame) CHECK(pairs_of(*listed, boxes).size() == 999);
+    for (int frame = 0; frame <= 2; ++frame) CHECK(pairs_of(*listed, boxes).size() == 999);
     const work_counters before = listed->counters();
     for (int frame = 0; frame < 5; ++frame) CHECK(pairs_of(*listed, boxes).size() == 999);
     CHECK(listed->counters()[work::box_tests] == before[work::box_tests]);
@@ -633,6 +634,33 @@ TEST_CASE("what swings about where it was when its list ended gets the next one 
     CHECK(drifting.margin < 0.2);
 }
 
+TEST_CASE("boxes that stand still for one frame keep their first list") {
+    const auto falls = [](int frame, std::size_t) { return 0.001F * static_cast<float>(std::max(frame - 1, 0)); };
+    CHECK(played_about_homes(40, falls).searches == 1);
+}
+
+TEST_CASE("a list gets a longer margin than was planned where that lists next to no more") {
+    std::array<box, 16> some;
+    for (std::size_t i = 0; i < some.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            some[i].min[k] = static_cast<float>(i);
+            some[i].max[k] = static_cast<float>(i) + 1;
+        }
+    const std::vector<double> motion{0.001, 0.002, 0.003, 0.004};
+    // By the number of pairs that overlap: as there are few or many of them, few or many come into reach.
+    for (const std::size_t pairs : {0, 30'000}) {
+        const list_outlook seen{motion, 1000, pairs, growth_of_pairs(some), 1};
+        const list_plan plan = plan_list(seen);
+        REQUIRE(plan.frames > 1);
+        const double margin = spare_margin(seen, plan);
+        CHECK(margin >= plan.margin);
+        CHECK(margin <= seen.growth.longest_margin());
+        CHECK((margin > 1.4 * plan.margin) == (pairs == 0));
+    }
+    const list_outlook resting{std::span(motion).first(0), 1000, 0, growth_of_pairs(some), 1};
+    CHECK(spare_margin(resting, {2, 0, 0.5}) == 0);
+}
+
 TEST_CASE("few boxes repeat the margin of a list that lasted, unless that lists far more") {
     const auto placed = [](std::size_t n, float spacing, int frame) {
         std::vector<box> boxes;
@@ -702,4 +730,6 @@ TEST_CASE("the margin goes on as the last doublings of time did") {
     CHECK(margin_after(drift, 12) == Catch::Approx(12 * 1.05));
     CHECK(margin_after(jiggle, 1024) == Catch::Approx(2 * 1.05).epsilon(0.001));
     CHECK(margin_after(std::vector<double>{3.0}, 4) == Catch::Approx(12 * 1.05));
+    const std::vector<double> speeding_up{1, 4, 9, 16, 25};
+    CHECK(margin_after(speeding_up, 2) == Catch::Approx((25 - 9) * 1.05));
 }
