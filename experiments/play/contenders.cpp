@@ -48,19 +48,19 @@ contender contender_of(const aabb::composition& c, bool meshes) {
 }
 
 contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
-    const auto whole = std::make_shared<aabb::composition>(aabb::complete_composition(named));
-    const auto selected = [named, outlook = outlook_of(scene), whole]() -> const aabb::composition& {
-        select_for_scene(*whole, named, outlook);
-        return *whole;
+    aabb::composition whole = aabb::complete_composition(named);
+    const auto selected = [named, outlook = outlook_of(scene)](aabb::composition& c) -> const aabb::composition& {
+        select_for_scene(c, named, outlook);
+        return c;
     };
-    contender who = contender_of(selected(), scene.meshes() != nullptr);
+    contender who = contender_of(selected(whole), scene.meshes() != nullptr);
     // To select is part of making the stages, and of their time.
-    who.make_global = [selected](aabb::instrumentation counted) {
-        return aabb::compose_global_search(selected(), counted);
+    who.make_global = [selected, whole](aabb::instrumentation counted) mutable {
+        return aabb::compose_global_search(selected(whole), counted);
     };
     if (who.make_local)
-        who.make_local = [selected](aabb::instrumentation counted) {
-            return aabb::compose_local_detection(selected(), counted);
+        who.make_local = [selected, whole](aabb::instrumentation counted) mutable {
+            return aabb::compose_local_detection(selected(whole), counted);
         };
     // It has one name in all scenes, whatever is selected.
     who.name = {};

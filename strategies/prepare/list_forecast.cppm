@@ -86,6 +86,11 @@ public:
                !pays(objects.size(), overlapping, static_cast<std::size_t>(reach.in_reach / 2));
     }
 
+    /// Whether a rough count finds any pair in reach of that margin.
+    [[nodiscard]] bool any_in_reach(std::span<const box> boxes, const membership& objects, double margin) {
+        return rough_reach_of(boxes, objects, drawn_, margin).counted > 0;
+    }
+
     /// Boxes that were drawn for samples, for whoever draws others (`drawn_id`).
     [[nodiscard]] std::uint32_t& drawn() noexcept { return drawn_; }
 

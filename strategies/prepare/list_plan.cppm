@@ -61,7 +61,7 @@ private:
 
 /// What is known of a scene when the next list of neighbours is planned.
 struct list_outlook {
-    /// By how much boxes moved relative to each other since the last search, at most until that frame, frame by frame;
+    /// By how much boxes moved relative to each other since they were kept, at most until that frame, frame by frame;
     /// see `relative_motion`.
     std::span<const double> motion;
     std::size_t boxes = 0;
@@ -115,15 +115,17 @@ inline constexpr double worth_another_list = 0.95;
     return found * (1 + seen.correction * (seen.growth.at(margin) - 1));
 }
 
-/// What a frame costs that is searched as it is, one in which a list is made, and one that it serves.
+/// What a frame costs that is searched as it is, and one that a list serves.
 [[nodiscard]] inline double cost_of_search(double boxes, double pairs, const cost_model& cost) {
     return boxes * cost.search_box + pairs * cost.search_pair;
 }
-[[nodiscard]] inline double cost_of_making(double boxes, double listed, const cost_model& cost) {
-    return boxes * cost.keep_box + cost_of_search(boxes, listed, cost);
-}
 [[nodiscard]] inline double cost_of_service(double boxes, double listed, const cost_model& cost) {
     return boxes * cost.watch_box + listed * cost.test_pair;
+}
+/// The mean of as many frames, in the first of which the list is made.
+[[nodiscard]] inline double cost_of_list(double boxes, double listed, std::size_t frames, const cost_model& cost) {
+    const double made = boxes * cost.keep_box + cost_of_search(boxes, listed, cost);
+    return made / static_cast<double>(frames) + cost_of_service(boxes, listed, cost);
 }
 
 /// Whether a frame that a list of so many pairs serves costs less than one that is searched.
@@ -150,9 +152,8 @@ inline constexpr double worth_another_list = 0.95;
         const double margin = margin_after(seen.motion, frames - 1);
         if (!(margin <= seen.growth.longest_margin())) break;
         const double listed = pairs_listed(seen, margin);
-        const double served = cost_of_service(n, listed, cost) / search;
-        if (served >= std::min(best.cost, most)) break;
-        const double each = cost_of_making(n, listed, cost) / search / static_cast<double>(frames) + served;
+        if (cost_of_service(n, listed, cost) / search >= std::min(best.cost, most)) break;
+        const double each = cost_of_list(n, listed, frames, cost) / search;
         if (each < best.cost) best = {frames, margin, each};
     }
     if (best.cost >= worth) best.frames = 1;
@@ -160,18 +161,17 @@ inline constexpr double worth_another_list = 0.95;
 }
 
 /// The margin of a plan that pays, longer where that costs next to nothing: boxes may move farther than they seem to.
+/// Where more margin is not known to list more, nothing is known of what it lists.
 [[nodiscard]] inline double spare_margin(const list_outlook& seen, const list_plan& plan,
                                          const cost_model& cost = machine_costs()) {
     constexpr double next_to_nothing = 1.01;
     constexpr double longer = 1.5;
     const auto n = static_cast<double>(seen.boxes);
-    const auto cost_of = [&](double margin) {
-        const double listed = pairs_listed(seen, margin);
-        return cost_of_making(n, listed, cost) / static_cast<double>(plan.frames) + cost_of_service(n, listed, cost);
-    };
+    const auto cost_of = [&](double margin) { return cost_of_list(n, pairs_listed(seen, margin), plan.frames, cost); };
     const double most = next_to_nothing * cost_of(plan.margin);
     double margin = plan.margin;
-    while (margin > 0 && longer * margin <= seen.growth.longest_margin() && cost_of(longer * margin) <= most)
+    while (longer * margin <= seen.growth.longest_margin() &&
+           seen.growth.at(longer * margin) > seen.growth.at(margin) && cost_of(longer * margin) <= most)
         margin *= longer;
     return margin;
 }

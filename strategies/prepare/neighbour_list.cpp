@@ -68,7 +68,7 @@ private:
 
     struct wanted_list {
         double margin;
-        bool about_kept = false;  ///< of the boxes that are kept, about which those of now move; or of those of now
+        bool about_kept = false;  ///< about the boxes in `kept_`, not those of this frame
     };
 
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
@@ -92,7 +92,7 @@ private:
     void learn_from_first_list();
     void keep_those_that_meet(std::span<const box> boxes);
     [[nodiscard]] bool stays_in_place() const;
-    void shorten_list();
+    void shorten_list(double margin);
 
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, and then left alone.
     static constexpr std::uint32_t longest_watch = 8;
@@ -111,6 +111,8 @@ private:
     static constexpr double in_place = 1.3;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
+    /// So many times as long where hardly any boxes come into reach by that.
+    static constexpr double longer_where_sparse = 3;
 
     std::unique_ptr<global_stage> search_;
     neighbour_list_prepare::config config_;
@@ -120,23 +122,25 @@ private:
     frame_state frame_;
     std::span<const box> boxes_;
     source from_ = source::search;
-    std::vector<box> kept_;         // boxes of the last search that was kept
-    std::vector<box> grown_;        // the same with their margin
-    std::vector<index_pair> list_;  // that it found, less the pairs of objects that have left
-    bool is_kept_ = false;          // false where that search failed, or there was none
-    bool is_about_older_ = false;   // kept_ is older than that search
-    bool is_too_long_ = false;      // so that a search takes less time
-    bool is_first_ = true;          // nothing is known of the scene yet
-    bool has_learned_ = false;      // from the first list, how long others are
+    std::vector<box> kept_;          // boxes that the list is about
+    std::vector<box> grown_;         // the same with their margin
+    std::vector<index_pair> list_;   // that it found, less the pairs of objects that have left
+    bool is_kept_ = false;           // false where that search failed, or there was none
+    bool is_about_earlier_ = false;  // frame than the one in which it was made
+    bool is_too_long_ = false;       // so that a search takes less time
+    bool is_first_ = true;           // nothing is known of the scene yet
+    bool seems_sparse_ = false;      // to who looked at some boxes, before the first list was made
+    bool has_learned_ = false;       // from the first list, how long others are
     double margin_ = 0;
-    std::vector<double> motion_;  // since then, at most until that frame, frame by frame
-    std::uint32_t age_ = 0;       // frames since
-    std::size_t planned_ = 0;     // frames for which the list was made; 0 where nobody reckoned
+    std::vector<double> motion_;  // since boxes were kept, at most until that frame, frame by frame
+    std::uint32_t age_ = 0;       // frames since then
+    std::size_t planned_ = 0;     // frames since then until which the list is to serve; 0 where nobody reckoned
     double planned_for_ = 0;      // the farthest that boxes had moved when that was reckoned
     unsigned repeated_ = 0;       // lists made since by the same plan
     std::size_t found_ = 0;       // pairs of the frame before
     list_forecast forecast_;
     rest_watch rest_;
+    bool is_as_kept_ = false;  // in the frame before
     bool came_to_rest_ = false;
     bool rested_ = false;        // since the list was kept
     double cost_ = 0;            // of the cheapest list that was thought of last, over that of a search
@@ -169,7 +173,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
             if (came_to_rest_)
                 keep_those_that_meet(boxes);
             else if (adapts() && stays_in_place())
-                shorten_list();
+                shorten_list(in_place * motion_.back());
         } else if (const std::optional<wanted_list> next =
                        watches_ ? watched(boxes, same_objects) : next_list(boxes, same_objects)) {
             keep(boxes, *next);
@@ -211,7 +215,8 @@ std::vector<part_bytes> neighbour_list_stage::bytes() const {
 std::vector<std::string> neighbour_list_stage::plans() const {
     std::vector<std::string> all = search_->plans();
     if (from_ == source::list)
-        all.push_back("a list of " + std::to_string(list_.size()) + " pairs, of boxes grown by " +
+        all.push_back("a list of " + std::to_string(list_.size()) + " pairs, of boxes " +
+                      (is_about_earlier_ ? "as they were before, " : "") + "grown by " +
                       shortest(static_cast<float>(margin_)) + " on every side");
     else if (from_ == source::whole)
         all.emplace_back("the pairs of a frame since which nothing has moved");
@@ -250,8 +255,9 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
         motion_.push_back(motion_.empty() ? moved.margin : std::max(motion_.back(), moved.margin));
     if (!moved.any && margin_ == 0) from_ = source::whole;
     if (config_.every > 0) return age_ < config_.every;
-    // What is about to fall stands still for one frame.
-    came_to_rest_ = adapts() && margin_ > 0 && ((!moved.any && age_ > 1) || rest_.came_to_rest(boxes, moved.margin));
+    // For one frame stands still what is about to fall, and what swings may be back where it was kept.
+    const bool stood = std::exchange(is_as_kept_, !moved.any);
+    came_to_rest_ = adapts() && margin_ > 0 && ((stood && is_as_kept_) || rest_.came_to_rest(boxes, moved.margin));
     return moved.margin <= margin_;
 }
 
@@ -303,15 +309,16 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
 
 auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
     const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
-    if (serves_few_well() || (lasted_as_planned && repeats_plan(boxes))) {
-        ++repeated_;
-        return wanted_list{margin_};
+    // A list about an earlier frame ended because boxes went farther from there: from here they may go twice as far.
+    if (!is_about_earlier_ && (serves_few_well() || (lasted_as_planned && repeats_plan(boxes)))) {
+        const bool is_sparse = ++repeated_ == 1 && !has_learned_ && list_.size() < objects_.size() / 4;
+        return wanted_list{is_sparse ? longer_where_sparse * margin_ : margin_};
     }
     if (age_ <= 1)
         forecast_.look_anew(boxes, objects_);
     else
         forecast_.look_anew_at_other_sizes(boxes, objects_);
-    if (!has_learned_) learn_from_first_list();
+    if (!has_learned_ && margin_ > 0) learn_from_first_list();
     planned_for_ = motion_.empty() ? 0 : motion_.back();
     repeated_ = 0;
     for (;;) {
@@ -319,52 +326,56 @@ auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_obj
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
-        const double margin = pays ? spare_margin(outlook(), plan) : plan.margin;
+        const std::optional<double> about_kept = pays && same_objects ? margin_about_kept(plan) : std::nullopt;
+        const double margin = pays ? std::max(spare_margin(outlook(), plan), about_kept.value_or(0)) : plan.margin;
         const bool may_be_wrong =
             forecast_.foresee(outlook(), margin) > 0 && objects_.size() >= fewest_boxes_of_long_list &&
             (pays ? margin > 2 * forecast_.looked_up() : forecast_.looked_up() == 0 && cost_ < hopeless);
         if (pays && is_far_too_long(boxes, margin)) return std::nullopt;
         if (may_be_wrong && forecast_.look_up(boxes, objects_, margin, found_, pays)) continue;
         if (!pays) return std::nullopt;
-        const std::optional<double> about_kept = same_objects ? margin_about_kept(plan) : std::nullopt;
-        if (!about_kept) return wanted_list{margin};
-        planned_ += age_;
-        return wanted_list{std::max(margin, *about_kept), true};
+        if (about_kept) planned_ += age_;
+        return wanted_list{margin, about_kept.has_value()};
     }
 }
 
-/// The margin of a list of the boxes that are kept for as long as the plan has it; none where it is by far longer,
-/// since boxes move away. Where they move about their places it is known how far they are from those that are kept, but
-/// not from those of now, which may be at one end of their ways.
+/// The margin of a list about the boxes that are kept, for as long as the plan has it; none where they move on. Where
+/// they move about their places, it is known how far they go from those that are kept, but not from those of this
+/// frame, which may be at one end of their ways.
 std::optional<double> neighbour_list_stage::margin_about_kept(const list_plan& plan) const {
     constexpr std::uint32_t fewest_frames = 4;
-    constexpr double by_far = 1.1;
-    if (age_ < fewest_frames || motion_.size() != age_) return std::nullopt;
+    constexpr double a_little_longer = 1.1;
+    // A random walk gets 1.4 times as far in twice the time, a drift 2 times.
+    constexpr double moves_on = 1.7;
+    if (age_ < fewest_frames || motion_.size() != age_ || motion_.back() >= moves_on * motion_[age_ / 2 - 1])
+        return std::nullopt;
     const double margin = margin_after(motion_, age_ + plan.frames - 1);
-    return margin <= by_far * plan.margin ? std::optional(margin) : std::nullopt;
+    return margin <= a_little_longer * plan.margin ? std::optional(margin) : std::nullopt;
 }
 
 /// Whether the next list is made as the last one was, since boxes moved as they did before it: of a few boxes, planning
 /// takes as long as searching them.
 bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
     constexpr double alike = 1.02;
-    return !is_about_older_ && age_ == planned_ && motion_.back() <= alike * planned_for_ &&
-           planned_for_ <= alike * motion_.back() && repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
+    return age_ == planned_ && motion_.back() <= alike * planned_for_ && planned_for_ <= alike * motion_.back() &&
+           repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
 }
 
 /// Whether the next list gets the margin of this one without a plan, since few boxes are searched in the time that a
 /// plan takes, and this one lasted.
 bool neighbour_list_stage::serves_few_well() const {
-    return is_kept_ && margin_ > 0 && !is_too_long_ && !is_about_older_ &&
-           objects_.size() < fewest_boxes_of_long_list && repeated_ < longest_repetition &&
-           age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
+    return is_kept_ && margin_ > 0 && !is_too_long_ && objects_.size() < fewest_boxes_of_long_list &&
+           repeated_ < longest_repetition && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
 }
 
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
 double neighbour_list_stage::first_margin(std::span<const box> boxes) {
     const double margin = mean_extents(extents_of_first_margin, boxes, objects_);
     found_ = 0;
-    return objects_.size() >= fewest_boxes_of_long_list && is_far_too_long(boxes, margin) ? 0 : margin;
+    if (objects_.size() < fewest_boxes_of_long_list) return margin;
+    seems_sparse_ = !forecast_.any_in_reach(boxes, objects_, longer_where_sparse * margin);
+    if (seems_sparse_) return longer_where_sparse * margin;
+    return is_far_too_long(boxes, margin) ? 0 : margin;
 }
 
 void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
@@ -376,13 +387,14 @@ void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
 /// What the list of the first frame tells, which was kept before anything was known.
 void neighbour_list_stage::judge_first_list() {
     is_first_ = false;
-    is_too_long_ = margin_ > 0 && !pays(objects_.size(), found_, list_.size());
+    if (margin_ == 0) return;
+    if (seems_sparse_ && list_.size() > objects_.size()) shorten_list(margin_ / longer_where_sparse);
+    is_too_long_ = !pays(objects_.size(), found_, list_.size());
 }
 
 /// What the length of the first list tells of others, when one is planned for the first time.
 void neighbour_list_stage::learn_from_first_list() {
     has_learned_ = true;
-    if (margin_ == 0) return;
     forecast_.foresee(outlook(), margin_);
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     forecast_.take_as_looked_up(margin_);
@@ -394,6 +406,7 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
     list_.resize(store_meeting(boxes, list_, list_.data()));
     kept_.assign(boxes.begin(), boxes.end());
     margin_ = 0;
+    is_about_earlier_ = false;
     motion_.clear();
     came_to_rest_ = false;
     rested_ = true;
@@ -401,17 +414,18 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
     from_ = source::whole;
 }
 
-/// Whether boxes move about where they were when the list was made, and by far less than it allows; ever less often
-/// looked at.
+/// Whether boxes move about where they were kept, and by so much less than the list allows that it holds many in vain;
+/// ever less often looked at.
 bool neighbour_list_stage::stays_in_place() const {
     constexpr std::uint32_t first_look = 16;
     if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return false;
-    return motion_.back() < 1.2 * motion_[age_ / 2 - 1] && in_place * motion_.back() < 0.7 * margin_;
+    return list_.size() > objects_.size() / 4 && motion_.back() < 1.2 * motion_[age_ / 2 - 1] &&
+           in_place * motion_.back() < 0.7 * margin_;
 }
 
 /// The list that a smaller margin would have made, without a search.
-void neighbour_list_stage::shorten_list() {
-    margin_ = in_place * motion_.back();
+void neighbour_list_stage::shorten_list(double margin) {
+    margin_ = margin;
     grow(kept_, margin_, grown_);
     if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
     list_.resize(store_meeting(grown_, list_, list_.data()));
@@ -419,9 +433,10 @@ void neighbour_list_stage::shorten_list() {
 
 void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
     is_kept_ = false;
-    is_about_older_ = next.about_kept;
+    is_about_earlier_ = next.about_kept;
     margin_ = next.margin;
-    if (!is_about_older_) {
+    is_as_kept_ = false;
+    if (!is_about_earlier_) {
         kept_.assign(boxes.begin(), boxes.end());
         motion_.clear();
         age_ = 0;

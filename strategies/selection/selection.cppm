@@ -40,8 +40,8 @@ struct selected_strategy {
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] composition select_composition(const named_strategies& named, const scene_outlook& scene);
 
-/// The same in two steps: what does not depend on the scene, which may take ten microseconds, and what does, in place
-/// and so in a tenth of one.
+/// The same in two steps. The first does not depend on the scene, and may take ten microseconds; the second changes a
+/// composition in place, and takes a tenth of one. It may have been selected for another scene before.
 [[nodiscard]] composition complete_composition(const named_strategies& named);
 void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene);
 
