@@ -16,6 +16,7 @@ import :labels;
 import aabblab.calibrate;
 import aabblab.measures;
 import aabblab.numbers;
+import aabblab.progress;
 import aabblab.scenes;
 import aabblab.statistics;
 import aabblab.tables;
@@ -87,7 +88,11 @@ double predicted(const std::vector<estimate>& costs, const scene_measures& m) {
 
 std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
     std::vector<line_model> all;
-    for (const std::string& label : labels_of(atlas)) {
+    const std::vector<std::string> labels = labels_of(atlas);
+    progress shown("fitting costs", labels.size());
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        const std::string& label = labels[i];
+        shown.at(i);
         const std::vector<observation> seen = seen_by(atlas, label, false);
         if (seen.size() <= terms.size()) continue;
         line_model m{label, fit_costs(seen), {}, {}};

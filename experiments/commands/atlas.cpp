@@ -40,8 +40,12 @@ int run(const atlas_request& request) {
     if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + folder.string());
     for (const std::string& missing : unfinished_parts(folder)) note(missing);
     write_atlas(folder, atlas);
-    print(to_text(winners_table(atlas), output_width()) + "\n");
-    print(to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
+    print(
+        "Who is the fastest in how many scenes, of a frame after the first; shown where\n"
+        "the second is slower beyond noise, and as fast where it may not be:\n" +
+        to_text(winners_table(atlas), output_width()) + "\n");
+    print("In times as long as the fastest of each scene, of the same:\n" +
+          to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
         print(wrapped(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source)) + "\n");
     print("\nMaps, borders and every ratio are in " + visible((folder / "atlas.html").string()) + "\n");

@@ -142,15 +142,19 @@ bool explain_scene(const experiment& e, const scene_choice& scene) {
                           grouped(frames)));
     explain_unused(e, scene);
     bool same = true;
-    for (const aabb::named_strategies& named : e.automatic) same &= explain_automatic(scene, named);
-    for (const contender& who : contenders_for(e, scene))
+    for (const aabb::named_strategies& named : e.automatic) {
+        same &= explain_automatic(scene, named);
+        print("\n");
+    }
+    const std::vector<contender> all = contenders_for(e, scene);
+    for (const contender& who : all)
         if (!who.name.is_automatic()) explain_contender(scene, who);
-    print("\n");
+    if (all.size() > e.automatic.size()) print("\n");
     return same;
 }
 
 void explain_costs() {
-    print("strategies plan by " + costs_in_force() + "\n\n");
+    print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
 }
 
 int explain(const std::vector<std::string>& what) {

@@ -7,6 +7,7 @@
 
 #include "output.hpp"
 
+import aabb.base;
 import aabb.costs;
 import aabblab.configs;
 import aabblab.machine;
@@ -41,7 +42,13 @@ void use_kept_costs() {
     const std::filesystem::path file = kept_costs_file();
     std::error_code ignored;  // what cannot be looked at is not there
     if (file.empty() || !std::filesystem::exists(file, ignored)) return;
-    const kept_costs kept = read_costs(file);
+    const kept_costs kept = [&] {
+        try {
+            return read_costs(file);
+        } catch (const aabb::input_error& e) {
+            throw aabb::input_error(std::string(e.what()) + "; aabblab calibrate --reset removes it");
+        }
+    }();
     const kept_costs here = costs_of(this_machine().processor, {});
     if (!kept.serve(here)) {
         note(file.string() + " is of aabblab " + kept.version + " with " + kept.instructions + " on " + kept.processor +

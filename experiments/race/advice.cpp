@@ -10,7 +10,9 @@ module;
 
 module aabblab.race;
 
+import aabb.registry;
 import aabblab.numbers;
+import aabblab.results;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -62,6 +64,15 @@ std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
     return crossing{1 - *begin / *steady, *begin < 0};
 }
 
+/// As the commands take it; what they take by themselves is not named.
+std::string options_of(const contender_name& name) {
+    if (name.is_automatic()) return "";
+    std::string text;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (!name[kind].empty()) text += fmt::format(" --{} {}", name_of(kind), name[kind]);
+    return "To name it:" + (name.engine.empty() ? text : " --engine " + name.engine);
+}
+
 /// From how many frames on, or below how many, somebody else is faster than the winner: the first to overtake it.
 std::vector<std::string> what_would_change_it(const race_result& race) {
     if (race.frames < 2 || race.finalists.size() < 2) return {};
@@ -83,26 +94,27 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
             with_more = &other;
         }
     }
-    std::vector<std::string> sentences;
+    std::vector<std::string> parts;
     if (with_fewer)
-        sentences.push_back(
-            fmt::format("With fewer than about {:.0f} frames it would be {}.", below, with_fewer->name));
+        parts.push_back(fmt::format("with fewer than about {:.0f} frames it would be {}", below, with_fewer->name));
     if (with_more)
-        sentences.push_back(fmt::format("With more than about {:.0f} frames it would be {}.", above, with_more->name));
-    if (sentences.empty()) sentences.emplace_back("No other is shown to be faster over fewer frames, nor over more.");
-    return sentences;
+        parts.push_back(fmt::format("with more than about {:.0f} frames it would be {}", above, with_more->name));
+    if (parts.empty()) parts.emplace_back("no other is shown to be faster over fewer frames, nor over more");
+    return parts;
 }
 
 }  // namespace
 
 std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
-    std::vector<std::string> sentences{
-        fmt::format("Use {}: {:.4g} ms for {}.", winner.name, winner.last->whole_ms(), counted(race.frames, "frame"))};
+    std::string use =
+        fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), counted(race.frames, "frame"));
     if (race.finalists.size() > 1)
-        sentences.push_back(fmt::format("The next, {}, {}.", race.finalists[1].name, beside_winner(race.finalists[1])));
+        use += fmt::format("; the next, {}, {}", race.finalists[1].name, beside_winner(race.finalists[1]));
+    for (const std::string& part : what_would_change_it(race)) use += "; " + part;
+    std::vector<std::string> sentences{use + "."};
     if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
-    for (std::string& sentence : what_would_change_it(race)) sentences.push_back(std::move(sentence));
+    if (std::string options = options_of(winner.who.name); !options.empty()) sentences.push_back(std::move(options));
     for (const racer& one : race.wrong)
         sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", one.name));
     if (race.held_against_cgal) return sentences;

@@ -3,6 +3,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -64,11 +65,16 @@ std::string rule_of_build(const scene_outlook& scene) {
                : "queries are to be " + queries + ", and from " + repaid + " on they repay a better tree";
 }
 
-/// What is named among what is fastest by itself; where that is refused, among what usually goes with what is named,
-/// and then among the first that is not.
+/// What is named among what is fastest by itself, or where that is a sort, without a partition: what lies in columns is
+/// sorted anew in each frame, which gains by `bucket` only. Where that is refused, among what usually goes with what is
+/// named, and then among the first that is not.
 composition completed(const named_strategies& named) {
     const composition usual(named);
     composition whole;
+    composition fastest;
+    if (const std::optional<strategy_choice>& sort = named[strategy_kind::sort];
+        sort && sort->name != fastest[strategy_kind::sort].name)
+        fastest[strategy_kind::partition] = {"none", {}};
     for (const stage of : {stage::global_search, stage::local_detection}) {
         const auto take = [&](const composition& others) {
             for (const strategy_kind kind : strategy_kinds)
@@ -76,7 +82,7 @@ composition completed(const named_strategies& named) {
                     whole[kind] = named[kind].value_or(others[kind]);
             return refusal_of(whole, of).empty();
         };
-        if (take(composition()) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
+        if (take(fastest) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
         // What is named is refused whatever else there is.
         take(usual);
     }

@@ -235,6 +235,7 @@ TEST_CASE("A malformed file of costs stops every command but calibrate, which re
     CHECK(is_one_sentence(listed.err));
     CHECK(listed.err.find("costs.toml:17: unknown key of [costs] 'cut_tets'; did you mean 'cut_test'?") !=
           std::string::npos);
+    CHECK(listed.err.find("; aabblab calibrate --reset removes it") != std::string::npos);
     CHECK(wrong.run({"--version"}).status == 0);
     const program_result removed = wrong.run({"calibrate", "--reset"});
     CHECK(removed.status == 0);

@@ -32,6 +32,7 @@ import aabb.registry;
 import aabb.validation;
 import aabblab.play;
 import aabblab.race;
+import aabblab.results;
 import aabblab.scenes;
 
 using aabblab::racer;
@@ -269,26 +270,46 @@ TEST_CASE("Order and ratio of finalists are of what they took in the same repeat
 }
 
 TEST_CASE("What would change the answer of a race is told where the repeats show it") {
-    const std::string nobody = "No other is shown to be faster over fewer frames, nor over more.";
-    const auto of = [](std::vector<racer> finalists, std::size_t frames = 100) {
-        return aabblab::advice_of(ended(std::move(finalists), frames));
+    const std::string nobody = "; no other is shown to be faster over fewer frames, nor over more.";
+    // The sentence that says what to use ends so.
+    const auto ends_so = [](std::vector<racer> finalists, const std::string& end, std::size_t frames = 100) {
+        return aabblab::advice_of(ended(std::move(finalists), frames)).front().ends_with(end);
     };
     const racer winner = finished("winner", 10, 1);
     // Over n frames it takes 2 n, and the winner 10 + n.
-    CHECK(holds(of({winner, finished("quick", 0, 2)}), "With fewer than about 10 frames it would be quick."));
-    CHECK(holds(of({winner, finished("quick", 0, 2), finished("quicker", 5, 1.2)}),
-                "With fewer than about 25 frames it would be quicker."));
-    CHECK(holds(of({winner, finished("patient", 160, 0.5)}), "With more than about 300 frames it would be patient."));
-    CHECK(holds(of({winner, finished("patient", 160, 0.5), finished("sooner", 130, 0.2)}),
-                "With more than about 150 frames it would be sooner."));
-    CHECK(holds(of({winner, finished("slower", 20, 2)}), nobody));
+    CHECK(ends_so({winner, finished("quick", 0, 2)}, "; with fewer than about 10 frames it would be quick."));
+    CHECK(ends_so({winner, finished("quick", 0, 2), finished("quicker", 5, 1.2)},
+                  "; with fewer than about 25 frames it would be quicker."));
+    CHECK(ends_so({winner, finished("patient", 160, 0.5)}, "; with more than about 300 frames it would be patient."));
+    CHECK(ends_so({winner, finished("patient", 160, 0.5), finished("sooner", 130, 0.2)},
+                  "; with more than about 150 frames it would be sooner."));
+    CHECK(ends_so({winner, finished("slower", 20, 2)}, nobody));
     // It may be slower a frame, or not.
-    CHECK(holds(of({winner, finished("noisy", 5, 1.07, true)}), nobody));
-    for (const auto& sentences : {of({winner, finished("quick", 0, 2)}, 1), of({winner})})
-        for (const std::string& one : sentences) {
-            CHECK(one.find("frames it would be") == std::string::npos);
-            CHECK(one != nobody);
-        }
+    CHECK(ends_so({winner, finished("noisy", 5, 1.07, true)}, nobody));
+    // Over one frame, or alone.
+    for (const std::string& use : {aabblab::advice_of(ended({winner, finished("quick", 0, 2)}, 1)).front(),
+                                   aabblab::advice_of(ended({winner})).front()}) {
+        CHECK(use.find("frames it would be") == std::string::npos);
+        CHECK(!use.ends_with(nobody));
+    }
+}
+
+TEST_CASE("The answer of a race can be named") {
+    const auto named = [](const aabblab::contender_name& name) {
+        racer winner = finished("winner", 10, 1);
+        winner.who.name = name;
+        return aabblab::advice_of(ended({winner})).back();
+    };
+    aabblab::contender_name ours;
+    ours[aabb::strategy_kind::prepare] = "none";
+    ours[aabb::strategy_kind::partition] = "axial_cut:axes=3";
+    CHECK(named(ours) == "To name it: --prepare none --partition axial_cut:axes=3");
+    aabblab::contender_name engine = ours;
+    engine.engine = "embree";
+    CHECK(named(engine) == "To name it: --engine embree");
+    aabblab::contender_name automatic;
+    automatic.engine = "auto";
+    CHECK(named(automatic).starts_with("Use winner"));
 }
 
 TEST_CASE("How auto did in a race is told as far as the repeats tell") {
