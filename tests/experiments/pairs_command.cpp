@@ -64,7 +64,7 @@ TEST_CASE("pairs tells people what it found") {
     const program_result result = run_program({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
     REQUIRE(result.status == 0);
     REQUIRE(result.out.find("2 objects, 4 frames") != std::string::npos);
-    REQUIRE(result.out.find("insertion + columns + simd") != std::string::npos);
+    REQUIRE(result.out.find("insertion + none + simd") != std::string::npos);
     REQUIRE(run_program({"pairs", recording_in(folder, "0")}).status == 0);
 }
 
