@@ -31,14 +31,15 @@ public:
 
     /// A frame of it. Where even a few boxes move too far for any list, all do, and are not looked at for the rest of
     /// the eight frames.
+    /// @param worth what a list must cost less than, over a search in every frame, to end the pause
     /// @returns whether all eight were in vain; others are looked at next
-    bool pass(std::span<const box> boxes, const membership& objects, std::size_t found, list_forecast& forecast) {
+    bool pass(std::span<const box> boxes, const membership& objects, std::size_t found, list_forecast& forecast,
+              double worth) {
         --left_;
         const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
-            const list_plan plan =
-                plan_list(forecast.outlook(glimpse_.least_motion(boxes, objects, age), objects.size(), found),
-                          worth_a_list, worth_a_list);
+            const list_plan plan = plan_list(
+                forecast.outlook(glimpse_.least_motion(boxes, objects, age), objects.size(), found), worth, worth);
             if (plan.frames > 1) {
                 left_ = 0;
                 return false;

@@ -102,6 +102,9 @@ private:
     static constexpr std::size_t fewest_boxes_of_list = 2 * simd::width + 1;
     /// Of fewer boxes any list is short.
     static constexpr std::size_t fewest_boxes_of_long_list = 256;
+    /// Of plans, after one whose list ended in less than half of its time.
+    static constexpr double less_trust = 0.8;
+    static constexpr double least_trust = 0.5;
     static constexpr std::size_t longest_history = 256;
     /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
     static constexpr unsigned longest_repetition = 8;
@@ -143,6 +146,7 @@ private:
     bool is_as_kept_ = false;  // in the frame before
     bool came_to_rest_ = false;
     bool rested_ = false;        // since the list was kept
+    double trust_ = 1;           // what must be promised for a list to be worth it, after lists that ended early
     double cost_ = 0;            // of the cheapest list that was thought of last, over that of a search
     bool watches_ = false;       // how far boxes are from those that are kept, without a list
     bool watches_long_ = false;  // before anything is planned
@@ -274,6 +278,8 @@ auto neighbour_list_stage::next_list(std::span<const box> boxes, bool same_objec
     if (config_.every > 0)
         return motion_.empty() || config_.every == 1 ? of_boxes_as_they_are
                                                      : wanted_list{margin_after(motion_, config_.every - 1)};
+    if (margin_ > 0 && planned_ > 1)
+        trust_ = 2 * std::size_t{age_} < planned_ ? std::max(least_trust, less_trust * trust_) : 1;
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
     // Of a plan that was so wrong, less was known than it seemed.
     watches_long_ = margin_ > 0 && planned_ > 4 * std::size_t{age_};
@@ -301,7 +307,7 @@ auto neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects
 }
 
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
-    if (!pause_.pass(boxes, objects_, found_, forecast_)) return;
+    if (!pause_.pass(boxes, objects_, found_, forecast_, trust_ * worth_a_list)) return;
     release(kept_);
     release(grown_);
     release(list_);
@@ -322,7 +328,7 @@ auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_obj
     planned_for_ = motion_.empty() ? 0 : motion_.back();
     repeated_ = 0;
     for (;;) {
-        const list_plan plan = plan_list(outlook(), lasted_as_planned ? worth_another_list : worth_a_list);
+        const list_plan plan = plan_list(outlook(), trust_ * (lasted_as_planned ? worth_another_list : worth_a_list));
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
