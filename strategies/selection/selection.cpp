@@ -23,23 +23,36 @@ namespace {
 /// Of fewer, the first list of neighbours, which takes about as long as two searches, does not pay where it serves.
 constexpr std::size_t fewest_frames_of_list = 4;
 
-/// From so many queries on, what `sah` takes longer to build than `median` comes back from queries that visit fewer
-/// nodes. A query of two meshes visits about 21 pairs of nodes times the root of their triangles, and a twelfth less in
-/// trees by `sah`: counted with meshes of 5,000 to 200,000. Meshes are taken to be alike.
-double queries_that_repay_sah(const scene_outlook& scene) {
+/// From so many queries on, what `sah` takes longer to build than `median` comes back where each of them takes less by
+/// that share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with
+/// meshes of 5,000 to 200,000. Meshes are taken to be alike.
+std::size_t queries_that_repay(double share, const scene_outlook& scene) {
     constexpr double visits_a_root = 21;
-    constexpr double saved = 1.0 / 12;
+    constexpr double many = 1e18;
     const cost_model& ns = machine_costs();
     const auto triangles = static_cast<double>(scene.triangles);
-    if (triangles == 0) return std::numeric_limits<double>::infinity();
+    if (triangles == 0) return static_cast<std::size_t>(many);
     const double of_two = 2 * triangles / static_cast<double>(scene.meshes);
-    return (ns.sah_triangle - ns.median_triangle) * triangles /
-           (ns.node_visit * visits_a_root * saved * std::sqrt(of_two));
+    const double queries = (ns.sah_triangle - ns.median_triangle) * triangles /
+                           (ns.node_visit * visits_a_root * share * std::sqrt(of_two));
+    return static_cast<std::size_t>(std::clamp(std::ceil(queries), 0.0, many));
 }
 
+/// Trees by `sah` are visited a twelfth less.
 std::size_t least_queries_of_sah(const scene_outlook& scene) {
-    constexpr double many = 1e18;
-    return static_cast<std::size_t>(std::clamp(std::ceil(queries_that_repay_sah(scene)), 0.0, many));
+    return queries_that_repay(1.0 / 12, scene);
+}
+
+/// Lists of the vertices of each leaf take about as long to write as `sah` takes longer than `median`, and a query of
+/// meshes whose vertices stay in the caches is faster with them by a twentieth at most.
+std::size_t least_queries_of_vertex_lists(const scene_outlook& scene) {
+    return queries_that_repay(1.0 / 20, scene);
+}
+
+bool fetches_vertices(const scene_outlook& scene) {
+    constexpr std::size_t most_triangles_of_two = 200'000;
+    return scene.triangles > 0 && 2 * scene.triangles <= most_triangles_of_two * scene.meshes &&
+           scene.queries < least_queries_of_vertex_lists(scene);
 }
 
 const char* prepare_for(const scene_outlook& scene) {
@@ -63,6 +76,14 @@ std::string rule_of_build(const scene_outlook& scene) {
                ? "built fastest: queries are to be " + queries + ", and only from " + repaid +
                      " on they repay a better tree"
                : "queries are to be " + queries + ", and from " + repaid + " on they repay a better tree";
+}
+
+std::string rule_of_tree(const scene_outlook& scene) {
+    const std::string queries = std::to_string(scene.queries);
+    const std::string repaid = std::to_string(least_queries_of_vertex_lists(scene));
+    return fetches_vertices(scene)
+               ? "queries are to be " + queries + ", and only from " + repaid + " on they repay lists of vertices"
+               : "";
 }
 
 /// What is named among what is fastest by itself, or where that is a sort, without a partition: what lies in columns is
@@ -105,7 +126,7 @@ scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std:
 }
 
 bool depends_on_scene(strategy_kind kind) {
-    return kind == strategy_kind::prepare || kind == strategy_kind::build;
+    return kind == strategy_kind::prepare || kind == strategy_kind::build || kind == strategy_kind::tree;
 }
 
 composition complete_composition(const named_strategies& named) {
@@ -116,6 +137,11 @@ composition complete_composition(const named_strategies& named) {
 void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene) {
     if (!named[strategy_kind::prepare]) completed[strategy_kind::prepare].name = prepare_for(scene);
     if (!named[strategy_kind::build]) completed[strategy_kind::build].name = build_for(scene);
+    if (strategy_choice& tree = completed[strategy_kind::tree];
+        !named[strategy_kind::tree] && tree.name == "implicit") {
+        tree.settings.clear();
+        if (fetches_vertices(scene)) tree.settings.push_back({"vertices", "fetched"});
+    }
 }
 
 composition select_composition(const named_strategies& named, const scene_outlook& scene) {
@@ -129,12 +155,14 @@ std::vector<selected_strategy> select_strategies(const named_strategies& named, 
     const composition whole = select_composition(named, scene);
     std::vector<selected_strategy> all;
     for (const strategy_kind kind : strategy_kinds) {
-        std::string rule = named[kind]                      ? "as it is named"
-                           : kind == strategy_kind::prepare ? rule_of_prepare(scene)
-                           : kind == strategy_kind::build
-                               ? rule_of_build(scene)
-                               : rule_of(whole[kind] == usual[kind] ? "the usual one" : "what goes with what is named",
-                                         kind, whole[kind].name);
+        std::string rule =
+            named[kind]                      ? "as it is named"
+            : kind == strategy_kind::prepare ? rule_of_prepare(scene)
+            : kind == strategy_kind::build   ? rule_of_build(scene)
+            : kind == strategy_kind::tree && whole[kind] != usual[kind] && whole[kind].name == usual[kind].name
+                ? rule_of_tree(scene)
+                : rule_of(whole[kind] == usual[kind] ? "the usual one" : "what goes with what is named", kind,
+                          whole[kind].name);
         all.push_back({kind, whole[kind], std::move(rule)});
     }
     return all;

@@ -35,8 +35,8 @@ struct selected_strategy {
 /// Whether what is selected for the kind depends on the scene.
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
-/// A strategy for each kind: what is named stays; `prepare` and `build` are what serves the scene; the others are what
-/// is fastest by itself, or where that cannot be composed with it, what can.
+/// A strategy for each kind: what is named stays; `prepare`, `build` and `tree` are what serves the scene; the others
+/// are what is fastest by itself, or where that cannot be composed with it, what can.
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] composition select_composition(const named_strategies& named, const scene_outlook& scene);
 

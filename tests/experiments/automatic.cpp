@@ -283,7 +283,8 @@ TEST_CASE("pairs and collide say what they selected") {
           std::string::npos);
     CHECK(run_program({"pairs", file, "--sort", "auto"}).err.find("--sort auto: leave it out") != std::string::npos);
     const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};
-    CHECK(run_program({"collide", meshes[0], meshes[1]}).out.find("\nimplicit + exact: ") != std::string::npos);
+    CHECK(run_program({"collide", meshes[0], meshes[1]}).out.find("\nimplicit:vertices=fetched + exact: ") !=
+          std::string::npos);
     CHECK(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out.find("\nsah + implicit + exact: ") !=
           std::string::npos);
 }

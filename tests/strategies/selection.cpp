@@ -109,3 +109,19 @@ TEST_CASE("auto keeps lists where frames follow each other, and builds well what
     CHECK(selected(strategy_kind::build, {}, {100, 10'000, 100, 2}) == "sah");
     CHECK(selected(strategy_kind::build, {}, {100, 10'000, 100, 100}) == "median");
 }
+
+TEST_CASE("auto lists vertices where queries repay it, or fetch them from far") {
+    CHECK(selected(strategy_kind::tree, {}, {1, 150'816, 1, 2}) == "implicit:vertices=fetched");
+    CHECK(selected(strategy_kind::tree, {}, {1000, 150'816, 1000, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {1, 1'742'828, 1, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {1}) == "implicit");
+    named_strategies named;
+    named[strategy_kind::tree] = strategy_choice{"implicit", {}};
+    CHECK(selected(strategy_kind::tree, named, {1, 150'816, 1, 2}) == "implicit");
+    // For one scene after the other.
+    composition c = complete_composition({});
+    for (const std::size_t queries : {1, 1000, 1}) {
+        select_for_scene(c, {}, {queries, 150'816, queries, 2});
+        CHECK(c == select_composition({}, {queries, 150'816, queries, 2}));
+    }
+}
