@@ -24,7 +24,7 @@ import aabb.prepare.grown_boxes;
 import aabb.prepare.list_forecast;
 import aabb.prepare.list_pause;
 import aabb.prepare.list_plan;
-import aabb.prepare.listed_pairs;
+import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
 import aabb.prepare.relative_motion;
 import aabb.prepare.rest_watch;
@@ -93,6 +93,9 @@ private:
     void keep_those_that_meet(std::span<const box> boxes);
     [[nodiscard]] bool stays_in_place() const;
     void shorten_list(double margin);
+    void count_tests(std::size_t tests) noexcept {
+        if (counted_ == instrumentation::counters) tests_counted_ += tests;
+    }
 
     /// Where no list pays, boxes are watched so many frames, or less if they move on and on, and then left alone.
     static constexpr std::uint32_t longest_watch = 8;
@@ -110,6 +113,8 @@ private:
     static constexpr unsigned longest_repetition = 8;
     /// A list of few boxes that lasts so many frames is good enough.
     static constexpr std::size_t frames_of_good_list = 8;
+    /// To tell which pairs are sure takes as long as to test them twice, so a list is to have served before.
+    static constexpr std::uint32_t frames_before_sure = 2;
     /// Boxes that move about where they were get a margin so many times as long as they moved.
     static constexpr double in_place = 1.3;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
@@ -127,9 +132,11 @@ private:
     source from_ = source::search;
     std::vector<box> kept_;          // boxes that the list is about
     std::vector<box> grown_;         // the same with their margin
-    std::vector<index_pair> list_;   // that it found, less the pairs of objects that have left
+    pair_list list_;                 // what it found, less the pairs of objects that have left
     bool is_kept_ = false;           // false where that search failed, or there was none
     bool is_about_earlier_ = false;  // frame than the one in which it was made
+    bool is_within_ = false;         // the margin of the list, boxes in both ways
+    std::uint32_t served_ = 0;       // frames, by the list
     bool is_too_long_ = false;       // so that a search takes less time
     bool is_first_ = true;           // nothing is known of the scene yet
     bool seems_sparse_ = false;      // to who looked at some boxes, before the first list was made
@@ -163,7 +170,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     frame_.change([&] { objects_.settle(); });
     // At once: the frame may be refused yet, and who left is not told again.
     if (leaves_any && is_kept_)
-        std::erase_if(list_, [&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
+        list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
     if (adapts() && objects_.size() < fewest_boxes_of_list) {
         search_as_it_is(boxes);
     } else if (pause_.lasts()) {
@@ -178,6 +185,8 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
                 keep_those_that_meet(boxes);
             else if (adapts() && stays_in_place())
                 shorten_list(in_place * motion_.back());
+            else if (margin_ > 0 && config_.every == 0 && ++served_ == frames_before_sure)
+                list_.tell_sure(kept_, margin_);
         } else if (const std::optional<wanted_list> next =
                        watches_ ? watched(boxes, same_objects) : next_list(boxes, same_objects)) {
             keep(boxes, *next);
@@ -195,10 +204,9 @@ void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
     if (from_ == source::search) {
         search_->search(pairs);
     } else if (from_ == source::whole) {
-        pairs.insert(pairs.end(), list_.begin(), list_.end());
+        pairs.insert(pairs.end(), list_.whole().begin(), list_.whole().end());
     } else {
-        if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-        append_whole(pairs, [&] { append_meeting(boxes_, list_, pairs); });
+        append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within_)); });
     }
     found_ = pairs.size() - before;
 }
@@ -212,7 +220,7 @@ work_counters neighbour_list_stage::counters() const {
 std::vector<part_bytes> neighbour_list_stage::bytes() const {
     std::vector<part_bytes> parts = search_->bytes();
     parts.push_back(
-        {"prepare", bytes_of(objects_) + bytes_of(kept_) + bytes_of(grown_) + bytes_of(list_) + bytes_of(motion_)});
+        {"prepare", bytes_of(objects_) + bytes_of(kept_) + bytes_of(grown_) + list_.bytes() + bytes_of(motion_)});
     return parts;
 }
 
@@ -255,6 +263,7 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
     from_ = source::list;
     if (config_.every > 0 && config_.margin) return age_ < config_.every;
     const relative_motion moved = motion_between(kept_, boxes, objects_);
+    is_within_ = moved.both_ways <= margin_;
     if (motion_.size() < longest_history)
         motion_.push_back(motion_.empty() ? moved.margin : std::max(motion_.back(), moved.margin));
     if (!moved.any && margin_ == 0) from_ = source::whole;
@@ -310,7 +319,7 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
     if (!pause_.pass(boxes, objects_, found_, forecast_, trust_ * worth_a_list)) return;
     release(kept_);
     release(grown_);
-    release(list_);
+    list_.release();
 }
 
 auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
@@ -408,8 +417,10 @@ void neighbour_list_stage::learn_from_first_list() {
 
 /// Of a list that serves boxes which came to rest.
 void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
-    if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-    list_.resize(store_meeting(boxes, list_, list_.data()));
+    if (!is_within_) list_.forget_sure();
+    count_tests(list_.tested());
+    list_.keep_meeting(boxes);
+    list_.forget_sure();
     kept_.assign(boxes.begin(), boxes.end());
     margin_ = 0;
     is_about_earlier_ = false;
@@ -425,7 +436,7 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
 bool neighbour_list_stage::stays_in_place() const {
     constexpr std::uint32_t first_look = 16;
     if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return false;
-    return list_.size() > objects_.size() / 4 && motion_.back() < 1.2 * motion_[age_ / 2 - 1] &&
+    return list_.tested() > objects_.size() / 4 && motion_.back() < 1.2 * motion_[age_ / 2 - 1] &&
            in_place * motion_.back() < 0.7 * margin_;
 }
 
@@ -433,8 +444,9 @@ bool neighbour_list_stage::stays_in_place() const {
 void neighbour_list_stage::shorten_list(double margin) {
     margin_ = margin;
     grow(kept_, margin_, grown_);
-    if (counted_ == instrumentation::counters) tests_counted_ += list_.size();
-    list_.resize(store_meeting(grown_, list_, list_.data()));
+    count_tests(list_.tested());
+    list_.keep_meeting(grown_);
+    list_.tell_sure(kept_, margin_);
 }
 
 void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
@@ -456,8 +468,9 @@ void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
     }
     search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
     const std::size_t listed_before = list_.size();
-    list_.clear();
-    search_->search(list_);
+    search_->search(list_.begin());
+    is_within_ = false;
+    served_ = 0;
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     // Nobody reckons a list that repeats another: then it is to be about as long.
     const bool is_judged = forecast_.is_reckoned() || (repeated_ > 0 && list_.size() > 2 * listed_before);

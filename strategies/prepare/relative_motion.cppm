@@ -18,19 +18,29 @@ import aabb.simd;
 
 namespace aabb::detail {
 
-/// The farthest that lower planes moved down, by its sign, and upper planes up; and whether any plane moved at all.
+/// The least and the most that planes moved along each axis.
 /// What it begins with is finite, so that motions beyond the floats, all of them infinite, are infinitely far apart.
-struct plane_motion {
+struct motion_range {
     vec3f least{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
                 std::numeric_limits<float>::max()};
     vec3f most{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
                std::numeric_limits<float>::lowest()};
+};
+
+/// Of lower and of upper planes; and whether any plane moved at all.
+struct plane_motion {
+    motion_range lower;
+    motion_range upper;
     bool any = false;
 
     void take(const box& from, const box& to) noexcept {
+        const auto widen = [](motion_range& range, int k, float moved) {
+            range.least[k] = std::min(range.least[k], moved);
+            range.most[k] = std::max(range.most[k], moved);
+        };
         for (int k = 0; k < 3; ++k) {
-            least[k] = std::min(least[k], to.min[k] - from.min[k]);
-            most[k] = std::max(most[k], to.max[k] - from.max[k]);
+            widen(lower, k, to.min[k] - from.min[k]);
+            widen(upper, k, to.max[k] - from.max[k]);
         }
         any |= from != to;
     }
@@ -70,8 +80,10 @@ struct plane_motion {
                 up[i] = std::max(up[i], up[half + i]);
             }
         for (int k = 0; k < 3; ++k) {
-            motion.least[k] = std::min(motion.least[k], down[k]);
-            motion.most[k] = std::max(motion.most[k], up[3 + k]);
+            motion.lower.least[k] = std::min(motion.lower.least[k], down[k]);
+            motion.lower.most[k] = std::max(motion.lower.most[k], up[k]);
+            motion.upper.least[k] = std::min(motion.upper.least[k], down[3 + k]);
+            motion.upper.most[k] = std::max(motion.upper.most[k], up[3 + k]);
         }
         for (std::size_t i = 0; i < 6; ++i) motion.any |= down[i] != 0 || up[i] != 0;
     }
@@ -84,22 +96,29 @@ struct plane_motion {
 export namespace aabb {
 
 struct relative_motion {
-    double margin;  ///< see `motion_between`
-    bool any;       ///< whether anything moved, though it were all alike
+    double margin;     ///< see `motion_between`
+    double both_ways;  ///< the same, and the least by which the earlier ones, shrunk, lie in the later ones
+    bool any;          ///< whether anything moved, though it were all alike
 };
 
 }  // namespace aabb
 
 namespace aabb::detail {
 
+/// Half of what lies between, and what rounding may have taken from it.
+[[nodiscard]] inline double margin_between(double least, double most) noexcept {
+    return (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2;
+}
+
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
-    double margin = 0;
+    relative_motion moved{0, 0, motion.any};
     for (int k = 0; k < 3; ++k) {
-        const double most = motion.most[k];
-        const double least = motion.least[k];
-        margin = std::max(margin, (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2);
+        moved.margin = std::max(moved.margin, margin_between(motion.lower.least[k], motion.upper.most[k]));
+        moved.both_ways =
+            std::max(moved.both_ways, margin_between(std::min(motion.lower.least[k], motion.upper.least[k]),
+                                                     std::max(motion.lower.most[k], motion.upper.most[k])));
     }
-    return {margin, motion.any};
+    return moved;
 }
 
 }  // namespace aabb::detail

@@ -61,6 +61,7 @@ std::vector<vec3f> scattered(std::size_t n, float edge, std::uint64_t& random) {
 /// What a list of neighbours took, frame by frame.
 struct played {
     std::vector<std::uint64_t> tests;  // of the pairs that were listed
+    std::vector<std::size_t> pairs;    // that overlapped
     int searches = 0;                  // of all boxes
     int last_search = 0;               // the frame
     double margin = 0;                 // of the last list
@@ -88,7 +89,9 @@ played played_about_homes(int frames, Displacement displacement) {
             boxes.push_back({at, at + vec3f{1, 1, 1}});
         }
         const work_counters before = stage->counters();
-        REQUIRE(pairs_of(*stage, boxes) == overlapping(boxes));
+        const std::vector<index_pair> found = pairs_of(*stage, boxes);
+        REQUIRE(found == overlapping(boxes));
+        p.pairs.push_back(found.size());
         p.tests.push_back(stage->counters()[work::box_tests] - before[work::box_tests]);
         if (stage->counters()[work::subsets] == before[work::subsets]) continue;
         ++p.searches;
@@ -454,11 +457,14 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
             if (*rc::gen::inRange(0, 10) > 0) change(id);
         std::vector<box> boxes(n);
         std::vector<vec3f> ways(n);
+        std::vector<vec3f> upper_ways(n);
         const auto place = [&](std::uint32_t id) {
             for (int k = 0; k < 3; ++k) {
                 boxes[id].min[k] = static_cast<float>(*rc::gen::inRange(0, 400)) / 100;
                 boxes[id].max[k] = boxes[id].min[k] + static_cast<float>(*rc::gen::inRange(0, 100)) / 100;
                 ways[id][k] = static_cast<float>(*rc::gen::inRange(-10, 11)) / 1000;
+                // Some change their sizes.
+                upper_ways[id][k] = id % 4 > 0 ? ways[id][k] : static_cast<float>(*rc::gen::inRange(-10, 11)) / 1000;
             }
         };
         for (std::uint32_t id = 0; id < n; ++id) place(id);
@@ -466,7 +472,7 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
             for (std::uint32_t i = 0; i < n; ++i)
                 for (int k = 0; k < 3; ++k) {
                     boxes[i].min[k] = from[i].min[k] + times * ways[i][k];
-                    boxes[i].max[k] = from[i].max[k] + times * ways[i][k];
+                    boxes[i].max[k] = std::max(boxes[i].min[k], from[i].max[k] + times * upper_ways[i][k]);
                 }
         };
         // So many frames of each: moving on, still, one elsewhere, one come or gone, one refused, and more often all
@@ -640,6 +646,43 @@ TEST_CASE("what swings gets its next list about where it was when the last one w
     CHECK(drifting.searches > 3);
     CHECK(drifting.margin > 0);
     CHECK(drifting.margin < 0.2);
+}
+
+TEST_CASE("pairs that cannot part within the margin are not tested") {
+    const auto swings = [](int frame, std::size_t) { return 0.01F * std::sin(0.8F * static_cast<float>(frame)); };
+    const played swinging = played_about_homes(30, swings);
+    CHECK(static_cast<double>(swinging.tests[20]) < 0.3 * static_cast<double>(swinging.pairs[20]));
+    // One that is named is kept to, and tells them too; a stale one does not know how far boxes moved.
+    for (const char* every : {"0", "50"}) {
+        const auto stage = stage_of(listing("0.1", every), 200);
+        std::vector<box> boxes;
+        for (int i = 0; i < 200; ++i) boxes.push_back(cube(0.01F * static_cast<float>(i)));
+        std::uint64_t tests = 0;
+        for (int frame = 0; frame < 6; ++frame) {
+            boxes[0].max[1] += 0.001F;
+            const std::uint64_t before = stage->counters()[work::box_tests];
+            CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+            tests = stage->counters()[work::box_tests] - before;
+        }
+        CHECK((tests < overlapping(boxes).size() / 2) == (every[0] == '0'));
+    }
+}
+
+TEST_CASE("pairs that could not part are tested once boxes shrink") {
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 100);
+    std::vector<box> boxes;
+    for (int i = 0; i < 100; ++i) boxes.push_back(cube(0.3F * static_cast<float>(i)));
+    for (int frame = 0; frame < 8; ++frame) {
+        boxes[0].min[1] += 0.001F;
+        boxes[0].max[1] += 0.001F;
+        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+    }
+    CHECK(!says(*stage, "no list of neighbours"));
+    const std::size_t before = overlapping(boxes).size();
+    for (box& b : boxes) b.max[0] = b.min[0] + 0.4F;
+    CHECK(overlapping(boxes).size() < before);
+    CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+    CHECK(!says(*stage, "no list of neighbours"));
 }
 
 TEST_CASE("boxes that stand still for one frame keep their first list") {

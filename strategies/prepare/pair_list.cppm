@@ -1,0 +1,133 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <vector>
+
+export module aabb.prepare.pair_list;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.prepare.listed_pairs;
+import aabb.simd;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Pairs of neighbours, of which some are sure: they overlap by so much that they meet whatever all boxes do within the
+/// margin of the list, and are handed out without a test.
+class pair_list {
+public:
+    [[nodiscard]] std::size_t size() const noexcept { return sure_.size() + open_.size(); }
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(sure_) + bytes_of(open_); }
+
+    /// Where a search appends what it finds; nothing is listed before, and nothing is sure.
+    [[nodiscard]] std::vector<index_pair>& begin() noexcept {
+        sure_.clear();
+        open_.clear();
+        return open_;
+    }
+
+    /// Finds those that are sure.
+    /// @param kept boxes that the list is about
+    void tell_sure(std::span<const box> kept, double margin) {
+        const float depth = depth_beyond(margin);
+        if (!(depth <= std::numeric_limits<float>::max())) return;
+        constexpr std::size_t at_a_time = simd::width / 2;
+        constexpr std::uint32_t all_words = (1U << simd::width) - 1;
+        const std::size_t count = open_.size();
+        std::size_t end = sure_.size();
+        // Room for a vector more than there may be.
+        sure_.resize(end + count + at_a_time);
+        std::size_t left = 0;
+        std::size_t i = 0;
+        for (; i + at_a_time <= count; i += at_a_time) {
+            std::uint32_t both_words = 0;
+#pragma clang loop unroll(full)
+            for (std::size_t k = 0; k < at_a_time; ++k)
+                both_words |= (overlap_by(depth, kept[open_[i + k].a], kept[open_[i + k].b]) ? 3U : 0U) << 2 * k;
+            simd::words some;
+            std::memcpy(&some, &open_[i], sizeof some);
+            end += simd::store_where(&sure_[end].a, some, both_words) / 2;
+            left += simd::store_where(&open_[left].a, some, ~both_words & all_words) / 2;
+        }
+        for (; i < count; ++i) {
+            const index_pair pair = open_[i];
+            const bool sure = overlap_by(depth, kept[pair.a], kept[pair.b]);
+            sure_[end] = pair;
+            end += static_cast<std::size_t>(sure);
+            open_[left] = pair;
+            left += static_cast<std::size_t>(!sure);
+        }
+        sure_.resize(end);
+        open_.resize(left);
+    }
+
+    /// Those whose boxes do not meet are no longer listed; the sure ones stay.
+    void keep_meeting(std::span<const box> boxes) { open_.resize(store_meeting(boxes, open_, open_.data())); }
+
+    /// None is sure any more.
+    void forget_sure() {
+        open_.insert(open_.end(), sure_.begin(), sure_.end());
+        sure_.clear();
+    }
+
+    template <class Gone>
+    void erase_if(Gone gone) {
+        std::erase_if(sure_, gone);
+        std::erase_if(open_, gone);
+    }
+
+    /// Of a list without sure ones.
+    [[nodiscard]] std::span<const index_pair> whole() const noexcept {
+        assert(sure_.empty());
+        return open_;
+    }
+
+    /// Appends those that meet.
+    /// @param within whether boxes are within the margin, so that the sure ones do
+    /// @returns how many were tested
+    std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool within) const {
+        if (within)
+            pairs.insert(pairs.end(), sure_.begin(), sure_.end());
+        else
+            append_meeting(boxes, sure_, pairs);
+        append_meeting(boxes, open_, pairs);
+        return within ? open_.size() : size();
+    }
+
+    /// How many are tested in each frame.
+    [[nodiscard]] std::size_t tested() const noexcept { return open_.size(); }
+
+    void release() {
+        aabb::release(sure_);
+        aabb::release(open_);
+    }
+
+private:
+    /// By how much two boxes overlap at least, as floats tell it, if they do by two margins: a difference is off by
+    /// 2^-24 of itself at most.
+    [[nodiscard]] static float depth_beyond(double margin) noexcept {
+        return std::nextafter(static_cast<float>(2 * margin * (1 + 0x1p-22)), std::numeric_limits<float>::infinity());
+    }
+
+    [[nodiscard, gnu::always_inline]] static bool overlap_by(float depth, const box& a, const box& b) noexcept {
+        using bools = bool __attribute__((ext_vector_type(4)));
+        const auto held = (upper_of(b) - lower_of(a) >= depth) & (upper_of(a) - lower_of(b) >= depth);
+        return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
+    }
+
+    std::vector<index_pair> sure_;
+    std::vector<index_pair> open_;
+};
+
+}  // namespace aabb
