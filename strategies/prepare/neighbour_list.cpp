@@ -71,6 +71,8 @@ private:
         bool about_kept = false;  ///< about the boxes in `kept_`, not those of this frame
     };
 
+    /// Whether pairs that are sure meet in this frame.
+    [[nodiscard]] bool is_within() const noexcept { return moved_both_ways_ <= margin_; }
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool rests(std::span<const box> boxes);
     [[nodiscard]] bool serves(std::span<const box> boxes);
@@ -135,7 +137,7 @@ private:
     pair_list list_;                 // what it found, less the pairs of objects that have left
     bool is_kept_ = false;           // false where that search failed, or there was none
     bool is_about_earlier_ = false;  // frame than the one in which it was made
-    bool is_within_ = false;         // the margin of the list, boxes in both ways
+    double moved_both_ways_ = 0;     // by the boxes of this frame, see `relative_motion`
     std::uint32_t served_ = 0;       // frames, by the list
     bool is_too_long_ = false;       // so that a search takes less time
     bool is_first_ = true;           // nothing is known of the scene yet
@@ -206,7 +208,7 @@ void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
     } else if (from_ == source::whole) {
         pairs.insert(pairs.end(), list_.whole().begin(), list_.whole().end());
     } else {
-        append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within_)); });
+        append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within())); });
     }
     found_ = pairs.size() - before;
 }
@@ -263,7 +265,7 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
     from_ = source::list;
     if (config_.every > 0 && config_.margin) return age_ < config_.every;
     const relative_motion moved = motion_between(kept_, boxes, objects_);
-    is_within_ = moved.both_ways <= margin_;
+    moved_both_ways_ = moved.both_ways;
     if (motion_.size() < longest_history)
         motion_.push_back(motion_.empty() ? moved.margin : std::max(motion_.back(), moved.margin));
     if (!moved.any && margin_ == 0) from_ = source::whole;
@@ -417,7 +419,7 @@ void neighbour_list_stage::learn_from_first_list() {
 
 /// Of a list that serves boxes which came to rest.
 void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
-    if (!is_within_) list_.forget_sure();
+    if (!is_within()) list_.forget_sure();
     count_tests(list_.tested());
     list_.keep_meeting(boxes);
     list_.forget_sure();
@@ -469,7 +471,6 @@ void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
     search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
     const std::size_t listed_before = list_.size();
     search_->search(list_.begin());
-    is_within_ = false;
     served_ = 0;
     forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
     // Nobody reckons a list that repeats another: then it is to be about as long.

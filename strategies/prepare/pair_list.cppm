@@ -1,6 +1,4 @@
 module;
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -41,7 +39,7 @@ public:
     /// @param kept boxes that the list is about
     void tell_sure(std::span<const box> kept, double margin) {
         const float depth = depth_beyond(margin);
-        if (!(depth <= std::numeric_limits<float>::max())) return;
+        if (std::isinf(depth)) return;
         constexpr std::size_t at_a_time = simd::width / 2;
         constexpr std::uint32_t all_words = (1U << simd::width) - 1;
         const std::size_t count = open_.size();
@@ -117,7 +115,11 @@ private:
     /// By how much two boxes overlap at least, as floats tell it, if they do by two margins: a difference is off by
     /// 2^-24 of itself at most.
     [[nodiscard]] static float depth_beyond(double margin) noexcept {
-        return std::nextafter(static_cast<float>(2 * margin * (1 + 0x1p-22)), std::numeric_limits<float>::infinity());
+        constexpr float without_end = std::numeric_limits<float>::infinity();
+        const double depth = 2 * margin * (1 + 0x1p-22);
+        return depth < double{std::numeric_limits<float>::max()}
+                   ? std::nextafter(static_cast<float>(depth), without_end)
+                   : without_end;
     }
 
     [[nodiscard, gnu::always_inline]] static bool overlap_by(float depth, const box& a, const box& b) noexcept {

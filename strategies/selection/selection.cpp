@@ -2,7 +2,6 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -78,12 +77,11 @@ std::string rule_of_build(const scene_outlook& scene) {
                : "queries are to be " + queries + ", and from " + repaid + " on they repay a better tree";
 }
 
+/// Of one that fetches vertices.
 std::string rule_of_tree(const scene_outlook& scene) {
     const std::string queries = std::to_string(scene.queries);
     const std::string repaid = std::to_string(least_queries_of_vertex_lists(scene));
-    return fetches_vertices(scene)
-               ? "queries are to be " + queries + ", and only from " + repaid + " on they repay lists of vertices"
-               : "";
+    return "queries are to be " + queries + ", and only from " + repaid + " on they repay lists of vertices";
 }
 
 /// What is named among what is fastest by itself, or where that is a sort, without a partition: what lies in columns is

@@ -685,6 +685,25 @@ TEST_CASE("pairs that could not part are tested once boxes shrink") {
     CHECK(!says(*stage, "no list of neighbours"));
 }
 
+TEST_CASE("a list is shortened by what boxes shrink, too") {
+    constexpr std::size_t n = 600;
+    std::uint64_t random = 1;
+    const std::vector<vec3f> homes = scattered(n, 5, random);
+    const std::vector<vec3f> ways = scattered(n, 1, random);
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    for (int frame = 0; frame < 40; ++frame) {
+        // In the frames in which a list may be shortened boxes are smaller, by less than its first margin.
+        const float edge = frame == 16 || frame == 32 ? 0.93F : 1;
+        std::vector<box> boxes;
+        for (std::size_t i = 0; i < n; ++i) {
+            vec3f at = homes[i];
+            for (int k = 0; k < 3; ++k) at[k] += 0.01F * std::sin(0.8F * static_cast<float>(frame)) * ways[i][k];
+            boxes.push_back({at, at + vec3f{edge, edge, edge}});
+        }
+        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+    }
+}
+
 TEST_CASE("boxes that stand still for one frame keep their first list") {
     const auto falls = [](int frame, std::size_t) { return 0.001F * static_cast<float>(std::max(frame - 1, 0)); };
     CHECK(played_about_homes(40, falls).searches == 1);
