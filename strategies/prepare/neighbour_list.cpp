@@ -93,7 +93,7 @@ private:
     void judge_first_list();
     void learn_from_first_list();
     void keep_those_that_meet(std::span<const box> boxes);
-    [[nodiscard]] bool stays_in_place() const;
+    [[nodiscard]] std::optional<double> shorter_margin();
     void shorten_list(double margin);
     void count_tests(std::size_t tests) noexcept {
         if (counted_ == instrumentation::counters) tests_counted_ += tests;
@@ -117,8 +117,6 @@ private:
     static constexpr std::size_t frames_of_good_list = 8;
     /// To tell which pairs are sure takes as long as to test them twice, so a list is to have served before.
     static constexpr std::uint32_t frames_before_sure = 2;
-    /// Boxes that move about where they were get a margin so many times as long as they moved.
-    static constexpr double in_place = 1.3;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
     /// So many times as long where hardly any boxes come into reach by that.
@@ -185,8 +183,8 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
             require_valid(boxes);
             if (came_to_rest_)
                 keep_those_that_meet(boxes);
-            else if (adapts() && stays_in_place())
-                shorten_list(in_place * motion_.back());
+            else if (const std::optional<double> enough = adapts() ? shorter_margin() : std::nullopt)
+                shorten_list(*enough);
             else if (margin_ > 0 && config_.every == 0 && ++served_ == frames_before_sure)
                 list_.tell_sure(kept_, margin_);
         } else if (const std::optional<wanted_list> next =
@@ -433,13 +431,22 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
     from_ = source::whole;
 }
 
-/// Whether boxes move about where they were kept, and by so much less than the list allows that it holds many in vain;
-/// ever less often looked at.
-bool neighbour_list_stage::stays_in_place() const {
-    constexpr std::uint32_t first_look = 16;
-    if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return false;
-    return list_.tested() > objects_.size() / 4 && motion_.back() < 1.2 * motion_[age_ / 2 - 1] &&
-           in_place * motion_.back() < 0.7 * margin_;
+/// The margin of a list that serves for several times as long as this one has, where boxes move by so much less than
+/// this one allows that it holds many in vain; ever less often looked at.
+std::optional<double> neighbour_list_stage::shorter_margin() {
+    constexpr std::uint32_t first_look = 8;
+    constexpr std::uint32_t times_as_long = 4;
+    constexpr double a_quarter_more = 1.25;
+    constexpr double worth_it = 0.7;
+    if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return std::nullopt;
+    if (list_.tested() <= objects_.size() / 16) return std::nullopt;
+    // What got more than twice as far in twice the time is to do so in the next two doublings, too.
+    const double speeds_up = std::max(1.0, motion_.back() / (2 * motion_[age_ / 2 - 1]));
+    const double enough =
+        a_quarter_more * speeds_up * speeds_up * margin_after(motion_, times_as_long * std::size_t{age_});
+    if (enough == 0 || enough >= worth_it * margin_) return std::nullopt;
+    planned_ = std::min<std::size_t>(planned_, times_as_long * age_);
+    return enough;
 }
 
 /// The list that a smaller margin would have made, without a search.

@@ -22,7 +22,7 @@ export namespace aabb {
 /// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one,
 /// and more where that lists next to no more. Of the first one nothing is known yet: it gets a tenth of the mean
 /// extent, and three where boxes lie further apart. Where no list pays, frames are searched as they are, and boxes
-/// watched in some of them. Where boxes move about their places by far less than was thought, the list becomes the one
+/// watched in some of them. Where boxes move by far less than was thought, the list becomes the one
 /// that a smaller margin would have made; where they swing by more, the next one is about where they were when the last
 /// one was made. What a search costs is reckoned as that of `columns`: before a slower one, lists are given up sooner
 /// than they need to be.
