@@ -142,12 +142,13 @@ private:
     bool seems_sparse_ = false;      // to who looked at some boxes, before the first list was made
     bool has_learned_ = false;       // from the first list, how long others are
     double margin_ = 0;
-    std::vector<double> motion_;  // since boxes were kept, at most until that frame, frame by frame
-    std::uint32_t age_ = 0;       // frames since then
-    std::size_t planned_ = 0;     // frames since then until which the list is to serve; 0 where nobody reckoned
-    double planned_for_ = 0;      // the farthest that boxes had moved when that was reckoned
-    unsigned repeated_ = 0;       // lists made since by the same plan
-    std::size_t found_ = 0;       // pairs of the frame before
+    double margin_when_made_ = 0;  // of the list, which may have been shortened since
+    std::vector<double> motion_;   // since boxes were kept, at most until that frame, frame by frame
+    std::uint32_t age_ = 0;        // frames since then
+    std::size_t planned_ = 0;      // frames since then until which the list is to serve; 0 where nobody reckoned
+    double planned_for_ = 0;       // the farthest that boxes had moved when that was reckoned
+    unsigned repeated_ = 0;        // lists made since by the same plan
+    std::size_t found_ = 0;        // pairs of the frame before
     list_forecast forecast_;
     rest_watch rest_;
     bool is_as_kept_ = false;  // in the frame before
@@ -438,14 +439,17 @@ std::optional<double> neighbour_list_stage::shorter_margin() {
     constexpr std::uint32_t times_as_long = 4;
     constexpr double a_quarter_more = 1.25;
     constexpr double worth_it = 0.7;
+    // Shorter, it lists hardly fewer, and roundings may end it.
+    constexpr double shortest = 1.0 / 16;
     if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return std::nullopt;
     if (list_.tested() <= objects_.size() / 16) return std::nullopt;
     // What got more than twice as far in twice the time is to do so in the next two doublings, too.
     const double speeds_up = std::max(1.0, motion_.back() / (2 * motion_[age_ / 2 - 1]));
-    const double enough =
+    const double needed =
         a_quarter_more * speeds_up * speeds_up * margin_after(motion_, times_as_long * std::size_t{age_});
-    if (enough == 0 || enough >= worth_it * margin_) return std::nullopt;
-    planned_ = std::min<std::size_t>(planned_, times_as_long * age_);
+    const double enough = std::max(needed, shortest * margin_when_made_);
+    if (enough >= worth_it * margin_) return std::nullopt;
+    planned_ = times_as_long * std::size_t{age_};
     return enough;
 }
 
@@ -461,7 +465,7 @@ void neighbour_list_stage::shorten_list(double margin) {
 void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
     is_kept_ = false;
     is_about_earlier_ = next.about_kept;
-    margin_ = next.margin;
+    margin_ = margin_when_made_ = next.margin;
     is_as_kept_ = false;
     if (!is_about_earlier_) {
         kept_.assign(boxes.begin(), boxes.end());

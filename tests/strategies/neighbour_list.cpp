@@ -270,8 +270,8 @@ TEST_CASE("boxes that came to rest are not tested again") {
         int tested = 0;
         for (int frame = 0; frame < frames; ++frame) {
             for (std::size_t i = 1; i <= moving; ++i) {
-                boxes[i].min[1] += 0.001F;
-                boxes[i].max[1] += 0.001F;
+                boxes[i].min[1] += 0.004F;
+                boxes[i].max[1] += 0.004F;
             }
             const std::uint64_t before = listed->counters()[work::box_tests];
             CHECK(pairs_of(*listed, boxes).size() == 999);
