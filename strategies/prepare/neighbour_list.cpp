@@ -73,6 +73,10 @@ private:
 
     /// Whether pairs that are sure meet in this frame.
     [[nodiscard]] bool is_within() const noexcept { return moved_both_ways_ <= margin_; }
+    /// In what a plan promises.
+    [[nodiscard]] double trust() const noexcept {
+        return objects_.size() <= hardly_any_boxes ? trust_in_hardly_any * trust_ : trust_;
+    }
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool rests(std::span<const box> boxes);
     [[nodiscard]] bool serves(std::span<const box> boxes);
@@ -107,6 +111,9 @@ private:
     static constexpr std::size_t fewest_boxes_of_list = 2 * simd::width + 1;
     /// Of fewer boxes any list is short.
     static constexpr std::size_t fewest_boxes_of_long_list = 256;
+    /// Lists of so few take more time than is reckoned: the code of a list is seldom at hand.
+    static constexpr std::size_t hardly_any_boxes = 64;
+    static constexpr double trust_in_hardly_any = 0.75;
     /// Of plans, after one whose list ended in less than half of its time.
     static constexpr double less_trust = 0.8;
     static constexpr double least_trust = 0.5;
@@ -317,7 +324,7 @@ auto neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects
 }
 
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
-    if (!pause_.pass(boxes, objects_, found_, forecast_, trust_ * worth_a_list)) return;
+    if (!pause_.pass(boxes, objects_, found_, forecast_, trust() * worth_a_list)) return;
     release(kept_);
     release(grown_);
     list_.release();
@@ -338,7 +345,7 @@ auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_obj
     planned_for_ = motion_.empty() ? 0 : motion_.back();
     repeated_ = 0;
     for (;;) {
-        const list_plan plan = plan_list(outlook(), trust_ * (lasted_as_planned ? worth_another_list : worth_a_list));
+        const list_plan plan = plan_list(outlook(), trust() * (lasted_as_planned ? worth_another_list : worth_a_list));
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;

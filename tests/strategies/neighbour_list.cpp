@@ -778,6 +778,33 @@ TEST_CASE("plans that failed are believed less") {
     CHECK(kept(0.02F, 10) < 20);
 }
 
+TEST_CASE("lists of hardly any boxes are kept only where they promise much") {
+    // Frames that a list serves, of boxes that scatter from their homes at that pace.
+    const auto kept = [](std::size_t n, float pace) {
+        const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+        std::uint64_t random = 1;
+        const std::vector<vec3f> homes = scattered(n, 8, random);
+        const std::vector<vec3f> ways = scattered(n, 1, random);
+        int frames = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+            std::vector<box> boxes;
+            for (std::size_t i = 0; i < n; ++i) {
+                vec3f at = homes[i];
+                for (int k = 0; k < 3; ++k) at[k] += pace * static_cast<float>(frame) * ways[i][k];
+                boxes.push_back({at, at + vec3f{1, 1, 1}});
+            }
+            (void)pairs_of(*stage, boxes);
+            frames += frame > 0 && !says(*stage, "no list of neighbours") ? 1 : 0;
+        }
+        return frames;
+    };
+    CHECK(kept(64, 0.03F) == 59);
+    for (const float pace : {0.6F, 0.85F}) {
+        INFO(pace << " of an extent a frame");
+        CHECK(kept(65, pace) > 2 * kept(64, pace));
+    }
+}
+
 TEST_CASE("a first list that only seemed to be short is shortened") {
     // Far apart but for forty, which the sample misses, and which are all within reach of each other.
     std::vector<box> boxes;
