@@ -97,7 +97,8 @@ private:
     void judge_first_list();
     void learn_from_first_list();
     void keep_those_that_meet(std::span<const box> boxes);
-    [[nodiscard]] std::optional<double> shorter_margin();
+    [[nodiscard]] std::optional<list_plan> shorter_list() const;
+    void shorten_as_planned(const list_plan& plan);
     void shorten_list(double margin);
     void count_tests(std::size_t tests) noexcept {
         if (counted_ == instrumentation::counters) tests_counted_ += tests;
@@ -191,8 +192,8 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
             require_valid(boxes);
             if (came_to_rest_)
                 keep_those_that_meet(boxes);
-            else if (const std::optional<double> enough = adapts() ? shorter_margin() : std::nullopt)
-                shorten_list(*enough);
+            else if (const std::optional<list_plan> shorter = adapts() ? shorter_list() : std::nullopt)
+                shorten_as_planned(*shorter);
             else if (margin_ > 0 && config_.every == 0 && ++served_ == frames_before_sure)
                 list_.tell_sure(kept_, margin_);
         } else if (const std::optional<wanted_list> next =
@@ -295,7 +296,8 @@ auto neighbour_list_stage::next_list(std::span<const box> boxes, bool same_objec
     if (config_.every > 0)
         return motion_.empty() || config_.every == 1 ? of_boxes_as_they_are
                                                      : wanted_list{margin_after(motion_, config_.every - 1)};
-    if (margin_ > 0 && planned_ > 1)
+    const bool was_shortened = margin_ < margin_when_made_;
+    if (margin_ > 0 && planned_ > 1 && !was_shortened)
         trust_ = 2 * std::size_t{age_} < planned_ ? std::max(least_trust, less_trust * trust_) : 1;
     const bool is_first_look = margin_ == 0 && motion_.size() == 1;
     // Of a plan that was so wrong, less was known than it seemed.
@@ -439,9 +441,9 @@ void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
     from_ = source::whole;
 }
 
-/// The margin of a list that serves for several times as long as this one has, where boxes move by so much less than
-/// this one allows that it holds many in vain; ever less often looked at.
-std::optional<double> neighbour_list_stage::shorter_margin() {
+/// A list that serves for several times as long as this one has, where boxes move by so much less than this one allows
+/// that it holds many in vain; ever less often looked at.
+auto neighbour_list_stage::shorter_list() const -> std::optional<list_plan> {
     constexpr std::uint32_t first_look = 8;
     constexpr std::uint32_t times_as_long = 4;
     constexpr double a_quarter_more = 1.25;
@@ -450,14 +452,18 @@ std::optional<double> neighbour_list_stage::shorter_margin() {
     constexpr double shortest = 1.0 / 16;
     if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return std::nullopt;
     if (list_.tested() <= objects_.size() / 16) return std::nullopt;
+    const std::size_t frames = times_as_long * std::size_t{age_};
     // What got more than twice as far in twice the time is to do so in the next two doublings, too.
     const double speeds_up = std::max(1.0, motion_.back() / (2 * motion_[age_ / 2 - 1]));
-    const double needed =
-        a_quarter_more * speeds_up * speeds_up * margin_after(motion_, times_as_long * std::size_t{age_});
-    const double enough = std::max(needed, shortest * margin_when_made_);
-    if (enough >= worth_it * margin_) return std::nullopt;
-    planned_ = times_as_long * std::size_t{age_};
-    return enough;
+    const double needed = a_quarter_more * speeds_up * speeds_up * margin_after(motion_, frames);
+    const double margin = std::max(needed, shortest * margin_when_made_);
+    return margin < worth_it * margin_ ? std::optional(list_plan{.frames = frames, .margin = margin}) : std::nullopt;
+}
+
+void neighbour_list_stage::shorten_as_planned(const list_plan& plan) {
+    planned_ = plan.frames;
+    planned_for_ = motion_.back();
+    shorten_list(plan.margin);
 }
 
 /// The list that a smaller margin would have made, without a search.

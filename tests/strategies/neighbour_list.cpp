@@ -58,6 +58,15 @@ std::vector<vec3f> scattered(std::size_t n, float edge, std::uint64_t& random) {
     return places;
 }
 
+/// Of the list that serves a frame; 0 where none does.
+double margin_of(const global_stage& stage) {
+    constexpr std::string_view grown_by = "grown by ";
+    for (const std::string& plan : stage.plans())
+        if (const std::size_t at = plan.find(grown_by); at != std::string::npos)
+            return std::stod(plan.substr(at + grown_by.size()));
+    return 0;
+}
+
 /// What a list of neighbours took, frame by frame.
 struct played {
     std::vector<std::uint64_t> tests;  // of the pairs that were listed
@@ -97,10 +106,7 @@ played played_about_homes(int frames, Displacement displacement) {
         ++p.searches;
         p.last_search = frame;
     }
-    constexpr std::string_view grown_by = "grown by ";
-    for (const std::string& plan : stage->plans())
-        if (const std::size_t at = plan.find(grown_by); at != std::string::npos)
-            p.margin = std::stod(plan.substr(at + grown_by.size()));
+    p.margin = margin_of(*stage);
     return p;
 }
 
@@ -636,6 +642,51 @@ TEST_CASE("what moves by little gets a shorter list without a search") {
     }
 }
 
+TEST_CASE("a list that was shortened too much is not repeated") {
+    constexpr std::size_t n = 100;
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    std::uint64_t random = 1;
+    const std::vector<vec3f> homes = scattered(n, 3, random);
+    const std::vector<vec3f> ways = scattered(n, 1, random);
+    std::vector<double> margins;
+    for (int frame = 0; frame < 16; ++frame) {
+        // At first they creep.
+        const float way =
+            0.0005F * static_cast<float>(std::min(frame, 8)) + 0.01F * static_cast<float>(std::max(frame - 8, 0));
+        std::vector<box> boxes;
+        for (std::size_t i = 0; i < n; ++i) {
+            vec3f at = homes[i];
+            for (int k = 0; k < 3; ++k) at[k] += way * ways[i][k];
+            boxes.push_back({at, at + vec3f{1, 1, 1}});
+        }
+        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+        margins.push_back(margin_of(*stage));
+    }
+    CHECK(margins[8] < 0.5 * margins[7]);
+    CHECK(margins[15] > 1.5 * margins[8]);
+}
+
+TEST_CASE("what moves as one, but for roundings, keeps its list") {
+    constexpr std::size_t n = 100;
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    std::uint64_t random = 1;
+    const std::vector<vec3f> homes = scattered(n, 3, random);
+    std::vector<double> margins;
+    for (int frame = 0; frame < 200; ++frame) {
+        std::vector<box> boxes;
+        for (const vec3f& home : homes) {
+            vec3f at = home;
+            for (int k = 0; k < 3; ++k) at[k] += 0.37F * static_cast<float>(frame);
+            boxes.push_back({at, at + vec3f{1, 1, 1}});
+        }
+        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+        margins.push_back(margin_of(*stage));
+    }
+    // It is shortened, but never to what roundings make of no motion.
+    CHECK(margins.back() < 0.1 * margins.front());
+    CHECK(margins.back() > 0.05 * margins.front());
+}
+
 TEST_CASE("what swings gets its next list about where it was when the last one was made") {
     constexpr float farthest = 0.17F;
     const auto swings = [](int frame, std::size_t i) {
@@ -699,7 +750,7 @@ TEST_CASE("a list is shortened by what boxes shrink, too") {
     const std::vector<vec3f> ways = scattered(n, 1, random);
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
     for (int frame = 0; frame < 40; ++frame) {
-        // In the frames in which a list may be shortened boxes are smaller, by less than its first margin.
+        // In the frames in which a list may be shortened, boxes are smaller, by less than its first margin.
         const float edge = frame == 8 || frame == 16 || frame == 32 ? 0.93F : 1;
         std::vector<box> boxes;
         for (std::size_t i = 0; i < n; ++i) {
@@ -751,7 +802,7 @@ TEST_CASE("boxes without an end are refused, however they lie") {
 }
 
 TEST_CASE("plans that failed are believed less") {
-    constexpr std::size_t n = 60;
+    constexpr std::size_t n = 70;
     std::uint64_t random = 1;
     const std::vector<vec3f> homes = scattered(n, 4, random);
     const std::vector<vec3f> ways = scattered(n, 1, random);
@@ -773,9 +824,9 @@ TEST_CASE("plans that failed are believed less") {
         }
         return frames;
     };
-    // Believed each time, they keep 128 and 37.
-    CHECK(kept(0.005F, 7) < 90);
-    CHECK(kept(0.02F, 10) < 20);
+    // Believed each time, they keep 55 and 84.
+    CHECK(kept(0.01F, 7) < 30);
+    CHECK(kept(0.02F, 10) < 50);
 }
 
 TEST_CASE("lists of hardly any boxes are kept only where they promise much") {
@@ -783,8 +834,8 @@ TEST_CASE("lists of hardly any boxes are kept only where they promise much") {
     const auto kept = [](std::size_t n, float pace) {
         const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
         std::uint64_t random = 1;
-        const std::vector<vec3f> homes = scattered(n, 8, random);
-        const std::vector<vec3f> ways = scattered(n, 1, random);
+        const std::vector<vec3f> homes = scattered(65, 8, random);
+        const std::vector<vec3f> ways = scattered(65, 1, random);
         int frames = 0;
         for (int frame = 0; frame < 60; ++frame) {
             std::vector<box> boxes;
@@ -798,10 +849,11 @@ TEST_CASE("lists of hardly any boxes are kept only where they promise much") {
         }
         return frames;
     };
-    CHECK(kept(64, 0.03F) == 59);
-    for (const float pace : {0.6F, 0.85F}) {
+    CHECK(kept(64, 0.05F) == 59);
+    for (const float pace : {0.2F, 0.3F, 0.6F}) {
         INFO(pace << " of an extent a frame");
-        CHECK(kept(65, pace) > 2 * kept(64, pace));
+        CHECK(kept(64, pace) < 15);
+        CHECK(kept(65, pace) >= 25);
     }
 }
 
@@ -836,11 +888,6 @@ TEST_CASE("few boxes repeat the margin of a list that lasted, unless that lists 
             boxes.push_back({at, at + vec3f{1, 1, 1}});
         }
         return boxes;
-    };
-    const auto margin_of = [](const global_stage& stage) {
-        constexpr std::string_view grown_by = "grown by ";
-        const std::string plan = stage.plans().back();
-        return std::stod(plan.substr(plan.find(grown_by) + grown_by.size()));
     };
     for (const std::size_t n : {std::size_t{100}, std::size_t{300}}) {
         INFO(n << " boxes");
