@@ -10,6 +10,7 @@
 #include <string>
 
 #include "commands/command_line.hpp"
+#include "commands/command_parser.hpp"
 #include "commands/commands.hpp"
 #include "commands/kept_costs.hpp"
 #include "commands/output.hpp"
@@ -72,22 +73,23 @@ int main_of(int argc, char** argv) {
         program.set_version_flag("--version", "aabblab " AABBLAB_VERSION, "Print the version");
         program.set_help_flag("-h,--help", "Print this help");
         program.require_subcommand(0, 1);
-        add_reproduce(program, status);
-        add_run(program, status);
-        add_validate(program, status);
-        add_atlas(program, status);
-        add_compare(program, status);
-        add_errors(program, status);
-        add_explain(program, status);
-        add_recommend(program, status);
-        add_calibrate(program, status);
-        add_list(program, status);
-        add_pairs(program, status);
-        add_collide(program, status);
-        add_contacts(program, status);
-        add_classify(program, status);
-        add_order(program, status);
-        add_scene(program, status);
+        const command_parser commands(program);
+        add_reproduce(commands, status);
+        add_run(commands, status);
+        add_validate(commands, status);
+        add_atlas(commands, status);
+        add_compare(commands, status);
+        add_errors(commands, status);
+        add_explain(commands, status);
+        add_recommend(commands, status);
+        add_calibrate(commands, status);
+        add_list(commands, status);
+        add_pairs(commands, status);
+        add_collide(commands, status);
+        add_contacts(commands, status);
+        add_classify(commands, status);
+        add_order(commands, status);
+        add_scene(commands, status);
         // Set last: commands added before do not inherit it.
         program.footer(
             "With the script aabblab at the root of the source tree also:\n"

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -7,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -54,17 +54,17 @@ int run(const atlas_request& request) {
 
 }  // namespace
 
-void add_atlas(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand(
+void add_atlas(const command_parser& program, int& status) {
+    const command_parser command = program.add_command(
         "atlas", "Which composition or engine wins in which scene, and what it costs to use one everywhere");
     auto request = std::make_shared<atlas_request>();
-    command->add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
-    command->add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
+    command.add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
+    command.add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
     command
-        ->add_option("--out", request->out,
-                     "Folder of results and maps (default results/atlas; with --quick results/atlas-quick)")
-        ->type_name("DIR");
-    command->callback([request, &status] { status = run(*request); });
+        .add_option("--out", request->out,
+                    "Folder of results and maps (default results/atlas; with --quick results/atlas-quick)")
+        .type_name("DIR");
+    command.callback([request, &status] { status = run(*request); });
 }
 
 }  // namespace aabblab

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -8,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "kept_costs.hpp"
 #include "output.hpp"
@@ -88,16 +88,18 @@ void calibrate(const calibrate_request& request) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& program, int&) {
-    auto* command = program.add_subcommand(
+void add_calibrate(const command_parser& program, int&) {
+    const command_parser command = program.add_command(
         "calibrate", "Measure what elementary work takes on this machine, and keep it: what strategies plan by");
     auto request = std::make_shared<calibrate_request>();
-    auto* quick = command->add_flag("--quick", request->quick, "In about 20 seconds in place of two minutes");
-    auto* out = command->add_option("--out", request->out, "Write it there, not where it is used")->type_name("FILE");
-    command->add_flag("--reset", request->reset, "Remove what was kept: costs are as shipped again")
-        ->excludes(quick)
-        ->excludes(out);
-    command->callback([request] { calibrate(*request); });
+    const parsed_option quick =
+        command.add_flag("--quick", request->quick, "In about 20 seconds in place of two minutes");
+    const parsed_option out =
+        command.add_option("--out", request->out, "Write it there, not where it is used").type_name("FILE");
+    command.add_flag("--reset", request->reset, "Remove what was kept: costs are as shipped again")
+        .excludes(quick)
+        .excludes(out);
+    command.callback([request] { calibrate(*request); });
 }
 
 }  // namespace aabblab

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <cerrno>
 #include <cstddef>
@@ -16,6 +15,7 @@
 #include <system_error>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "number.hpp"
 #include "output.hpp"
@@ -100,25 +100,25 @@ void classify(const classify_request& request) {
 
 }  // namespace
 
-void add_classify(CLI::App& program, int&) {
-    auto* command = program.add_subcommand(
-        "classify", "Do two triangles intersect, and in what? One pair a line, one answer a line");
+void add_classify(const command_parser& program, int&) {
+    const command_parser command =
+        program.add_command("classify", "Do two triangles intersect, and in what? One pair a line, one answer a line");
     auto request = std::make_shared<classify_request>();
     command
-        ->add_option("FILE", request->file,
-                     "18 numbers a line, decimal or C99 hexadecimal, with blanks or commas between; - reads "
-                     "standard input; # begins a comment")
-        ->required()
-        ->type_name("");
+        .add_option("FILE", request->file,
+                    "18 numbers a line, decimal or C99 hexadecimal, with blanks or commas between; - reads "
+                    "standard input; # begins a comment")
+        .required()
+        .type_name("");
     command
-        ->add_option("--triangle", request->triangle,
-                     "Triangle test (default exact), or one of a library that `list` shows")
-        ->type_name("R");
-    command->add_flag("--double", request->keep_doubles, "Keep the numbers as doubles instead of rounding to float");
-    command->add_flag("--geometry", request->geometry,
-                      "What the two have in common in place of 0 or 1: kind, number of corners, corners, and the error "
-                      "of a coordinate on each axis");
-    command->callback([request] { classify(*request); });
+        .add_option("--triangle", request->triangle,
+                    "Triangle test (default exact), or one of a library that `list` shows")
+        .type_name("R");
+    command.add_flag("--double", request->keep_doubles, "Keep the numbers as doubles instead of rounding to float");
+    command.add_flag("--geometry", request->geometry,
+                     "What the two have in common in place of 0 or 1: kind, number of corners, corners, and the error "
+                     "of a coordinate on each axis");
+    command.callback([request] { classify(*request); });
 }
 
 }  // namespace aabblab

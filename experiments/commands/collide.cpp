@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -370,51 +370,51 @@ void collide(const collide_request& request) {
 
 }  // namespace
 
-void add_collide(CLI::App& program, int&) {
-    auto* command =
-        program.add_subcommand("collide", "Local detection of two meshes: every pair of intersecting triangles");
+void add_collide(const command_parser& program, int&) {
+    const command_parser command =
+        program.add_command("collide", "Local detection of two meshes: every pair of intersecting triangles");
     auto request = std::make_shared<collide_request>();
     command
-        ->add_option("A", request->a,
-                     "Mesh file, or a shape as in torus_knot:triangles=20000; with :order=sah behind a file, or "
-                     ",order=sah behind a shape's parameters, its triangles "
-                     "stand in the order of a tree's leaves")
-        ->required()
-        ->type_name("");
-    command->add_option("B", request->b, "The other one")->type_name("");
+        .add_option("A", request->a,
+                    "Mesh file, or a shape as in torus_knot:triangles=20000; with :order=sah behind a file, or "
+                    ",order=sah behind a shape's parameters, its triangles "
+                    "stand in the order of a tree's leaves")
+        .required()
+        .type_name("");
+    command.add_option("B", request->b, "The other one").type_name("");
     command
-        ->add_option("--pose-a", request->poses[0],
-                     "Where A is: 12 numbers with commas between, the rows of [R t] (default: as it is)")
-        ->type_name("M");
-    command->add_option("--pose-b", request->poses[1], "Where B is")->type_name("M");
+        .add_option("--pose-a", request->poses[0],
+                    "Where A is: 12 numbers with commas between, the rows of [R t] (default: as it is)")
+        .type_name("M");
+    command.add_option("--pose-b", request->poses[1], "Where B is").type_name("M");
     command
-        ->add_option("--poses", request->poses_of_b,
-                     "Search with B at each pose of this file, one a line; trees are built once")
-        ->type_name("FILE");
-    request->local.add_to(*command);
-    command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
-        ->type_name("E");
+        .add_option("--poses", request->poses_of_b,
+                    "Search with B at each pose of this file, one a line; trees are built once")
+        .type_name("FILE");
+    request->local.add_to(command);
+    command.add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
+        .type_name("E");
     command
-        ->add_flag("--self", request->self,
-                   "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left "
-                   "out of the pairs")
-        ->option_text("[=apart]");
-    command->add_flag("--first", request->first, "Stop at the first pair found");
-    command->add_flag("--count", request->count, "Only count the pairs");
+        .add_flag("--self", request->self,
+                  "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left "
+                  "out of the pairs")
+        .option_text("[=apart]");
+    command.add_flag("--first", request->first, "Stop at the first pair found");
+    command.add_flag("--count", request->count, "Only count the pairs");
     command
-        ->add_option_function<std::string>(
+        .add_option(
             "--repeat", [request](const std::string& text) { request->repeats = repeats_of(text); },
             "Search so often, at all poses in turn; each time is told (--json)")
-        ->type_name("N");
+        .type_name("N");
     command
-        ->add_option("--out", request->out,
-                     "Write the pairs, rows a,b (with --self a,b,shared_vertices, with --self=apart a,b, with --poses "
-                     "pose,a,b), to this CSV file")
-        ->type_name("FILE");
-    command->add_flag("--geometry", request->geometry,
-                      "Add to each pair what its triangles have in common, in the world: kind, corners, error");
-    command->add_flag("--json", request->json, "Print the summary as JSON");
-    command->callback([request] {
+        .add_option("--out", request->out,
+                    "Write the pairs, rows a,b (with --self a,b,shared_vertices, with --self=apart a,b, with --poses "
+                    "pose,a,b), to this CSV file")
+        .type_name("FILE");
+    command.add_flag("--geometry", request->geometry,
+                     "Add to each pair what its triangles have in common, in the world: kind, corners, error");
+    command.add_flag("--json", request->json, "Print the summary as JSON");
+    command.callback([request] {
         // What the parser makes of a flag without a value.
         if (request->self == "true") request->self = "together";
         collide(*request);

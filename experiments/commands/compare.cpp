@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -155,17 +155,15 @@ int compare_folders(const compare_request& request) {
 
 }  // namespace
 
-void add_compare(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand(
+void add_compare(const command_parser& program, int& status) {
+    const command_parser command = program.add_command(
         "compare", "Two results folders, of two commits or machines: which ratios, answers, counts and bytes changed");
     auto request = std::make_shared<compare_request>();
-    command->add_option("A", request->a, "Folder of results, of an experiment or of several")
-        ->required()
-        ->type_name("");
-    command->add_option("B", request->b, "Another, which is compared with it")->required()->type_name("");
-    command->add_flag("--times", request->times, "Compare milliseconds too; of one machine only");
-    command->add_flag("--all", request->all, "List what is unchanged or undecided too");
-    command->callback([request, &status] { status = compare_folders(*request); });
+    command.add_option("A", request->a, "Folder of results, of an experiment or of several").required().type_name("");
+    command.add_option("B", request->b, "Another, which is compared with it").required().type_name("");
+    command.add_flag("--times", request->times, "Compare milliseconds too; of one machine only");
+    command.add_flag("--all", request->all, "List what is unchanged or undecided too");
+    command.callback([request, &status] { status = compare_folders(*request); });
 }
 
 }  // namespace aabblab

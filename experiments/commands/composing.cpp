@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -8,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "output.hpp"
 
 // Imports, so it comes last.
@@ -41,14 +40,14 @@ std::string names_in_line(aabb::strategy_kind kind) {
     return text;
 }
 
-void stage_options::add_to(CLI::App& command) {
+void stage_options::add_to(const command_parser& command) {
     for (const aabb::strategy_kind kind : kinds()) {
         const std::string name(name_of(kind));
         command
             .add_option(
                 "--" + name, given_[kind],
                 "One of " + names_in_line(kind) + " (default " + usual_of(kind) + "), as in NAME:parameter=value")
-            ->type_name("S");
+            .type_name("S");
     }
     command.footer("aabblab list has every strategy with its parameters.");
 }

@@ -4,21 +4,19 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 import aabb.geometry;
 import aabb.registry;
 
 namespace aabblab {
+
+class command_parser;
 
 /// Options of a command that compose a stage, one a kind of strategy.
 class stage_options {
 public:
     explicit stage_options(aabb::stage stage) : stage_(stage) {}
 
-    void add_to(CLI::App& command);
+    void add_to(const command_parser& command);
     [[nodiscard]] bool any() const;
     /// "--sort, --partition and --sweep".
     [[nodiscard]] std::string names() const;

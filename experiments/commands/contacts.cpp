@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -189,32 +189,32 @@ void find_contacts(const contacts_request& request) {
 
 }  // namespace
 
-void add_contacts(CLI::App& program, int&) {
-    auto* command = program.add_subcommand(
+void add_contacts(const command_parser& program, int&) {
+    const command_parser command = program.add_command(
         "contacts", "Both stages on meshes that a file moves: the triangles in contact, by frame and pair of objects");
     auto request = std::make_shared<contacts_request>();
     command
-        ->add_option("MOTION", request->motion,
-                     "Text file; a line is a frame, an object and 12 numbers, the rows of its pose [R t]")
-        ->required()
-        ->type_name("");
+        .add_option("MOTION", request->motion,
+                    "Text file; a line is a frame, an object and 12 numbers, the rows of its pose [R t]")
+        .required()
+        .type_name("");
     command
-        ->add_option("MESH", request->meshes,
-                     "Mesh files or shapes; object i is mesh i, from the first again when they run out")
-        ->required()
-        ->type_name("");
-    request->global.add_to(*command);
-    request->local.add_to(*command);
-    command->add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
-        ->type_name("E");
+        .add_option("MESH", request->meshes,
+                    "Mesh files or shapes; object i is mesh i, from the first again when they run out")
+        .required()
+        .type_name("");
+    request->global.add_to(command);
+    request->local.add_to(command);
+    command.add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")
+        .type_name("E");
     command
-        ->add_option("--out", request->out,
-                     "Write the contacts, rows frame,object_a,object_b,triangle_a,triangle_b, to this CSV file")
-        ->type_name("FILE");
-    command->add_flag("--geometry", request->geometry,
-                      "Add to each contact what its triangles have in common, in the world: kind, corners, error");
-    command->add_flag("--json", request->json, "Print the summary as JSON");
-    command->callback([request] { find_contacts(*request); });
+        .add_option("--out", request->out,
+                    "Write the contacts, rows frame,object_a,object_b,triangle_a,triangle_b, to this CSV file")
+        .type_name("FILE");
+    command.add_flag("--geometry", request->geometry,
+                     "Add to each contact what its triangles have in common, in the world: kind, corners, error");
+    command.add_flag("--json", request->json, "Print the summary as JSON");
+    command.callback([request] { find_contacts(*request); });
 }
 
 }  // namespace aabblab

@@ -1,11 +1,10 @@
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -50,18 +49,18 @@ int run(const errors_request& request) {
 
 }  // namespace
 
-void add_errors(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand(
-        "errors", "Error against run time: what methods get wrong, and the time they take or save");
+void add_errors(const command_parser& program, int& status) {
+    const command_parser command =
+        program.add_command("errors", "Error against run time: what methods get wrong, and the time they take or save");
     auto request = std::make_shared<errors_request>();
     command
-        ->add_option("CONFIG", request->config,
-                     "Methods, and what they are held against (default experiments/configs/errors/triangle_tests.toml)")
-        ->type_name("");
-    command->add_option("--out", request->out, "Folder of table and plots (default results/errors-NAME)")
-        ->type_name("DIR");
-    command->add_flag("--quick", request->quick, "Fewer pairs, for a first look");
-    command->callback([request, &status] { status = run(*request); });
+        .add_option("CONFIG", request->config,
+                    "Methods, and what they are held against (default experiments/configs/errors/triangle_tests.toml)")
+        .type_name("");
+    command.add_option("--out", request->out, "Folder of table and plots (default results/errors-NAME)")
+        .type_name("DIR");
+    command.add_flag("--quick", request->quick, "Fewer pairs, for a first look");
+    command.callback([request, &status] { status = run(*request); });
 }
 
 }  // namespace aabblab

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -176,17 +176,17 @@ int explain(const std::vector<std::string>& what) {
 
 }  // namespace
 
-void add_explain(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand(
+void add_explain(const command_parser& program, int& status) {
+    const command_parser command = program.add_command(
         "explain", "What a scene is like, which composition it gets and why, its bytes, and what is left out");
     auto what = std::make_shared<std::vector<std::string>>();
     command
-        ->add_option(
+        .add_option(
             "WHAT", *what,
             std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help)
-        ->required()
-        ->type_name("");
-    command->callback([what, &status] { status = explain(*what); });
+        .required()
+        .type_name("");
+    command.callback([what, &status] { status = explain(*what); });
 }
 
 }  // namespace aabblab

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -162,11 +162,12 @@ void print_text() {
 
 }  // namespace
 
-void add_list(CLI::App& program, int&) {
-    auto* command = program.add_subcommand("list", "Strategies with their parameters, engines, scenes and metrics");
+void add_list(const command_parser& program, int&) {
+    const command_parser command =
+        program.add_command("list", "Strategies with their parameters, engines, scenes and metrics");
     auto json = std::make_shared<bool>(false);
-    command->add_flag("--json", *json, "Print it as JSON");
-    command->callback([json] {
+    command.add_flag("--json", *json, "Print it as JSON");
+    command.callback([json] {
         if (*json)
             print(everything().dump(2) + "\n");
         else

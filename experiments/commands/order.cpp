@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -7,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -56,26 +56,27 @@ void write_ordered(const order_request& request) {
 
 }  // namespace
 
-void add_order(CLI::App& program, int&) {
-    auto* command = program.add_subcommand("order", "Write a mesh in the order of a tree's leaves, for smaller trees");
+void add_order(const command_parser& program, int&) {
+    const command_parser command =
+        program.add_command("order", "Write a mesh in the order of a tree's leaves, for smaller trees");
     auto request = std::make_shared<order_request>();
-    command->add_option("MESH", request->mesh, "Mesh file or shape")->required()->type_name("");
+    command.add_option("MESH", request->mesh, "Mesh file or shape").required().type_name("");
     command
-        ->add_option(
+        .add_option(
             "--build", request->build,
             "The build that makes the leaves: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)")
-        ->type_name("S");
-    command->add_option("--out", request->out, "The mesh to write (.off)")->required()->type_name("FILE");
+        .type_name("S");
+    command.add_option("--out", request->out, "The mesh to write (.off)").required().type_name("FILE");
     command
-        ->add_option("--numbers", request->numbers,
-                     "Write which triangle of MESH each one was, rows triangle,was, to this CSV file")
-        ->type_name("FILE");
-    command->footer(
+        .add_option("--numbers", request->numbers,
+                    "Write which triangle of MESH each one was, rows triangle,was, to this CSV file")
+        .type_name("FILE");
+    command.footer(
         "The build file_order with the tree implicit:vertices=fetched takes 1.2 bytes a triangle of such a mesh, in\n"
         "collide, contacts and configs. There FILE:order=BUILD, or SHAPE:triangles=N,order=BUILD, stands for it "
         "without a\n"
         "file. Put in order again, triangles move again: a build also goes by where they stood.");
-    command->callback([request] { write_ordered(*request); });
+    command.callback([request] { write_ordered(*request); });
 }
 
 }  // namespace aabblab

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -125,15 +125,16 @@ void find_pairs(const pairs_request& request) {
 
 }  // namespace
 
-void add_pairs(CLI::App& program, int&) {
-    auto* command = program.add_subcommand("pairs", "Global search on a recording: every pair of overlapping boxes");
+void add_pairs(const command_parser& program, int&) {
+    const command_parser command =
+        program.add_command("pairs", "Global search on a recording: every pair of overlapping boxes");
     auto request = std::make_shared<pairs_request>();
-    command->add_option("SCENE", request->recording, "Recording of boxes (.aabbs)")->required()->type_name("");
-    request->global.add_to(*command);
-    command->add_option("--engine", request->engine, "Reference system in place of all of these")->type_name("E");
-    command->add_option("--out", request->out, "Write the pairs, rows frame,a,b, to this CSV file")->type_name("FILE");
-    command->add_flag("--json", request->json, "Print the summary as JSON");
-    command->callback([request] { find_pairs(*request); });
+    command.add_option("SCENE", request->recording, "Recording of boxes (.aabbs)").required().type_name("");
+    request->global.add_to(command);
+    command.add_option("--engine", request->engine, "Reference system in place of all of these").type_name("E");
+    command.add_option("--out", request->out, "Write the pairs, rows frame,a,b, to this CSV file").type_name("FILE");
+    command.add_flag("--json", request->json, "Print the summary as JSON");
+    command.callback([request] { find_pairs(*request); });
 }
 
 }  // namespace aabblab

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -7,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "number.hpp"
 #include "output.hpp"
@@ -144,19 +144,19 @@ int recommend(const recommend_request& request) {
 
 }  // namespace
 
-void add_recommend(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand(
+void add_recommend(const command_parser& program, int& status) {
+    const command_parser command = program.add_command(
         "recommend",
         "Which composition or engine is the fastest in a scene, from a race that drops the hopeless early");
     auto request = std::make_shared<recommend_request>();
-    command->add_option("WHAT", request->what, scene_arguments_help)->required()->type_name("");
+    command.add_option("WHAT", request->what, scene_arguments_help).required().type_name("");
     command
-        ->add_option_function<std::string>(
+        .add_option(
             "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text); },
             "About how long to race at most (default 60); then as long again at most until CGAL has the exact pairs")
-        ->type_name("S");
-    command->add_option("--report", request->report, "Write all of it as a page, too")->type_name("FILE.html");
-    command->callback([request, &status] { status = recommend(*request); });
+        .type_name("S");
+    command.add_option("--report", request->report, "Write all of it as a page, too").type_name("FILE.html");
+    command.callback([request, &status] { status = recommend(*request); });
 }
 
 }  // namespace aabblab

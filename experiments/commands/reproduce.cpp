@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -131,27 +131,28 @@ int reproduce(const reproduce_request& request) {
 
 }  // namespace
 
-void add_reproduce(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand("reproduce", "Every table, figure and claim of the paper, with a verdict");
+void add_reproduce(const command_parser& program, int& status) {
+    const command_parser command =
+        program.add_command("reproduce", "Every table, figure and claim of the paper, with a verdict");
     auto request = std::make_shared<reproduce_request>();
-    command->add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of most of an hour");
-    command->add_flag("--judge", request->judge,
-                      "Measure nothing: judge results that are there, of whatever build or machine, and write the "
-                      "report anew");
+    command.add_flag("--quick", request->quick, "Small scenes, few repeats: some minutes in place of most of an hour");
+    command.add_flag("--judge", request->judge,
+                     "Measure nothing: judge results that are there, of whatever build or machine, and write the "
+                     "report anew");
     command
-        ->add_option("RESULTS", request->sources,
-                     "With --judge: archives or folders of results, in place of the folder of --out")
-        ->type_name("");
+        .add_option("RESULTS", request->sources,
+                    "With --judge: archives or folders of results, in place of the folder of --out")
+        .type_name("");
     command
-        ->add_option("--out", request->out,
-                     "Folder of results and report (default results/reproduce; of RESULTS "
-                     "results/reproduce-judged)")
-        ->type_name("DIR");
+        .add_option("--out", request->out,
+                    "Folder of results and report (default results/reproduce; of RESULTS "
+                    "results/reproduce-judged)")
+        .type_name("DIR");
     command
-        ->add_option("--archive", request->archive,
-                     "Also pack all that --judge needs into one file, a tar compressed by xz")
-        ->type_name("FILE");
-    command->callback([request, &status] { status = reproduce(*request); });
+        .add_option("--archive", request->archive,
+                    "Also pack all that --judge needs into one file, a tar compressed by xz")
+        .type_name("FILE");
+    command.callback([request, &status] { status = reproduce(*request); });
 }
 
 }  // namespace aabblab

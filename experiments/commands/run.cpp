@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -46,19 +45,19 @@ int run(const run_request& request) {
 
 }  // namespace
 
-void add_run(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand("run", "One experiment: scenes x compositions, validated, then timed");
+void add_run(const command_parser& program, int& status) {
+    const command_parser command =
+        program.add_command("run", "One experiment: scenes x compositions, validated, then timed");
     auto request = std::make_shared<run_request>();
-    command->add_option("CONFIG", request->config, "Config of the experiment (.toml)")->required()->type_name("");
-    command->add_option("--out", request->out, "Folder of the results (default results/NAME, or results/NAME-quick)")
-        ->type_name("DIR");
-    command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
-    command->add_flag("--resume", request->resume, "Skip what is finished in the folder already");
-    command->add_flag("--counts", request->counts,
-                      "Also print the work of each composition and the bytes of its parts");
+    command.add_option("CONFIG", request->config, "Config of the experiment (.toml)").required().type_name("");
+    command.add_option("--out", request->out, "Folder of the results (default results/NAME, or results/NAME-quick)")
+        .type_name("DIR");
+    command.add_flag("--quick", request->quick, "What the config says under quick, for a first look");
+    command.add_flag("--resume", request->resume, "Skip what is finished in the folder already");
+    command.add_flag("--counts", request->counts, "Also print the work of each composition and the bytes of its parts");
     // What it starts afresh for each of the processes that a config asks for; not for users.
-    command->add_option("--process", request->process)->group("");
-    command->callback([request, &status] { status = run(*request); });
+    command.add_option("--process", request->process, "").hidden();
+    command.callback([request, &status] { status = run(*request); });
 }
 
 }  // namespace aabblab

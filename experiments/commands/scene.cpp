@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -228,7 +228,7 @@ std::string option_names(const std::string& parameter) {
 }
 
 /// One option for each parameter of any kind of scene, which refuses those it does not have.
-void add_parameters(CLI::App& command, scene_request& request) {
+void add_parameters(const command_parser& command, scene_request& request) {
     std::map<std::string, std::string> helps;
     for (const scene_info& kind : scene_kinds())
         for (const aabb::parameter_info& p : kind.parameters) {
@@ -237,30 +237,31 @@ void add_parameters(CLI::App& command, scene_request& request) {
             if (!p.fallback.empty()) help += fmt::format(" (default {})", p.fallback);
         }
     for (const auto& [name, help] : helps)
-        command.add_option(option_names(name), request.settings[name], help)->type_name("V");
+        command.add_option(option_names(name), request.settings[name], help).type_name("V");
     command.footer("aabblab list tells what these parameters mean and may be.");
 }
 
 }  // namespace
 
-void add_scene(CLI::App& program, int&) {
-    auto* command = program.add_subcommand("scene", "Write a scene as a recording of boxes, or as a picture");
+void add_scene(const command_parser& program, int&) {
+    const command_parser command =
+        program.add_command("scene", "Write a scene as a recording of boxes, or as a picture");
     auto request = std::make_shared<scene_request>();
     std::string names;
     for (const std::string& name : scene_names()) names += (names.empty() ? "" : ", ") + name;
-    command->add_option("NAME", request->kind, "One of " + names)->required()->type_name("");
-    add_parameters(*command, *request);
-    command->add_option("--mesh", request->meshes, "Mesh file or shape, for scenes of meshes; may be repeated")
-        ->allow_extra_args(false)
-        ->type_name("MESH");
-    command->add_option("--seed", request->seed, "Whole number: the same seed gives the same scene (default 1)")
-        ->type_name("S");
-    command->add_option("--out", request->out, "The recording to write (.aabbs)")->type_name("FILE");
-    command->add_option("--motion", request->motion, "The motion file to write, for `contacts`: the poses of meshes")
-        ->type_name("FILE");
-    command->add_option("--picture", request->picture, "The picture to write (.svg): the first and the last frame")
-        ->type_name("FILE");
-    command->callback([request] { write_scene(*request); });
+    command.add_option("NAME", request->kind, "One of " + names).required().type_name("");
+    add_parameters(command, *request);
+    command.add_option("--mesh", request->meshes, "Mesh file or shape, for scenes of meshes; may be repeated")
+        .one_value_at_a_time()
+        .type_name("MESH");
+    command.add_option("--seed", request->seed, "Whole number: the same seed gives the same scene (default 1)")
+        .type_name("S");
+    command.add_option("--out", request->out, "The recording to write (.aabbs)").type_name("FILE");
+    command.add_option("--motion", request->motion, "The motion file to write, for `contacts`: the poses of meshes")
+        .type_name("FILE");
+    command.add_option("--picture", request->picture, "The picture to write (.svg): the first and the last frame")
+        .type_name("FILE");
+    command.callback([request] { write_scene(*request); });
 }
 
 }  // namespace aabblab

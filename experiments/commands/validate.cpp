@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -90,31 +89,21 @@ int validate(const validate_request& request) {
     return wrong == 0 ? 0 : 1;
 }
 
-/// A suite has no part in what stands before it, and it must not be lost in silence.
-void require_alone(const CLI::App& command, const CLI::App& suite) {
-    for (const CLI::Option* option : command.get_options())
-        if (option->count() > 0)
-            throw aabb::input_error("validate: " + option->get_name() + " has no part in '" + suite.get_name() +
-                                    "'; what it takes stands behind its name");
-}
-
 }  // namespace
 
-void add_validate(CLI::App& program, int& status) {
-    auto* command = program.add_subcommand(
+void add_validate(const command_parser& program, int& status) {
+    const command_parser command = program.add_command(
         "validate", "Exactness of every composition of an experiment, or of all there are, against the references");
     auto request = std::make_shared<validate_request>();
-    command->add_option("CONFIG", request->config, "Config of the experiment (.toml); without one, every composition")
-        ->type_name("");
-    command->add_flag("--quick", request->quick, "What the config says under quick, for a first look");
-    command->callback([command, request, &status] {
-        if (command->get_subcommands().empty()) status = validate(*request);
+    command.add_option("CONFIG", request->config, "Config of the experiment (.toml); without one, every composition")
+        .type_name("");
+    command.add_flag("--quick", request->quick, "What the config says under quick, for a first look");
+    command.callback([command, request, &status] {
+        if (!command.any_command_given()) status = validate(*request);
     });
-    command->require_subcommand(0, 1);
-    add_validate_extreme(*command, status);
-    add_validate_stiff(*command, status);
-    for (CLI::App* suite : command->get_subcommands([](const CLI::App*) { return true; }))
-        suite->preparse_callback([command, suite](std::size_t) { require_alone(*command, *suite); });
+    add_validate_extreme(command, status);
+    add_validate_stiff(command, status);
+    command.allow_one_command();
 }
 
 }  // namespace aabblab

@@ -1,12 +1,12 @@
-#include <CLI/CLI.hpp>
-
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -87,12 +87,12 @@ suite_report play_extreme_suite(const std::filesystem::path& folder, const std::
     return report;
 }
 
-void add_validate_extreme(CLI::App& validate, int& status) {
-    auto* command = validate.add_subcommand(
+void add_validate_extreme(const command_parser& validate, int& status) {
+    const command_parser command = validate.add_command(
         "extreme",
         "Every composition and engine where exactness is hardest: extreme scenes, bad input, other arithmetic, and "
         "pairs of triangles that were found hard");
-    command->footer([] {
+    command.footer([] {
         table t{{{"Scenes:", false}, {"", false}}, {}};
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
             t.rows.push_back({scene.name, scene.summary});
@@ -100,14 +100,14 @@ void add_validate_extreme(CLI::App& validate, int& status) {
         return text.substr(0, text.size() - 1);  // the end of the line is printed behind it
     });
     auto request = std::make_shared<extreme_request>();
-    command->add_option("--cases", request->cases, "Pairs of triangles (default validation/cases/triangles.toml)")
-        ->type_name("FILE");
+    command.add_option("--cases", request->cases, "Pairs of triangles (default validation/cases/triangles.toml)")
+        .type_name("FILE");
     command
-        ->add_option("--out", request->out,
-                     "Folder of extreme.csv (default results/extreme, with --quick results/extreme-quick)")
-        ->type_name("DIR");
-    command->add_flag("--quick", request->quick, "Default parameters only, and fewer coincident triangles");
-    command->callback([request, &status] { status = validate_extreme(*request); });
+        .add_option("--out", request->out,
+                    "Folder of extreme.csv (default results/extreme, with --quick results/extreme-quick)")
+        .type_name("DIR");
+    command.add_flag("--quick", request->quick, "Default parameters only, and fewer coincident triangles");
+    command.callback([request, &status] { status = validate_extreme(*request); });
 }
 
 }  // namespace aabblab

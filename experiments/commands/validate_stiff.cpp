@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "command_parser.hpp"
 #include "commands.hpp"
 #include "output.hpp"
 
@@ -123,20 +123,20 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
     return report;
 }
 
-void add_validate_stiff(CLI::App& validate, int& status) {
-    auto* command = validate.add_subcommand(
+void add_validate_stiff(const command_parser& validate, int& status) {
+    const command_parser command = validate.add_command(
         "stiff", "Bodies stepped in time through detection, held against closed forms and published results");
     auto request = std::make_shared<stiff_request>();
     std::string names;
     for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);
-    command->add_option("STUDY", request->studies, "Some of the studies, without any all of them: " + names)
-        ->type_name("");
+    command.add_option("STUDY", request->studies, "Some of the studies, without any all of them: " + names)
+        .type_name("");
     command
-        ->add_option("--out", request->out,
-                     "Folder of tables and plots (default results/stiff, with --quick results/stiff-quick)")
-        ->type_name("DIR");
-    command->add_flag("--quick", request->quick, "Fewer and shorter, for a first look");
-    command->callback([request, &status] { status = validate_stiff(*request); });
+        .add_option("--out", request->out,
+                    "Folder of tables and plots (default results/stiff, with --quick results/stiff-quick)")
+        .type_name("DIR");
+    command.add_flag("--quick", request->quick, "Fewer and shorter, for a first look");
+    command.callback([request, &status] { status = validate_stiff(*request); });
 }
 
 }  // namespace aabblab
