@@ -250,6 +250,32 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     CHECK(bytes_of_file(folder / "r/results.csv") == text);
 }
 
+TEST_CASE("Each scene has an order of its own in which contenders are played after the first, the same each time") {
+    experiment e = boxes(1);
+    e.recorded.clear();
+    std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+    contenders.resize(1);
+    for (std::size_t i = 1; i < 8; ++i) {
+        contenders.push_back(contenders.front());
+        contenders.back().name[aabb::strategy_kind::sort] = std::to_string(i);
+    }
+    const auto order_in = [&](std::uint64_t seed) {
+        const temporary_folder folder;
+        aabblab::scene_choice scene = e.scenes[0];
+        scene.seed = seed;
+        results_folder results(folder / "r", record_of(e), existing_results::refuse);
+        REQUIRE(aabblab::run_scene(e, scene, contenders, results).empty());
+        std::string order;
+        for (const row& r : results.rows()) order += r.name[aabb::strategy_kind::sort] + " ";
+        CHECK(order.starts_with(contenders.front().name[aabb::strategy_kind::sort] + " "));
+        return order;
+    };
+    const std::string first = order_in(1);
+    CHECK(order_in(1) == first);
+    CHECK(order_in(2) != first);
+    CHECK(order_in(3) != order_in(2));
+}
+
 TEST_CASE("Results of another config are not continued") {
     const temporary_folder folder;
     {
