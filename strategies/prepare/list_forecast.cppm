@@ -75,20 +75,16 @@ public:
         return true;
     }
 
-    /// Whether half of that list would not pay, by a rough count: it may hold each box with every other, whatever is
-    /// reckoned.
-    [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, const membership& objects, double margin,
-                                       std::size_t found) {
-        constexpr std::size_t by_chance = 8;
-        const rough_reach reach = rough_reach_of(boxes, objects, drawn_, margin);
-        const auto overlapping = std::max(found, static_cast<std::size_t>(reach.overlapping));
-        return reach.counted >= by_chance &&
-               !pays(objects.size(), overlapping, static_cast<std::size_t>(reach.in_reach / 2));
+    [[nodiscard]] rough_reach reach(std::span<const box> boxes, const membership& objects, double margin) {
+        return rough_reach_of(boxes, objects, drawn_, margin);
     }
 
-    /// Whether a rough count finds any pair in reach of that margin.
-    [[nodiscard]] bool any_in_reach(std::span<const box> boxes, const membership& objects, double margin) {
-        return rough_reach_of(boxes, objects, drawn_, margin).counted > 0;
+    /// Whether half of a list would not pay, by a rough count of it: it may hold each box with every other, whatever is
+    /// reckoned.
+    [[nodiscard]] static bool is_far_too_long(const rough_reach& reach, std::size_t boxes, std::size_t found) {
+        constexpr std::size_t by_chance = 8;
+        const auto overlapping = std::max(found, static_cast<std::size_t>(reach.overlapping));
+        return reach.counted >= by_chance && !pays(boxes, overlapping, static_cast<std::size_t>(reach.in_reach / 2));
     }
 
     /// Boxes that were drawn for samples, for whoever draws others (`drawn_id`).

@@ -2,7 +2,6 @@ module;
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -99,8 +98,15 @@ struct list_plan {
     const double times = static_cast<double>(frames) / static_cast<double>(seen);
     if (!(grown < 2 * grown_before)) return a_little_more * (last + 2 * grown * (times - 1));  // a drift
     const double ratio = std::max(0.3, grown / grown_before);
-    const double doublings = std::log2(times);
-    const double more = ratio == 1 ? doublings : ratio * (std::pow(ratio, doublings) - 1) / (ratio - 1);
+    // Evenly within a doubling.
+    double more = 0;
+    double next = ratio;
+    double left = times;
+    for (; left >= 2; left /= 2) {
+        more += next;
+        next *= ratio;
+    }
+    more += next * (left - 1);
     return a_little_more * (last + grown * more);
 }
 
@@ -134,6 +140,19 @@ inline constexpr double worth_another_list = 0.95;
     const auto n = static_cast<double>(boxes);
     return cost_of_service(n, static_cast<double>(listed), cost) <
            worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
+}
+
+/// Whether it pays to drop from a list, which is to serve so many frames yet, all pairs but those that overlap, though
+/// that takes time, and the list will end sooner and another one be made.
+[[nodiscard]] inline bool pays_to_shorten(std::size_t boxes, std::size_t pairs, std::size_t listed, std::size_t frames,
+                                          const cost_model& cost = machine_costs()) {
+    const auto n = static_cast<double>(boxes);
+    const auto overlapping = static_cast<double>(std::min(pairs, listed));
+    const auto all = static_cast<double>(listed);
+    const double spared = (all - overlapping) * static_cast<double>(frames) * cost.test_pair;
+    // Each is tested twice: whether it stays, and whether it is sure.
+    const double shortened = n * cost.keep_box + 2 * all * cost.test_pair;
+    return spared > shortened + n * cost.keep_box + cost_of_search(n, overlapping, cost);
 }
 
 /// The plan that costs least a frame.

@@ -16,6 +16,7 @@ module;
 module aabb.prepare.neighbour_list;
 
 import aabb.base;
+import aabb.costs;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
@@ -26,6 +27,7 @@ import aabb.prepare.list_pause;
 import aabb.prepare.list_plan;
 import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
+import aabb.prepare.reach;
 import aabb.prepare.relative_motion;
 import aabb.prepare.rest_watch;
 import aabb.simd;
@@ -85,11 +87,12 @@ private:
     void pass_over(std::span<const box> boxes);
     [[nodiscard]] std::optional<wanted_list> paying_list(std::span<const box> boxes, bool same_objects);
     [[nodiscard]] std::optional<double> margin_about_kept(const list_plan& plan) const;
+    [[nodiscard]] bool serves_as_well(const list_plan& plan) const;
     [[nodiscard]] bool repeats_plan(std::span<const box> boxes);
     [[nodiscard]] bool serves_few_well() const;
     [[nodiscard]] double first_margin(std::span<const box> boxes);
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
-        return forecast_.is_far_too_long(boxes, objects_, margin, found_);
+        return list_forecast::is_far_too_long(forecast_.reach(boxes, objects_, margin), objects_.size(), found_);
     }
     [[nodiscard]] list_outlook outlook() const { return forecast_.outlook(motion_, objects_.size(), found_); }
     void search_as_it_is(std::span<const box> boxes);
@@ -119,8 +122,10 @@ private:
     static constexpr double less_trust = 0.8;
     static constexpr double least_trust = 0.5;
     static constexpr std::size_t longest_history = 256;
-    /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
-    static constexpr unsigned longest_repetition = 8;
+    /// So many lists are made by one plan, since pairs may become more or fewer meanwhile, and twice as many after each
+    /// that changed nothing.
+    static constexpr unsigned fewest_repetitions = 8;
+    static constexpr unsigned most_repetitions = 64;
     /// A list of few boxes that lasts so many frames is good enough.
     static constexpr std::size_t frames_of_good_list = 8;
     /// To tell which pairs are sure takes as long as to test them twice, so a list is to have served before.
@@ -156,7 +161,8 @@ private:
     std::size_t planned_ = 0;      // frames since then until which the list is to serve; 0 where nobody reckoned
     double planned_for_ = 0;       // the farthest that boxes had moved when that was reckoned
     unsigned repeated_ = 0;        // lists made since by the same plan
-    std::size_t found_ = 0;        // pairs of the frame before
+    unsigned longest_repetition_ = fewest_repetitions;
+    std::size_t found_ = 0;  // pairs of the frame before
     list_forecast forecast_;
     rest_watch rest_;
     bool is_as_kept_ = false;  // in the frame before
@@ -351,6 +357,12 @@ auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_obj
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
+        if (pays && serves_as_well(plan)) {
+            planned_ = age_;
+            longest_repetition_ = std::min(2 * longest_repetition_, most_repetitions);
+            return wanted_list{margin_};
+        }
+        longest_repetition_ = fewest_repetitions;
         const std::optional<double> about_kept = pays && same_objects ? margin_about_kept(plan) : std::nullopt;
         const double margin = pays ? std::max(spare_margin(outlook(), plan), about_kept.value_or(0)) : plan.margin;
         const bool may_be_wrong =
@@ -378,19 +390,29 @@ std::optional<double> neighbour_list_stage::margin_about_kept(const list_plan& p
     return margin <= a_little_longer * plan.margin ? std::optional(margin) : std::nullopt;
 }
 
+/// Whether the last list costs about as little as the next one is to: what is known to serve is not given up for a
+/// promise.
+bool neighbour_list_stage::serves_as_well(const list_plan& plan) const {
+    constexpr double about = 1.03;
+    if (!is_kept_ || margin_ == 0 || margin_ < margin_when_made_ || is_about_earlier_ || age_ < 2) return false;
+    const auto n = static_cast<double>(objects_.size());
+    const double search = cost_of_search(n, pairs_listed(outlook(), 0), machine_costs());
+    return cost_of_list(n, static_cast<double>(list_.size()), age_, machine_costs()) <= about * plan.cost * search;
+}
+
 /// Whether the next list is made as the last one was, since boxes moved as they did before it: of a few boxes, planning
 /// takes as long as searching them.
 bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
     constexpr double alike = 1.02;
     return age_ == planned_ && motion_.back() <= alike * planned_for_ && planned_for_ <= alike * motion_.back() &&
-           repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
+           repeated_ < longest_repetition_ && !is_far_too_long(boxes, margin_);
 }
 
 /// Whether the next list gets the margin of this one without a plan, since few boxes are searched in the time that a
 /// plan takes, and this one lasted.
 bool neighbour_list_stage::serves_few_well() const {
     return is_kept_ && margin_ > 0 && !is_too_long_ && objects_.size() < fewest_boxes_of_long_list &&
-           repeated_ < longest_repetition && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
+           repeated_ < longest_repetition_ && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
 }
 
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
@@ -398,9 +420,11 @@ double neighbour_list_stage::first_margin(std::span<const box> boxes) {
     const double margin = mean_extents(extents_of_first_margin, boxes, objects_);
     found_ = 0;
     if (objects_.size() < fewest_boxes_of_long_list) return margin;
-    seems_sparse_ = !forecast_.any_in_reach(boxes, objects_, longer_where_sparse * margin);
+    const rough_reach longer = forecast_.reach(boxes, objects_, longer_where_sparse * margin);
+    seems_sparse_ = longer.counted == 0;
     if (seems_sparse_) return longer_where_sparse * margin;
-    return is_far_too_long(boxes, margin) ? 0 : margin;
+    const bool may_be_too_long = list_forecast::is_far_too_long(longer, objects_.size(), found_);
+    return may_be_too_long && is_far_too_long(boxes, margin) ? 0 : margin;
 }
 
 void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
@@ -453,6 +477,7 @@ auto neighbour_list_stage::shorter_list() const -> std::optional<list_plan> {
     if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return std::nullopt;
     if (list_.tested() <= objects_.size() / 16) return std::nullopt;
     const std::size_t frames = times_as_long * std::size_t{age_};
+    if (!pays_to_shorten(objects_.size(), found_, list_.size(), frames - age_)) return std::nullopt;
     // What got more than twice as far in twice the time is to do so in the next two doublings, too.
     const double speeds_up = std::max(1.0, motion_.back() / (2 * motion_[age_ / 2 - 1]));
     const double needed = a_quarter_more * speeds_up * speeds_up * margin_after(motion_, frames);

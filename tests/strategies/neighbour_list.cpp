@@ -654,6 +654,26 @@ TEST_CASE("what moves by little gets a shorter list without a search") {
     }
 }
 
+TEST_CASE("a list of few pairs is shortened only once it has served so long that this pays") {
+    constexpr std::size_t n = 100;
+    const auto shortened_in = [](float edge) {
+        const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+        std::uint64_t random = 1;
+        const std::vector<vec3f> homes = scattered(n, edge, random);
+        const std::vector<vec3f> ways = scattered(n, 1, random);
+        double first = 0;
+        for (int frame = 0; frame < 200; ++frame) {
+            (void)pairs_of(*stage, cubes_on_their_ways(homes, ways, 0.00005F * static_cast<float>(frame)));
+            if (frame == 0) first = margin_of(*stage);
+            if (margin_of(*stage) < first) return frame;
+        }
+        return 0;
+    };
+    CHECK(shortened_in(3) == 8);
+    CHECK(shortened_in(8) == 16);
+    CHECK(shortened_in(12) == 32);
+}
+
 TEST_CASE("a list that was shortened too much is not repeated") {
     constexpr std::size_t n = 100;
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
@@ -888,7 +908,8 @@ TEST_CASE("few boxes repeat the margin of a list that lasted, unless that lists 
         for (int frame = 1; frame <= 60; ++frame) (void)pairs_of(*stage, placed(n, 3, frame));
         CHECK(margin_of(*stage) == Catch::Approx(0.3));
         for (int frame = 61; frame <= 240; ++frame) (void)pairs_of(*stage, placed(n, 3, frame));
-        CHECK((margin_of(*stage) == Catch::Approx(0.3)) == (n == 100));
+        // Others that are planned would cost hardly less.
+        CHECK(margin_of(*stage) == Catch::Approx(0.3));
         if (n == 300) continue;
         // All within reach of each other, of which none overlap.
         for (int frame = 0; frame < 3; ++frame) CHECK(pairs_of(*stage, placed(n, 1.15F, frame)).empty());
@@ -932,6 +953,7 @@ TEST_CASE("the margin goes on as the last doublings of time did") {
     CHECK(margin_after(drift, 32) == Catch::Approx(32 * 1.05));
     CHECK(margin_after(drift, 12) == Catch::Approx(12 * 1.05));
     CHECK(margin_after(jiggle, 1024) == Catch::Approx(2 * 1.05).epsilon(0.001));
+    CHECK(margin_after(jiggle, 24) == Catch::Approx((margin_after(jiggle, 16) + margin_after(jiggle, 32)) / 2));
     CHECK(margin_after(std::vector<double>{3.0}, 4) == Catch::Approx(12 * 1.05));
     const std::vector<double> speeding_up{1, 4, 9, 16, 25};
     CHECK(margin_after(speeding_up, 2) == Catch::Approx((25 - 9) * 1.05));
