@@ -193,13 +193,15 @@ admission known(std::span<const contender> contenders, std::span<const row> rows
     return all;
 }
 
-/// Puts all but the first, to which others are held, in an order of the scene's own, the same each time. Who is played
-/// after its like, named beside it in a config, finds code at hand, and few repeats are too few for everyone to be
-/// played after everyone.
-void shuffle(std::span<timed_contender> all, const scene_choice& scene) {
+/// Contenders in the order in which they are played: all but the first, to which others are held, shuffled in each
+/// scene, the same each time. Who is played after its like, named beside it in a config, finds code at hand, and few
+/// repeats are too few for everyone to be played after everyone.
+std::vector<contender> shuffled(std::span<const contender> contenders, const scene_choice& scene) {
+    std::vector<contender> all(contenders.begin(), contenders.end());
     const std::string text = scene.kind + parameters_text(scene);
     std::seed_seq seed(text.begin(), text.end());
-    if (!all.empty()) std::ranges::shuffle(all.subspan(1), std::mt19937_64(seed));
+    if (!all.empty()) std::ranges::shuffle(std::span(all).subspan(1), std::mt19937_64(seed));
+    return all;
 }
 
 }  // namespace
@@ -210,10 +212,9 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     const share_of_repeats share(e, process);
     drop_interrupted_repeat(e, scene, share, contenders.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
-    const std::vector<contender> left = unfinished(e, contenders, share, rows);
+    const std::vector<contender> left = unfinished(e, shuffled(contenders, scene), share, rows);
     if (left.empty()) return {};
     auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
-    shuffle(timed, scene);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
     for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat) {
         const hopeless given_up(e, share, repeat > share.begin ? rows_of(scene, results.rows()) : std::vector<row>());

@@ -91,7 +91,8 @@ struct row {
 
 /// Rows of a folder of results, held against its manifest: the scenes are the manifest's, and an exact row has the
 /// digest that the manifest has for its scene. Where the run was finished, so that the manifest has a seal, all rows
-/// are there and none was altered, and they stand in the order of the config, whatever their order in the file.
+/// are there and none was altered, and they stand in the order of scenes, repeats and contenders, whatever their order
+/// in the file.
 /// @throws aabb::input_error where that is not so, with file, and line where there is one.
 [[nodiscard]] std::vector<row> verified_rows(const std::filesystem::path& folder);
 

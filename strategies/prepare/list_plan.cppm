@@ -142,7 +142,7 @@ inline constexpr double worth_another_list = 0.95;
            worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
 }
 
-/// Whether it pays to drop from a list, which is to serve so many frames yet, all pairs but those that overlap, though
+/// Whether it would pay to drop from a list, which is to serve so many frames yet, all pairs but those that overlap:
 /// that takes time, and the list will end sooner and another one be made.
 [[nodiscard]] inline bool pays_to_shorten(std::size_t boxes, std::size_t pairs, std::size_t listed, std::size_t frames,
                                           const cost_model& cost = machine_costs()) {
@@ -150,7 +150,7 @@ inline constexpr double worth_another_list = 0.95;
     const auto overlapping = static_cast<double>(std::min(pairs, listed));
     const auto all = static_cast<double>(listed);
     const double spared = (all - overlapping) * static_cast<double>(frames) * cost.test_pair;
-    // Each is tested twice: whether it stays, and whether it is sure.
+    // Each is tested twice at most: whether it stays, and whether it is sure.
     const double shortened = n * cost.keep_box + 2 * all * cost.test_pair;
     return spared > shortened + n * cost.keep_box + cost_of_search(n, overlapping, cost);
 }

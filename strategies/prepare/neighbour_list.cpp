@@ -79,6 +79,8 @@ private:
     [[nodiscard]] double trust() const noexcept {
         return objects_.size() <= hardly_any_boxes ? trust_in_hardly_any * trust_ : trust_;
     }
+    /// Whether the list is to serve more than a few frames yet, as far as anybody reckoned.
+    [[nodiscard]] bool is_to_serve_on() const noexcept { return planned_ == 0 || planned_ >= age_ + frames_of_sure; }
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool rests(std::span<const box> boxes);
     [[nodiscard]] bool serves(std::span<const box> boxes);
@@ -122,14 +124,14 @@ private:
     static constexpr double less_trust = 0.8;
     static constexpr double least_trust = 0.5;
     static constexpr std::size_t longest_history = 256;
-    /// So many lists are made by one plan, since pairs may become more or fewer meanwhile, and twice as many after each
-    /// that changed nothing.
-    static constexpr unsigned fewest_repetitions = 8;
-    static constexpr unsigned most_repetitions = 64;
+    /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
+    static constexpr unsigned longest_repetition = 16;
     /// A list of few boxes that lasts so many frames is good enough.
     static constexpr std::size_t frames_of_good_list = 8;
-    /// To tell which pairs are sure takes as long as to test them twice, so a list is to have served before.
+    /// To tell which pairs are sure takes as long as to test them twice, so a list is to have served before, and to
+    /// serve so many frames yet.
     static constexpr std::uint32_t frames_before_sure = 2;
+    static constexpr std::uint32_t frames_of_sure = 4;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
     /// So many times as long where hardly any boxes come into reach by that.
@@ -161,8 +163,7 @@ private:
     std::size_t planned_ = 0;      // frames since then until which the list is to serve; 0 where nobody reckoned
     double planned_for_ = 0;       // the farthest that boxes had moved when that was reckoned
     unsigned repeated_ = 0;        // lists made since by the same plan
-    unsigned longest_repetition_ = fewest_repetitions;
-    std::size_t found_ = 0;  // pairs of the frame before
+    std::size_t found_ = 0;        // pairs of the frame before
     list_forecast forecast_;
     rest_watch rest_;
     bool is_as_kept_ = false;  // in the frame before
@@ -200,7 +201,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
                 keep_those_that_meet(boxes);
             else if (const std::optional<list_plan> shorter = adapts() ? shorter_list() : std::nullopt)
                 shorten_as_planned(*shorter);
-            else if (margin_ > 0 && config_.every == 0 && ++served_ == frames_before_sure)
+            else if (margin_ > 0 && config_.every == 0 && ++served_ == frames_before_sure && is_to_serve_on())
                 list_.tell_sure(kept_, margin_);
         } else if (const std::optional<wanted_list> next =
                        watches_ ? watched(boxes, same_objects) : next_list(boxes, same_objects)) {
@@ -357,12 +358,11 @@ auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_obj
         cost_ = plan.cost;
         planned_ = plan.frames;
         const bool pays = plan.frames > 1;
-        if (pays && serves_as_well(plan)) {
+        if (pays && serves_as_well(plan) && !is_far_too_long(boxes, margin_)) {
             planned_ = age_;
-            longest_repetition_ = std::min(2 * longest_repetition_, most_repetitions);
+            forecast_.foresee(outlook(), margin_);
             return wanted_list{margin_};
         }
-        longest_repetition_ = fewest_repetitions;
         const std::optional<double> about_kept = pays && same_objects ? margin_about_kept(plan) : std::nullopt;
         const double margin = pays ? std::max(spare_margin(outlook(), plan), about_kept.value_or(0)) : plan.margin;
         const bool may_be_wrong =
@@ -405,14 +405,14 @@ bool neighbour_list_stage::serves_as_well(const list_plan& plan) const {
 bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
     constexpr double alike = 1.02;
     return age_ == planned_ && motion_.back() <= alike * planned_for_ && planned_for_ <= alike * motion_.back() &&
-           repeated_ < longest_repetition_ && !is_far_too_long(boxes, margin_);
+           repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
 }
 
 /// Whether the next list gets the margin of this one without a plan, since few boxes are searched in the time that a
 /// plan takes, and this one lasted.
 bool neighbour_list_stage::serves_few_well() const {
     return is_kept_ && margin_ > 0 && !is_too_long_ && objects_.size() < fewest_boxes_of_long_list &&
-           repeated_ < longest_repetition_ && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
+           repeated_ < longest_repetition && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
 }
 
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.

@@ -20,12 +20,12 @@ export namespace aabb {
 /// more than two margins, which cannot part. What all move alike is no motion. An object that comes makes a search too.
 ///
 /// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one,
-/// and more where that lists next to no more. Of the first one nothing is known yet: it gets a tenth of the mean
-/// extent, and three where boxes lie further apart. Where no list pays, frames are searched as they are, and boxes
-/// watched in some of them. Where boxes move by far less than was thought, the list becomes the one that a smaller
-/// margin would have made; where they swing about their places by more, the next one is about where they were when the
-/// last one was made. What a search costs is reckoned as that of `columns`: before a slower one, lists are given up
-/// sooner than they need to be.
+/// or that of the last one where this costs about as little, and more where that lists next to no more. Of the first
+/// one nothing is known yet: it gets a tenth of the mean extent, and three where boxes lie further apart. Where no list
+/// pays, frames are searched as they are, and boxes watched in some of them. Where boxes move by far less than was
+/// thought, the list becomes the one that a smaller margin would have made, once that pays; where they swing about
+/// their places by more, the next one is about where they were when the last one was made. What a search costs is
+/// reckoned as that of `columns`: before a slower one, lists are given up sooner than they need to be.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
 /// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where

@@ -749,6 +749,19 @@ TEST_CASE("pairs that cannot part within the margin are not tested") {
     }
 }
 
+TEST_CASE("nobody asks which pairs cannot part of a list that is to end soon") {
+    const auto drifts = [](float pace) {
+        return [pace](int frame, std::size_t) { return pace * static_cast<float>(frame); };
+    };
+    // Lists of five frames and of seven, each after the first one, of which nothing is known.
+    const played fast = played_about_homes(10, drifts(0.05F));
+    CHECK(fast.last_search == 5);
+    CHECK(fast.tests[8] == fast.tests[6]);
+    const played slower = played_about_homes(13, drifts(0.03F));
+    CHECK(slower.last_search == 7);
+    CHECK(static_cast<double>(slower.tests[10]) < 0.7 * static_cast<double>(slower.tests[8]));
+}
+
 TEST_CASE("pairs that could not part are tested once boxes shrink") {
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 100);
     std::vector<box> boxes;
