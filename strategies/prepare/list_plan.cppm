@@ -142,17 +142,18 @@ inline constexpr double worth_another_list = 0.95;
            worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
 }
 
-/// Whether it would pay to drop from a list, which is to serve so many frames yet, all pairs but those that overlap:
-/// that takes time, and the list will end sooner and another one be made.
-[[nodiscard]] inline bool pays_to_shorten(std::size_t boxes, std::size_t pairs, std::size_t listed, std::size_t frames,
+/// Whether a list that is to serve so many frames yet is worth shortening, if half of the pairs that are tested are
+/// then listed no more, or sure: that takes time, and the list will end sooner and another one be made.
+/// @param pairs that overlap
+/// @param tested of the list, in each frame
+[[nodiscard]] inline bool pays_to_shorten(std::size_t boxes, std::size_t pairs, std::size_t tested, std::size_t frames,
                                           const cost_model& cost = machine_costs()) {
     const auto n = static_cast<double>(boxes);
-    const auto overlapping = static_cast<double>(std::min(pairs, listed));
-    const auto all = static_cast<double>(listed);
-    const double spared = (all - overlapping) * static_cast<double>(frames) * cost.test_pair;
-    // Each is tested twice at most: whether it stays, and whether it is sure.
-    const double shortened = n * cost.keep_box + 2 * all * cost.test_pair;
-    return spared > shortened + n * cost.keep_box + cost_of_search(n, overlapping, cost);
+    const double once = static_cast<double>(tested) * cost.test_pair;
+    // Each is tested twice: whether it stays, and whether it is sure.
+    const double shortened = n * cost.keep_box + 2 * once;
+    const double made_sooner = n * cost.keep_box + cost_of_search(n, static_cast<double>(pairs), cost);
+    return once / 2 * static_cast<double>(frames) > shortened + made_sooner;
 }
 
 /// The plan that costs least a frame.

@@ -475,9 +475,8 @@ auto neighbour_list_stage::shorter_list() const -> std::optional<list_plan> {
     // Shorter, it lists hardly fewer, and roundings may end it.
     constexpr double shortest = 1.0 / 16;
     if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return std::nullopt;
-    if (list_.tested() <= objects_.size() / 16) return std::nullopt;
     const std::size_t frames = times_as_long * std::size_t{age_};
-    if (!pays_to_shorten(objects_.size(), found_, list_.size(), frames - age_)) return std::nullopt;
+    if (!pays_to_shorten(objects_.size(), found_, list_.tested(), frames - age_)) return std::nullopt;
     // What got more than twice as far in twice the time is to do so in the next two doublings, too.
     const double speeds_up = std::max(1.0, motion_.back() / (2 * motion_[age_ / 2 - 1]));
     const double needed = a_quarter_more * speeds_up * speeds_up * margin_after(motion_, frames);
