@@ -128,8 +128,8 @@ private:
     static constexpr unsigned longest_repetition = 16;
     /// A list of few boxes that lasts so many frames is good enough.
     static constexpr std::size_t frames_of_good_list = 8;
-    /// To tell which pairs are sure takes as long as to test them twice, so a list is to have served before, and to
-    /// serve so many frames yet.
+    /// To tell which pairs are sure takes longer than to test them, so a list is to have served before, and to serve so
+    /// many frames yet.
     static constexpr std::uint32_t frames_before_sure = 2;
     static constexpr std::uint32_t frames_of_sure = 4;
     /// Of the first list, in mean extents: the best where one margin must do for any scene.

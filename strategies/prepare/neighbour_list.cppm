@@ -16,8 +16,9 @@ export namespace aabb {
 
 /// Boxes are searched grown by a margin, and the pairs found are kept as a list. While no box has moved by more than
 /// the margin relative to the others, each pair that overlaps is in the list, so that a frame takes one test a listed
-/// pair and no search (Verlet, "Computer 'experiments' on classical fluids", 1967), and none of a pair that overlaps by
-/// more than two margins, which cannot part. What all move alike is no motion. An object that comes makes a search too.
+/// pair and no search (Verlet, "Computer 'experiments' on classical fluids", 1967), and, once it has served and is to
+/// go on, none of a pair that overlaps by more than two margins, which cannot part. What all move alike is no motion.
+/// An object that comes makes a search too.
 ///
 /// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one,
 /// or that of the last one where this costs about as little, and more where that lists next to no more. Of the first

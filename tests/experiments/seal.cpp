@@ -100,7 +100,7 @@ TEST_CASE("Checksums are those of FIPS 180-4") {
     CHECK(aabblab::sha256_of("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
-TEST_CASE("Rows of a finished run are read in the order of the config, whatever their order and the ends of lines") {
+TEST_CASE("Rows of a finished run are read in the order of play, whatever their order and the ends of lines") {
     const finished_run run;
     const std::vector<row> rows = aabblab::verified_rows(run.out());
     REQUIRE(rows.size() == 12);

@@ -674,6 +674,25 @@ TEST_CASE("a list of few pairs is shortened only once it has served so long that
     CHECK(shortened_in(12) == 32);
 }
 
+TEST_CASE("a list of boxes that overlap is shortened for what cannot part then") {
+    // A row of cubes, of which each overlaps the third one after it by less than two of the first margins; they creep.
+    constexpr std::size_t n = 64;
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    std::uint64_t tests = 0;
+    for (int frame = 0; frame < 12; ++frame) {
+        std::vector<box> boxes;
+        for (std::size_t i = 0; i < n; ++i) {
+            const float way = (i % 2 == 0 ? 0.0001F : -0.0001F) * static_cast<float>(frame);
+            boxes.push_back(cube(0.3F * static_cast<float>(i) + way));
+        }
+        const std::uint64_t before = stage->counters()[work::box_tests];
+        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+        tests = stage->counters()[work::box_tests] - before;
+    }
+    CHECK(margin_of(*stage) < 0.05);
+    CHECK(tests < n / 8);
+}
+
 TEST_CASE("a list that was shortened too much is not repeated") {
     constexpr std::size_t n = 100;
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);

@@ -114,7 +114,7 @@ TEST_CASE("auto lists vertices where queries repay it, or fetch them from far") 
     CHECK(selected(strategy_kind::tree, {}, {1, 150'816, 1, 2}) == "implicit:vertices=fetched");
     CHECK(selected(strategy_kind::tree, {}, {1000, 150'816, 1000, 2}) == "implicit");
     CHECK(selected(strategy_kind::tree, {}, {1, 1'742'828, 1, 2}) == "implicit");
-    // The fewer the triangles, the less a query saves by lists.
+    // The fewer the triangles, the less a query saves by lists; few enough are listed in no time.
     CHECK(selected(strategy_kind::tree, {}, {100, 150'816, 100, 2}) == "implicit");
     CHECK(selected(strategy_kind::tree, {}, {100, 20'000, 100, 2}) == "implicit:vertices=fetched");
     CHECK(selected(strategy_kind::tree, {}, {100, 100, 100, 2}) == "implicit");
