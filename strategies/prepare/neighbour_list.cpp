@@ -342,7 +342,9 @@ void neighbour_list_stage::pass_over(std::span<const box> boxes) {
 auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
     const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
     // A list about an earlier frame ended because boxes went farther from there: from here they may go twice as far.
-    if (!is_about_earlier_ && (serves_few_well() || (lasted_as_planned && repeats_plan(boxes)))) {
+    const bool serves_well = serves_few_well();
+    if (!is_about_earlier_ && (serves_well || (lasted_as_planned && repeats_plan(boxes)))) {
+        if (serves_well && planned_ > 0) planned_ = std::max(planned_, frames_of_good_list);
         const bool is_sparse = ++repeated_ == 1 && !has_learned_ && list_.size() < objects_.size() / 4;
         return wanted_list{is_sparse ? longer_where_sparse * margin_ : margin_};
     }

@@ -675,15 +675,16 @@ TEST_CASE("a list of few pairs is shortened only once it has served so long that
 }
 
 TEST_CASE("a list of boxes that overlap is shortened for what cannot part then") {
-    // A row of cubes, of which each overlaps the third one after it by less than two of the first margins; they creep.
+    // A row of cubes that creep, of which each overlaps the third one after it by less than two of the first margins,
+    // and none lies near another that it does not overlap.
     constexpr std::size_t n = 64;
     const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
     std::uint64_t tests = 0;
-    for (int frame = 0; frame < 12; ++frame) {
+    for (int frame = 0; frame < 40; ++frame) {
         std::vector<box> boxes;
         for (std::size_t i = 0; i < n; ++i) {
-            const float way = (i % 2 == 0 ? 0.0001F : -0.0001F) * static_cast<float>(frame);
-            boxes.push_back(cube(0.3F * static_cast<float>(i) + way));
+            const float way = (i % 2 == 0 ? 0.00003F : -0.00003F) * static_cast<float>(frame);
+            boxes.push_back(cube(0.31F * static_cast<float>(i) + way));
         }
         const std::uint64_t before = stage->counters()[work::box_tests];
         CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
@@ -779,6 +780,26 @@ TEST_CASE("nobody asks which pairs cannot part of a list that is to end soon") {
     const played slower = played_about_homes(13, drifts(0.03F));
     CHECK(slower.last_search == 7);
     CHECK(static_cast<double>(slower.tests[10]) < 0.7 * static_cast<double>(slower.tests[8]));
+}
+
+TEST_CASE("pairs that cannot part are told once lists last longer than was planned") {
+    constexpr std::size_t n = 100;
+    const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+    std::uint64_t random = 1;
+    const std::vector<vec3f> homes = scattered(n, 3, random);
+    const std::vector<vec3f> ways = scattered(n, 1, random);
+    float way = 0;
+    bool told = false;
+    for (int frame = 0; frame < 80; ++frame) {
+        // At first too fast for any list to last.
+        way += frame < 16 ? 0.05F : 0.01F;
+        const std::vector<box> boxes = cubes_on_their_ways(homes, ways, way);
+        const std::uint64_t before = stage->counters()[work::box_tests];
+        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+        const std::uint64_t tests = stage->counters()[work::box_tests] - before;
+        if (frame >= 50) told = told || (margin_of(*stage) > 0 && tests < overlapping(boxes).size());
+    }
+    CHECK(told);
 }
 
 TEST_CASE("pairs that could not part are tested once boxes shrink") {
