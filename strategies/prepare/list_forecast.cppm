@@ -75,6 +75,7 @@ public:
         return true;
     }
 
+    /// A rough count of the pairs of a list with that margin.
     [[nodiscard]] rough_reach reach(std::span<const box> boxes, const membership& objects, double margin) {
         return rough_reach_of(boxes, objects, drawn_, margin);
     }

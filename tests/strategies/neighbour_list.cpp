@@ -79,6 +79,13 @@ double margin_of(const global_stage& stage) {
     return 0;
 }
 
+/// Tests of boxes that a frame takes, whose pairs must be exact.
+std::uint64_t tests_of(global_stage& stage, const std::vector<box>& boxes) {
+    const std::uint64_t before = stage.counters()[work::box_tests];
+    CHECK(pairs_of(stage, boxes) == overlapping(boxes));
+    return stage.counters()[work::box_tests] - before;
+}
+
 /// What a list of neighbours took, frame by frame.
 struct played {
     std::vector<std::uint64_t> tests;  // of the pairs that were listed
@@ -686,9 +693,7 @@ TEST_CASE("a list of boxes that overlap is shortened for what cannot part then")
             const float way = (i % 2 == 0 ? 0.00003F : -0.00003F) * static_cast<float>(frame);
             boxes.push_back(cube(0.31F * static_cast<float>(i) + way));
         }
-        const std::uint64_t before = stage->counters()[work::box_tests];
-        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
-        tests = stage->counters()[work::box_tests] - before;
+        tests = tests_of(*stage, boxes);
     }
     CHECK(margin_of(*stage) < 0.05);
     CHECK(tests < n / 8);
@@ -761,9 +766,7 @@ TEST_CASE("pairs that cannot part within the margin are not tested") {
         std::uint64_t tests = 0;
         for (int frame = 0; frame < 6; ++frame) {
             boxes[0].max[1] += 0.001F;
-            const std::uint64_t before = stage->counters()[work::box_tests];
-            CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
-            tests = stage->counters()[work::box_tests] - before;
+            tests = tests_of(*stage, boxes);
         }
         CHECK((tests < overlapping(boxes).size() / 2) == (every[0] == '0'));
     }
@@ -794,9 +797,7 @@ TEST_CASE("pairs that cannot part are told once lists last longer than was plann
         // At first too fast for any list to last.
         way += frame < 16 ? 0.05F : 0.01F;
         const std::vector<box> boxes = cubes_on_their_ways(homes, ways, way);
-        const std::uint64_t before = stage->counters()[work::box_tests];
-        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
-        const std::uint64_t tests = stage->counters()[work::box_tests] - before;
+        const std::uint64_t tests = tests_of(*stage, boxes);
         if (frame >= 50) told = told || (margin_of(*stage) > 0 && tests < overlapping(boxes).size());
     }
     CHECK(told);
