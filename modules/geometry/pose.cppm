@@ -62,6 +62,30 @@ struct box_motion {
     vec3d margin;
 };
 
+/// How far apart the images of a vertex under two poses (`relative_pose::to_boxes`) can be, rounded as they are, and so
+/// those of any point of a triangle.
+/// @param reach box of the vertices
+[[nodiscard]] inline double most_apart(const box_motion& p, const box_motion& q, const box& reach) noexcept {
+    const auto length = [](const vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
+    vec3d between{};
+    double apart = 0x1p-146;
+    for (int k = 0; k < 3; ++k) {
+        between[k] = p.shift[k] - q.shift[k];
+        // Margins are 2^-48 of what rounding to float takes 2^-24 of at most.
+        apart += (p.margin[k] + q.margin[k]) * 0x1p25;
+    }
+    for (int j = 0; j < 3; ++j) {
+        const double centre = (double{reach.min[j]} + double{reach.max[j]}) / 2;
+        vec3d turned{};
+        for (int k = 0; k < 3; ++k) {
+            turned[k] = p.columns[static_cast<std::size_t>(j)][k] - q.columns[static_cast<std::size_t>(j)][k];
+            between[k] += turned[k] * centre;
+        }
+        apart += length(turned) * (double{reach.max[j]} - double{reach.min[j]}) / 2;
+    }
+    return apart + length(between);
+}
+
 /// Takes vertices and boxes of mesh B into the frame of mesh A.
 ///
 /// The image of a vertex defines the truth for every triangle test: z = Rᴬᵀ(Rᴮ x + (tᴮ - tᴬ)) in double, each sum left

@@ -2,8 +2,12 @@ module;
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,10 +20,14 @@ import aabb.geometry;
 import aabb.simd;
 import :child_pairs;
 import :corner_numbers;
+import :front_keeper;
+import :kept_pairs;
+import :leaf_front;
 import :leaf_pairs;
 import :model;
 import :nearest_last;
 import :triangle_batch;
+import :triangle_block;
 import :triangle_policy;
 import :walk_goal;
 import :wide_node;
@@ -37,7 +45,10 @@ public:
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
-        walk(test, a, b, to_a, extent::two_meshes, goal, emit);
+        if (a.tree().keeps_front())
+            follow(test, a, b, to_a, goal, emit);
+        else
+            walk(test, a, b, to_a, extent::two_meshes, goal, emit);
     }
 
     /// Those of one mesh, in either order.
@@ -49,6 +60,8 @@ public:
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
         std::size_t all = sizeof *this + bytes_of(pairs_) + bytes_of(steps_) + children_.bytes() + leaves_.bytes();
+        if (fronts_) all += sizeof *fronts_ + fronts_->bytes();
+        if (kept_) all += sizeof *kept_ + kept_->bytes();
         for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
         return all;
     }
@@ -85,48 +98,126 @@ private:
 
     template <class Emit>
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
-              walk_goal goal, Emit emit) {
-        begin(a, b, to_a, goal);
+              walk_goal goal, const Emit& emit) {
+        const bool any_pair = goal == walk_goal::first_pair;
+        const auto emit_pair = emitter(a, b, emit);
+        bool reached_leaves = false;
+        const bool stopped = descend(a, b, to_a, what, goal, 0,
+                                     [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
+                                         if (!reached_leaves) leaves_.begin(a, b, what == extent::one_mesh, 0);
+                                         reached_leaves = true;
+                                         return test_leaves(test, a, b, to_a, what, of_a, of_b, emit_pair) ||
+                                                (any_pair && waiting_.decide(test, true, emit_pair));
+                                     });
+        if (!stopped) static_cast<void>(waiting_.decide(test, true, emit_pair));
+    }
+
+    /// With what an earlier query at a pose nearby has kept, or keeping it for later ones. Where one pair is wanted,
+    /// all that is near is sought only where none meets.
+    template <class Emit>
+    void follow(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                walk_goal goal, const Emit& emit) {
+        require_ieee_arithmetic();
+        const model_pair of{{a.number(), b.number()}, {a.state(), b.state()}};
+        const box_motion at = to_a.to_boxes();
+        const double size = std::min(size_of_leaf(a), size_of_leaf(b));
+        if (!fronts_) fronts_ = std::make_unique<front_keeper>();
+        leaf_front& front = fronts_->find(of, at, b.bounds(), leaf_front::most_step * size);
+        const bool any_pair = goal == walk_goal::first_pair;
+        if (any_pair && front.hit &&
+            test.intersects(a.triangles().triangle(front.hit->a), to_a(b.triangles().triangle(front.hit->b)))) {
+            emit(*front.hit);
+            return front.take(of, at);
+        }
+        front.hit.reset();
+        const auto emit_and_keep = [&](index_pair found) {
+            if (any_pair) front.hit = found;
+            return emit(found);
+        };
+        const auto is_made = [&] {
+            const std::optional<double> margin = front.plan(of, at, b.bounds(), size);
+            if (margin)
+                front.make(of, at, *margin, [&](std::vector<kept_pair>& pairs) { keep(a, b, to_a, *margin, pairs); });
+            return margin.has_value();
+        };
+        if (front.holds(of, at, b.bounds()) || (!any_pair && is_made())) {
+            serve(test, a, b, to_a, front.pairs(), goal, emit_and_keep);
+        } else {
+            walk(test, a, b, to_a, extent::two_meshes, goal, emit_and_keep);
+            if (any_pair && !front.hit) static_cast<void>(is_made());
+        }
+        front.take(of, at);
+    }
+
+    /// The pairs of leaves with triangles within a margin of each other.
+    void keep(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
+              std::vector<kept_pair>& pairs) {
+        leaves_.begin(a, b, false, std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
+        descend(a, b, to_a, extent::two_meshes, walk_goal::every_pair, margin,
+                [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
+                    leaves_.within_margin(a, b, to_a, of_a, of_b, counters_, [&](std::size_t p, std::uint64_t which) {
+                        pairs.push_back({of_a[p], of_b[p], which});
+                    });
+                    return false;
+                });
+    }
+
+    template <class Emit>
+    void serve(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+               std::span<const kept_pair> pairs, walk_goal goal, const Emit& emit) {
+        const bool any_pair = goal == walk_goal::first_pair;
+        const auto emit_pair = emitter(a, b, emit);
+        waiting_.clear();
+        if (pairs.empty()) return;
+        if (!kept_) kept_ = std::make_unique<kept_pairs<Tree>>();
+        kept_->begin(a, b);
+        const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
+            counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
+            waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
+            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, emit_pair);
+        };
+        if (!(*kept_)(a, b, to_a, pairs, leaves_.reader(), test_pair))
+            static_cast<void>(waiting_.decide(test, true, emit_pair));
+    }
+
+    /// Opens nodes down to pairs of leaves that may meet.
+    /// @param margin within which boxes are said to meet
+    /// @param at_leaves called with leaves of A and of B, as many of both; returns whether to stop
+    /// @returns whether it was stopped
+    template <class AtLeaves>
+    bool descend(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, walk_goal goal,
+                 double margin, const AtLeaves& at_leaves) {
+        begin(a, b, to_a, goal, margin);
         const bool any_pair = goal == walk_goal::first_pair;
         const std::size_t at_once = any_pair ? 1 : most_at_once;
-        const auto emit_pair = [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
-            return emit(
-                index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)});
-        };
         std::size_t step = 0;
         std::size_t missed = 0;  // pairs of leaves
-        bool reached_leaves = false;
         for (;;) {
             if (pairs_[step].size == 0) {
                 step = steps_.size();
                 while (step > 0 && pairs_[step - 1].size == 0) --step;
-                if (step == 0) break;
+                if (step == 0) return false;
                 --step;
             }
             node_pairs& from = pairs_[step];
-            const bool at_leaves = step + 1 == steps_.size();
             const std::size_t end = from.size;
             const std::size_t begin = end - std::min(end, at_once);
             from.size = begin;
             counters_.add(work::node_visits, end - begin);
-            if (!at_leaves) {
+            if (step + 1 < steps_.size()) {
                 open(a.tree(), b.tree(), what, any_pair, step, begin, end);
                 ++step;
                 continue;
             }
-            if (!reached_leaves) leaves_.begin(a, b, what == extent::one_mesh);
-            reached_leaves = true;
-            if (test_leaves(test, a, b, to_a, what, begin, end, emit_pair)) return;
-            if (!any_pair) continue;
-            if (waiting_.decide(test, true, emit_pair)) return;
+            if (at_leaves(std::span(from.a).subspan(begin, end - begin), std::span(from.b).subspan(begin, end - begin)))
+                return true;
             // What looks near may be parallel all over: then it is better to go on elsewhere.
-            if (++missed % most_missed == 0)
+            if (any_pair && ++missed % most_missed == 0)
                 for (step = 0; pairs_[step].size == 0 && step + 1 < steps_.size();) ++step;
         }
-        static_cast<void>(waiting_.decide(test, true, emit_pair));
     }
 
-    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, walk_goal goal) {
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, walk_goal goal, double margin) {
         require_ieee_arithmetic();
         a.require_fit();
         b.require_fit();
@@ -135,8 +226,25 @@ private:
         pairs_[0].make_room();
         pairs_[0].a[0] = pairs_[0].b[0] = 0;
         pairs_[0].size = 1;
-        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), goal == walk_goal::every_pair);
+        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), goal == walk_goal::every_pair, margin);
         waiting_.clear();
+    }
+
+    template <class Emit>
+    [[nodiscard]] static auto emitter(const model<Tree>& a, const model<Tree>& b, const Emit& emit) {
+        return [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
+            return emit(
+                index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)});
+        };
+    }
+
+    /// About: the area of the mesh's box, shared among its leaves.
+    [[nodiscard]] static double size_of_leaf(const model<Tree>& m) {
+        const box& b = m.bounds();
+        std::array<double, 3> edge;
+        for (int k = 0; k < 3; ++k) edge[static_cast<std::size_t>(k)] = double{b.max[k]} - double{b.min[k]};
+        const double area = 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]);
+        return std::sqrt(area * children / static_cast<double>(m.triangles().triangles.size()));
     }
 
     /// The higher of two nodes is opened first, until both are leaves.
@@ -200,11 +308,8 @@ private:
     /// @returns whether to stop
     template <class Emit>
     [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
-                                   const relative_pose& to_a, extent what, std::size_t begin, std::size_t end,
-                                   const Emit& emit) {
-        const node_pairs& from = pairs_[steps_.size() - 1];
-        const std::span leaves_a = std::span(from.a).subspan(begin, end - begin);
-        const std::span leaves_b = std::span(from.b).subspan(begin, end - begin);
+                                   const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
+                                   std::span<const std::uint32_t> leaves_b, const Emit& emit) {
         return leaves_(a, b, to_a, leaves_a, leaves_b, counters_,
                        [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b, std::uint64_t met) {
                            if (what == extent::one_mesh) {
@@ -262,6 +367,9 @@ private:
     child_pairs<Tree> children_;
     leaf_pairs<Tree> leaves_;
     triangle_batch<Triangle> waiting_;
+    // Made when first needed.
+    std::unique_ptr<front_keeper> fronts_;
+    std::unique_ptr<kept_pairs<Tree>> kept_;
 };
 
 }  // namespace aabb

@@ -20,14 +20,16 @@ template <WideTreePolicy Tree>
 class child_pairs {
 public:
     /// @param in_both whether boxes may be held against each other in both frames; in A's alone each pair costs less
-    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, bool in_both) {
+    /// @param margin within which children are said to meet
+    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, bool in_both,
+               double margin) {
         first_a_ = a.level(0);
         first_b_ = b.level(0);
-        to_a_.begin(to_a.to_boxes());
+        to_a_.begin(grown(to_a.to_boxes(), margin));
         in_a_.begin(nodes(b));
         turned_ = in_both && to_a.growth() > least_growth;
         if (!turned_) return;
-        to_b_.begin(to_a.back_to_boxes(bounds_of_a));
+        to_b_.begin(grown(to_a.back_to_boxes(bounds_of_a), margin));
         in_b_.begin(nodes(a));
     }
 
@@ -55,6 +57,11 @@ private:
     static constexpr std::size_t most_kept = 32;
     static constexpr double least_growth = 1.2;  // from here on, the second test saves more than it costs
 
+    /// A pose is a rotation within 1e-6, so that lengths in the other frame are the same within 2^-18.
+    [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
+        for (int k = 0; k < 3; ++k) motion.margin[k] += margin * (1 + 0x1p-16);
+        return motion;
+    }
     [[nodiscard]] static std::size_t nodes(const Tree& t) noexcept {
         return static_cast<std::size_t>(t.level(t.levels() - 1) - t.level(0)) + 1;
     }

@@ -26,6 +26,14 @@ struct eight_boxes {
         const std::uint64_t rows = ~std::uint64_t{0} >> (most * (most - others.count));
         return simd::pairs_of_eight_that_overlap(lower[0].data(), others.lower[0].data()) & columns & rows;
     }
+
+    /// Floats that lie outside by no more than this are in the boxes then.
+    inline void grow(float by) noexcept {
+        for (std::size_t k = 0; k < 3; ++k) {
+            simd::store_eight(lower[k].data(), simd::load_eight<simd::eight_floats>(lower[k].data()) - by);
+            simd::store_eight(upper[k].data(), simd::load_eight<simd::eight_floats>(upper[k].data()) + by);
+        }
+    }
 };
 
 }  // namespace aabb

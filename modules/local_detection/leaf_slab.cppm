@@ -37,7 +37,9 @@ public:
 
     /// Bit j for each triangle j of the other block that reaches into the slab, or may.
     /// @param bounds of the other block, which meet those of this leaf
-    [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, const box& bounds) const noexcept {
+    /// @param margin within which it is said to reach
+    [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, const box& bounds,
+                                                  float margin = 0) const noexcept {
         float magnitude = 0;
         for (int k = 0; k < 3; ++k) {
             const auto axis = static_cast<std::size_t>(k);
@@ -45,7 +47,7 @@ public:
         }
         if (!(magnitude < most_magnitude)) return 0xff;
         const heights of_other(*this, other);
-        const float error = error_of(magnitude);
+        const float error = error_of(magnitude) + margin * length();
         return 0xffU &
                ~(simd::bits_of_eight(of_other.low > high_ + error) | simd::bits_of_eight(of_other.high < low_ - error));
     }
@@ -56,6 +58,11 @@ private:
     /// Of a sum of three products of differences: each is rounded, all in all by 6 times 2^-24 of the magnitude of the
     /// terms, or by half the least denormal.
     [[nodiscard]] static inline float error_of(float magnitude) noexcept { return magnitude * 0x1p-20F + 0x1p-140F; }
+
+    /// Of the normal, or more.
+    [[nodiscard]] inline float length() const noexcept {
+        return (std::abs(normal_[0]) + std::abs(normal_[1]) + std::abs(normal_[2])) * (1 + 0x1p-20F);
+    }
 
     /// Of the corners of triangles over the origin, along the normal.
     struct heights {

@@ -14,13 +14,13 @@ import aabb.base;
 
 export namespace aabb {
 
+inline constexpr std::size_t most_claims = 64;  ///< at once
+
 /// Leaves that were read lately, found again by their number: each has one place, which it shares with others. First
 /// all that are needed at a time are claimed, then those that are missing are read, so that none waits for another.
 template <class Leaf>
 class leaf_store {
 public:
-    static constexpr std::size_t most_at_once = 64;  ///< claims
-
     /// Forgets all, and takes few places where there will be few numbers.
     void begin(std::size_t numbers) {
         if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
@@ -61,7 +61,7 @@ private:
     std::array<std::uint32_t, most_places> held_{};
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
-    std::array<std::uint32_t, most_at_once + 1> missing_{};
+    std::array<std::uint32_t, most_claims + 1> missing_{};
     std::size_t missing_count_ = 0;
     std::vector<Leaf> leaves_;
 };

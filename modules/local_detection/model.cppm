@@ -1,5 +1,6 @@
 module;
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ public:
             require_still_valid(*mesh_, triangles_);
             tree_.refit(*mesh_, boxes);
             bounds_ = tree_.bounds(tree_.root(*mesh_));
+            state_ = next_number();
         });
     }
 
@@ -53,6 +55,10 @@ public:
     }
     /// @throws input_error when the last refit did not succeed.
     void require_fit() const { fit_.require(); }
+    /// No other model has it.
+    [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
+    /// No other model has had it, nor this one before its last refit.
+    [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
     /// Of the root.
     /// @throws input_error when the last refit did not succeed.
     [[nodiscard]] const box& bounds() const {
@@ -61,11 +67,18 @@ public:
     }
 
 private:
+    [[nodiscard]] static std::uint64_t next_number() noexcept {
+        static constinit std::uint64_t last = 0;
+        return __atomic_add_fetch(&last, 1, __ATOMIC_RELAXED);  // <atomic> beside a module of headers is refused
+    }
+
     const mesh* mesh_;
     std::size_t triangles_;
     Tree tree_;
     box bounds_{};
     mesh_fit fit_;
+    std::uint64_t number_ = next_number();
+    std::uint64_t state_ = number_;
 };
 
 }  // namespace aabb

@@ -15,7 +15,7 @@ export namespace aabb {
 /// level l is node 8 n + i of level l - 1; on level 0 it is leaf 8 n + i, without a node of its own, which holds the
 /// triangles at places 8 (8 n + i) to 8 (8 n + i) + 7, or as many as there are. The highest level has one node. All lie
 /// in one array, level 0 first. A leaf's vertices are read from lists of the tree's, where
-/// it has such.
+/// it has such. One that keeps fronts has pairs of leaves kept from query to query (`leaf_front`).
 template <class T>
 concept WideTreePolicy =
     TreePolicy<T> && requires(const T built, std::size_t level, std::uint32_t index, vertex_list& list) {
@@ -24,6 +24,7 @@ concept WideTreePolicy =
         { built.triangle_at(index) } -> std::same_as<std::uint32_t>;
         built.fetch(index);
         built.read_vertices(index, list);
+        { built.keeps_front() } -> std::same_as<bool>;
     };
 
 }  // namespace aabb

@@ -19,8 +19,9 @@ namespace aabb {
 
 namespace {
 
-/// Of fewer, the first list of neighbours, which takes about as long as two searches, does not pay where it serves.
-constexpr std::size_t fewest_frames_of_list = 4;
+/// Of fewer, what is kept for later frames does not pay where it serves: the first list of neighbours or front, which
+/// takes about as long as two searches.
+constexpr std::size_t fewest_frames_to_keep = 4;
 
 /// From so many queries on, what `sah` takes longer to build than `median` comes back where each of them takes less by
 /// that share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with
@@ -56,16 +57,20 @@ bool fetches_vertices(const scene_outlook& scene) {
            scene.queries < least_queries_of_vertex_lists(scene);
 }
 
+bool keeps_front(const scene_outlook& scene) {
+    return scene.triangles > 0 && scene.frames >= fewest_frames_to_keep;
+}
+
 const char* prepare_for(const scene_outlook& scene) {
-    return scene.frames < fewest_frames_of_list ? "none" : "neighbour_list";
+    return scene.frames < fewest_frames_to_keep ? "none" : "neighbour_list";
 }
 const char* build_for(const scene_outlook& scene) {
     return scene.triangles == 0 || scene.queries < least_queries_of_sah(scene) ? "median" : "sah";
 }
 
 std::string rule_of_prepare(const scene_outlook& scene) {
-    return scene.frames < fewest_frames_of_list
-               ? "fewer than " + std::to_string(fewest_frames_of_list) +
+    return scene.frames < fewest_frames_to_keep
+               ? "fewer than " + std::to_string(fewest_frames_to_keep) +
                      " frames: a list of neighbours would not repay its making"
                : "frames follow each other: a list of neighbours is kept while boxes move little, and only then";
 }
@@ -79,11 +84,15 @@ std::string rule_of_build(const scene_outlook& scene) {
                : "queries are to be " + queries + ", and from " + repaid + " on they repay a better tree";
 }
 
-/// Of one that fetches vertices.
+/// Of one that fetches vertices or keeps fronts.
 std::string rule_of_tree(const scene_outlook& scene) {
-    const std::string queries = std::to_string(scene.queries);
-    const std::string repaid = std::to_string(least_queries_of_vertex_lists(scene));
-    return "queries are to be " + queries + ", and only from " + repaid + " on they repay lists of vertices";
+    std::string rule;
+    if (fetches_vertices(scene))
+        rule = "queries are to be " + std::to_string(scene.queries) + ", and only from " +
+               std::to_string(least_queries_of_vertex_lists(scene)) + " on they repay lists of vertices";
+    if (fetches_vertices(scene) && keeps_front(scene)) rule += "; ";
+    if (keeps_front(scene)) rule += "frames follow each other: pairs of leaves are kept while meshes move little";
+    return rule;
 }
 
 /// What is named among what is fastest by itself, or where that is a sort, without a partition: what lies in columns is
@@ -141,6 +150,7 @@ void select_for_scene(composition& completed, const named_strategies& named, con
         !named[strategy_kind::tree] && tree.name == "implicit") {
         tree.settings.clear();
         if (fetches_vertices(scene)) tree.settings.push_back({"vertices", "fetched"});
+        if (keeps_front(scene)) tree.settings.push_back({"front", "kept"});
     }
 }
 

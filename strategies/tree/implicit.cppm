@@ -24,9 +24,10 @@ export namespace aabb {
 /// that nodes take 1.14 bytes a triangle; which triangle stands where takes as many bits as the largest index has, and
 /// none where they stand as in the mesh (`file_order`). The vertices of each leaf are listed, which takes more bytes
 /// than all else and saves a tenth of the time of a query, a third where a mesh is large. Nodes are walked in batches
-/// (`batched_walk`). Seen as a binary tree, node (height, index) holds the triangles at places index * 2^height and up
-/// to 2^height - 1 beyond; below leaves, all have the leaf's box. A build chooses axes, not how many triangles go to
-/// which side (`balanced_order`). When to use: for the fastest queries.
+/// (`batched_walk`), or with `front=kept` not at all, as long as the pairs of leaves of an earlier query hold
+/// (`leaf_front`). Seen as a binary tree, node (height, index) holds the triangles at places index * 2^height and up to
+/// 2^height - 1 beyond; below leaves, all have the leaf's box. A build chooses axes, not how many triangles go to which
+/// side (`balanced_order`). When to use: for the fastest queries.
 class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";
@@ -41,12 +42,21 @@ public:
         listed,  ///< each leaf has a list of them
         fetched  ///< through the mesh's triangles
     };
+    /// What becomes of the pairs of leaves that a query has met.
+    enum class front_choice : std::uint8_t {
+        forgotten,  ///< the next one begins at the roots
+        kept        ///< those within a margin serve the next ones, as long as little moves
+    };
     struct config {
         vertex_choice vertices = vertex_choice::listed;
+        front_choice front = front_choice::forgotten;
     };
-    static constexpr std::tuple parameters{choice_parameter{
-        "vertices", &config::vertices, std::array<std::string_view, 2>{"listed", "fetched"},
-        "of a leaf: in a list, for 5 to 6 bytes a triangle, or through the mesh's triangles, which are waited for"}};
+    static constexpr std::tuple parameters{
+        choice_parameter{
+            "vertices", &config::vertices, std::array<std::string_view, 2>{"listed", "fetched"},
+            "of a leaf: in a list, for 5 to 6 bytes a triangle, or through the mesh's triangles, which are waited for"},
+        choice_parameter{"front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
+                         "pairs of leaves near each other: forgotten, or kept for queries at poses nearby"}};
 
     implicit_tree() = default;
     explicit implicit_tree(const config& c) : config_(c) {}
@@ -135,6 +145,7 @@ public:
         return static_cast<std::uint32_t>(word >> bit % 8 & ((std::uint64_t{1} << bits_) - 1));
     }
 
+    [[nodiscard]] inline bool keeps_front() const noexcept { return config_.front == front_choice::kept; }
     /// Tells memory that the leaf's vertices will be asked for.
     inline void fetch(std::uint32_t leaf) const noexcept {
         if (!vertices_.empty()) vertices_.fetch(leaf);

@@ -110,15 +110,20 @@ TEST_CASE("auto keeps lists where frames follow each other, and builds well what
     CHECK(selected(strategy_kind::build, {}, {100, 10'000, 100, 100}) == "median");
 }
 
-TEST_CASE("auto lists vertices where queries repay it, or fetch them from far") {
+TEST_CASE("auto lists vertices where queries repay it or fetch them from far, and keeps fronts where frames follow") {
     CHECK(selected(strategy_kind::tree, {}, {1, 150'816, 1, 2}) == "implicit:vertices=fetched");
-    CHECK(selected(strategy_kind::tree, {}, {1000, 150'816, 1000, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {1, 150'816, 1000, 2}) == "implicit");
     CHECK(selected(strategy_kind::tree, {}, {1, 1'742'828, 1, 2}) == "implicit");
     // The fewer the triangles, the less a query saves by lists; few enough are listed in no time.
-    CHECK(selected(strategy_kind::tree, {}, {100, 150'816, 100, 2}) == "implicit");
-    CHECK(selected(strategy_kind::tree, {}, {100, 20'000, 100, 2}) == "implicit:vertices=fetched");
-    CHECK(selected(strategy_kind::tree, {}, {100, 100, 100, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {1, 150'816, 100, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {1, 20'000, 100, 2}) == "implicit:vertices=fetched");
+    CHECK(selected(strategy_kind::tree, {}, {1, 100, 100, 2}) == "implicit");
     CHECK(selected(strategy_kind::tree, {}, {1}) == "implicit");
+    // What frames have in common is kept.
+    CHECK(selected(strategy_kind::tree, {}, {3, 100, 100, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {4, 100, 100, 2}) == "implicit:front=kept");
+    CHECK(selected(strategy_kind::tree, {}, {4, 20'000, 100, 2}) == "implicit:vertices=fetched,front=kept");
+    CHECK(selected(strategy_kind::tree, {}, {4}) == "implicit");
     named_strategies named;
     named[strategy_kind::tree] = strategy_choice{"implicit", {}};
     CHECK(selected(strategy_kind::tree, named, {1, 150'816, 1, 2}) == "implicit");

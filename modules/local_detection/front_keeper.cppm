@@ -1,0 +1,84 @@
+module;
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+export module aabb.local_detection:front_keeper;
+
+import aabb.base;
+import aabb.geometry;
+import aabb.simd;
+import :leaf_front;
+
+export namespace aabb {
+
+/// The fronts of many pairs of objects. Nobody says which object is which: a front is found again by its models and by
+/// where they were in its last query, the one behind the last found first, since objects mostly come in the same order.
+class front_keeper {
+public:
+    /// @param reach box of B's vertices, in its own frame
+    /// @param near how far B may have moved since the front's last query
+    /// @returns the front, or a new one, which has had no query
+    [[nodiscard]] leaf_front& find(const model_pair& of, const box_motion& at, const box& reach, double near) {
+        const std::size_t place = place_of(of, at, reach, near);
+        for (std::size_t k = 0; k < 3; ++k)
+            shifts_[place / width][k][place % width] = static_cast<float>(at.shift[static_cast<int>(k)]);
+        last_ = place;
+        return fronts_[place];
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all = bytes_of(fronts_) + bytes_of(shifts_);
+        for (const leaf_front& f : fronts_) all += f.bytes();
+        return all;
+    }
+
+private:
+    static constexpr std::size_t width = 8;
+    static constexpr std::size_t most = 1024;
+    using row = std::array<float, width>;
+
+    [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& reach, double near) {
+        const auto is_it = [&](std::size_t place) {
+            return fronts_[place].holds(of, at, reach) || fronts_[place].is_near(of, at, reach, near);
+        };
+        const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
+        if (next < fronts_.size() && is_it(next)) return next;
+        for (std::size_t group = 0; group < shifts_.size(); ++group) {
+            simd::eight_floats furthest{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto away =
+                    __builtin_elementwise_abs(simd::load_eight<simd::eight_floats>(shifts_[group][k].data()) -
+                                              static_cast<float>(at.shift[static_cast<int>(k)]));
+                furthest = away > furthest ? away : furthest;
+            }
+            for (std::uint32_t near_ones = simd::bits_of_eight(furthest <= static_cast<float>(near)); near_ones != 0;
+                 near_ones &= near_ones - 1) {
+                const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_ones));
+                if (place < fronts_.size() && is_it(place)) return place;
+            }
+        }
+        return new_place(of);
+    }
+
+    [[nodiscard]] std::size_t new_place(const model_pair& of) {
+        if (fronts_.size() < most) {
+            if (fronts_.size() == shifts_.size() * width) shifts_.emplace_back();
+            fronts_.emplace_back(of);
+            return fronts_.size() - 1;
+        }
+        oldest_ = (oldest_ + 1) % most;
+        fronts_[oldest_] = leaf_front(of);
+        return oldest_;
+    }
+
+    std::vector<leaf_front> fronts_;
+    std::vector<std::array<row, 3>> shifts_;  // of the fronts' last queries, by eights
+    std::size_t last_ = 0;                    // found
+    std::size_t oldest_ = most - 1;           // of as many as are kept: the next to go
+};
+
+}  // namespace aabb

@@ -1,0 +1,58 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+export module aabb.local_detection:kept_pairs;
+
+import aabb.geometry;
+import :leaf_front;
+import :leaf_reader;
+import :leaf_store;
+import :model;
+import :triangle_block;
+import :vertex_lists;
+import :wide_tree_policy;
+
+export namespace aabb {
+
+/// Reads the triangles of pairs of leaves of which is known which may meet, those of B in A's frame.
+template <WideTreePolicy Tree>
+class kept_pairs {
+public:
+    void begin(const model<Tree>& a, const model<Tree>& b) {
+        of_a_.begin(leaves_of(a));
+        of_b_.begin(leaves_of(b));
+    }
+
+    /// @param take called with a pair and the triangles of both leaves; returns whether to stop
+    template <class Take>
+    [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                  std::span<const kept_pair> pairs, leaf_reader<Tree>& read, const Take& take) {
+        for (std::size_t begin = 0; begin < pairs.size();) {
+            std::size_t end = begin;
+            of_a_.release_claims();
+            of_b_.release_claims();
+            while (end < pairs.size() && end - begin < most_claims && of_a_.claim(pairs[end].leaf_a) &&
+                   of_b_.claim(pairs[end].leaf_b))
+                ++end;
+            read(a, of_a_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                leaf.load(a.triangles(), a.tree(), number, vertices);
+            });
+            read(b, of_b_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
+            });
+            for (; begin < end; ++begin)
+                if (take(pairs[begin], of_a_[pairs[begin].leaf_a], of_b_[pairs[begin].leaf_b])) return true;
+        }
+        return false;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return of_a_.bytes() + of_b_.bytes(); }
+
+private:
+    leaf_store<triangle_block> of_a_;
+    leaf_store<triangle_block> of_b_;
+};
+
+}  // namespace aabb
