@@ -62,18 +62,20 @@ struct box_motion {
     vec3d margin;
 };
 
+/// How far rounding takes the image of a vertex (`relative_pose::to_boxes`) at most: to float, along each axis, 2^-24
+/// of the magnitudes that the margin is 2^-48 of, or half the least denormal. Twice that covers rounding in double.
+[[nodiscard]] inline double most_rounding(const box_motion& p) noexcept {
+    return (p.margin[0] + p.margin[1] + p.margin[2]) * 0x1p25 + 0x1p-147;
+}
+
 /// How far apart the images of a vertex under two poses (`relative_pose::to_boxes`) can be, rounded as they are, and so
 /// those of any point of a triangle.
 /// @param reach box of the vertices
 [[nodiscard]] inline double most_apart(const box_motion& p, const box_motion& q, const box& reach) noexcept {
     const auto length = [](const vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
     vec3d between{};
-    double apart = 0x1p-146;
-    for (int k = 0; k < 3; ++k) {
-        between[k] = p.shift[k] - q.shift[k];
-        // Margins are 2^-48 of what rounding to float takes 2^-24 of at most.
-        apart += (p.margin[k] + q.margin[k]) * 0x1p25;
-    }
+    double apart = most_rounding(p) + most_rounding(q);
+    for (int k = 0; k < 3; ++k) between[k] = p.shift[k] - q.shift[k];
     for (int j = 0; j < 3; ++j) {
         const double centre = (double{reach.min[j]} + double{reach.max[j]}) / 2;
         vec3d turned{};

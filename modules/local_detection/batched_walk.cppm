@@ -6,8 +6,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,8 +18,7 @@ import aabb.geometry;
 import aabb.simd;
 import :child_pairs;
 import :corner_numbers;
-import :front_keeper;
-import :kept_pairs;
+import :kept_leaves;
 import :leaf_front;
 import :leaf_pairs;
 import :model;
@@ -45,10 +42,7 @@ public:
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
-        if (a.tree().keeps_front())
-            follow(test, a, b, to_a, goal, emit);
-        else
-            walk(test, a, b, to_a, extent::two_meshes, goal, emit);
+        walk(test, a, b, to_a, extent::two_meshes, goal, emit);
     }
 
     /// Those of one mesh, in either order.
@@ -57,11 +51,41 @@ public:
         walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, walk_goal::every_pair, emit);
     }
 
+    /// Appends the pairs of leaves with triangles within a margin of each other.
+    /// @returns false when it stopped at more than so many
+    [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
+                            std::size_t most, std::vector<kept_pair>& pairs) {
+        leaves_.begin(a, b, false, std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
+        return !descend(a, b, to_a, extent::two_meshes, walk_goal::every_pair, margin,
+                        [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
+                            leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
+                                                  [&](std::size_t p, std::uint64_t which) {
+                                                      pairs.push_back({of_a[p], of_b[p], which});
+                                                  });
+                            return pairs.size() > most;
+                        });
+    }
+
+    /// As `between`, of these pairs alone.
+    template <class Emit>
+    void among(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+               std::span<const kept_pair> pairs, kept_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
+        const bool any_pair = goal == walk_goal::first_pair;
+        const auto emit_pair = emitter(a, b, emit);
+        waiting_.clear();
+        const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
+            counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
+            waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
+            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, emit_pair);
+        };
+        if (!leaves(a, b, to_a, pairs, leaves_.reader(), test_pair))
+            static_cast<void>(waiting_.decide(test, true, emit_pair));
+    }
+
+    [[nodiscard]] Counters& counters() noexcept { return counters_; }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
         std::size_t all = sizeof *this + bytes_of(pairs_) + bytes_of(steps_) + children_.bytes() + leaves_.bytes();
-        if (fronts_) all += sizeof *fronts_ + fronts_->bytes();
-        if (kept_) all += sizeof *kept_ + kept_->bytes();
         for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
         return all;
     }
@@ -110,74 +134,6 @@ private:
                                                 (any_pair && waiting_.decide(test, true, emit_pair));
                                      });
         if (!stopped) static_cast<void>(waiting_.decide(test, true, emit_pair));
-    }
-
-    /// With what an earlier query at a pose nearby has kept, or keeping it for later ones. Where one pair is wanted,
-    /// all that is near is sought only where none meets.
-    template <class Emit>
-    void follow(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                walk_goal goal, const Emit& emit) {
-        require_ieee_arithmetic();
-        const model_pair of{{a.number(), b.number()}, {a.state(), b.state()}};
-        const box_motion at = to_a.to_boxes();
-        const double size = std::min(size_of_leaf(a), size_of_leaf(b));
-        if (!fronts_) fronts_ = std::make_unique<front_keeper>();
-        leaf_front& front = fronts_->find(of, at, b.bounds(), leaf_front::most_step * size);
-        const bool any_pair = goal == walk_goal::first_pair;
-        if (any_pair && front.hit &&
-            test.intersects(a.triangles().triangle(front.hit->a), to_a(b.triangles().triangle(front.hit->b)))) {
-            emit(*front.hit);
-            return front.take(of, at);
-        }
-        front.hit.reset();
-        const auto emit_and_keep = [&](index_pair found) {
-            if (any_pair) front.hit = found;
-            return emit(found);
-        };
-        const auto is_made = [&] {
-            const std::optional<double> margin = front.plan(of, at, b.bounds(), size);
-            if (margin)
-                front.make(of, at, *margin, [&](std::vector<kept_pair>& pairs) { keep(a, b, to_a, *margin, pairs); });
-            return margin.has_value();
-        };
-        if (front.holds(of, at, b.bounds()) || (!any_pair && is_made())) {
-            serve(test, a, b, to_a, front.pairs(), goal, emit_and_keep);
-        } else {
-            walk(test, a, b, to_a, extent::two_meshes, goal, emit_and_keep);
-            if (any_pair && !front.hit) static_cast<void>(is_made());
-        }
-        front.take(of, at);
-    }
-
-    /// The pairs of leaves with triangles within a margin of each other.
-    void keep(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
-              std::vector<kept_pair>& pairs) {
-        leaves_.begin(a, b, false, std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
-        descend(a, b, to_a, extent::two_meshes, walk_goal::every_pair, margin,
-                [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                    leaves_.within_margin(a, b, to_a, of_a, of_b, counters_, [&](std::size_t p, std::uint64_t which) {
-                        pairs.push_back({of_a[p], of_b[p], which});
-                    });
-                    return false;
-                });
-    }
-
-    template <class Emit>
-    void serve(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-               std::span<const kept_pair> pairs, walk_goal goal, const Emit& emit) {
-        const bool any_pair = goal == walk_goal::first_pair;
-        const auto emit_pair = emitter(a, b, emit);
-        waiting_.clear();
-        if (pairs.empty()) return;
-        if (!kept_) kept_ = std::make_unique<kept_pairs<Tree>>();
-        kept_->begin(a, b);
-        const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
-            counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
-            waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
-            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, emit_pair);
-        };
-        if (!(*kept_)(a, b, to_a, pairs, leaves_.reader(), test_pair))
-            static_cast<void>(waiting_.decide(test, true, emit_pair));
     }
 
     /// Opens nodes down to pairs of leaves that may meet.
@@ -236,15 +192,6 @@ private:
             return emit(
                 index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)});
         };
-    }
-
-    /// About: the area of the mesh's box, shared among its leaves.
-    [[nodiscard]] static double size_of_leaf(const model<Tree>& m) {
-        const box& b = m.bounds();
-        std::array<double, 3> edge;
-        for (int k = 0; k < 3; ++k) edge[static_cast<std::size_t>(k)] = double{b.max[k]} - double{b.min[k]};
-        const double area = 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]);
-        return std::sqrt(area * children / static_cast<double>(m.triangles().triangles.size()));
     }
 
     /// The higher of two nodes is opened first, until both are leaves.
@@ -367,9 +314,6 @@ private:
     child_pairs<Tree> children_;
     leaf_pairs<Tree> leaves_;
     triangle_batch<Triangle> waiting_;
-    // Made when first needed.
-    std::unique_ptr<front_keeper> fronts_;
-    std::unique_ptr<kept_pairs<Tree>> kept_;
 };
 
 }  // namespace aabb

@@ -3,7 +3,7 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <utility>
 #include <vector>
 
 export module aabb.local_detection:front_keeper;
@@ -19,6 +19,8 @@ export namespace aabb {
 /// where they were in its last query, the one behind the last found first, since objects mostly come in the same order.
 class front_keeper {
 public:
+    static constexpr std::size_t most = 1024;
+
     /// @param reach box of B's vertices, in its own frame
     /// @param near how far B may have moved since the front's last query
     /// @returns the front, or a new one, which has had no query
@@ -38,7 +40,6 @@ public:
 
 private:
     static constexpr std::size_t width = 8;
-    static constexpr std::size_t most = 1024;
     using row = std::array<float, width>;
 
     [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& reach, double near) {
@@ -46,7 +47,7 @@ private:
             return fronts_[place].holds(of, at, reach) || fronts_[place].is_near(of, at, reach, near);
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
-        if (next < fronts_.size() && is_it(next)) return next;
+        if (next < fronts_.size() && is_it(next)) return found_again(next);
         for (std::size_t group = 0; group < shifts_.size(); ++group) {
             simd::eight_floats furthest{};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -58,27 +59,36 @@ private:
             for (std::uint32_t near_ones = simd::bits_of_eight(furthest <= static_cast<float>(near)); near_ones != 0;
                  near_ones &= near_ones - 1) {
                 const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_ones));
-                if (place < fronts_.size() && is_it(place)) return place;
+                if (place < fronts_.size() && is_it(place)) return found_again(place);
             }
         }
         return new_place(of);
     }
 
+    [[nodiscard]] std::size_t found_again(std::size_t place) noexcept {
+        fronts_[place].is_used = true;
+        return place;
+    }
+
+    /// Of as many as are kept, the next one that was not found again of late makes room.
     [[nodiscard]] std::size_t new_place(const model_pair& of) {
-        if (fronts_.size() < most) {
-            if (fronts_.size() == shifts_.size() * width) shifts_.emplace_back();
-            fronts_.emplace_back(of);
-            return fronts_.size() - 1;
+        std::size_t place = fronts_.size();
+        if (place < most) {
+            if (place == shifts_.size() * width) shifts_.emplace_back();
+            fronts_.emplace_back();
+        } else {
+            while (std::exchange(fronts_[hand_].is_used, false)) hand_ = (hand_ + 1) % most;
+            place = hand_;
+            hand_ = (hand_ + 1) % most;
         }
-        oldest_ = (oldest_ + 1) % most;
-        fronts_[oldest_] = leaf_front(of);
-        return oldest_;
+        fronts_[place].begin(of);
+        return place;
     }
 
     std::vector<leaf_front> fronts_;
     std::vector<std::array<row, 3>> shifts_;  // of the fronts' last queries, by eights
     std::size_t last_ = 0;                    // found
-    std::size_t oldest_ = most - 1;           // of as many as are kept: the next to go
+    std::size_t hand_ = 0;                    // where room is sought
 };
 
 }  // namespace aabb

@@ -1,12 +1,11 @@
 module;
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 export module aabb.local_detection:leaf_front;
@@ -35,7 +34,20 @@ struct kept_pair {
 /// (Verlet, Physical Review 159, 1967).
 class leaf_front {
 public:
-    explicit leaf_front(const model_pair& of) : numbers_(of.numbers) {}
+    /// A pair of triangles that met in the last query for one.
+    std::optional<index_pair> hit;
+    /// Whether it was found again since that was last asked.
+    bool is_used = false;
+
+    /// Begins anew, in the same memory.
+    void begin(const model_pair& of) noexcept {
+        numbers_ = of.numbers;
+        last_states_ = {};
+        margin_ = -1;
+        near_queries_ = failures_ = waits_ = 0;
+        hit.reset();
+        is_used = false;
+    }
 
     [[nodiscard]] std::span<const kept_pair> pairs() const noexcept { return pairs_; }
 
@@ -50,44 +62,47 @@ public:
         return numbers_ == of.numbers && most_apart(last_at_, at, reach) <= near;
     }
 
-    /// Notes a query.
-    void take(const model_pair& of, const box_motion& at) noexcept {
-        last_states_ = of.states;
-        last_at_ = at;
-        served_ += margin_ >= 0;
-    }
-
-    /// Where these do not hold, decides whether others are worth making: where B has moved little since the last query
-    /// and neither has changed, unless those made before were of no use.
+    struct outlook {
+        bool holds;                    ///< these pairs, for this query
+        std::optional<double> margin;  ///< of others that are worth making
+    };
+    /// Notes a query. Pairs that do not hold for it are forgotten, and others are worth making where the last two
+    /// queries moved B by little and changed neither mesh, unless those made before were of no use. A margin that
+    /// serves long holds many pairs, so that it grows like the root of the step.
     /// @param size of a leaf
-    /// @returns the margin, or nothing: one that serves long holds many pairs, so that it grows like the root of the
-    /// step
-    [[nodiscard]] std::optional<double> plan(const model_pair& of, const box_motion& at, const box& reach,
-                                             double size) noexcept {
-        if (margin_ >= 0) {
-            failures_ = served_ < least_served ? std::min(failures_ + 1, most_failures) : 0;
-            waits_ = (1U << failures_) - 1;
-            margin_ = -1;
+    [[nodiscard]] outlook note(const model_pair& of, const box_motion& at, const box& reach, double size) noexcept {
+        const bool same_states = last_states_ == of.states;
+        const box_motion before = std::exchange(last_at_, at);
+        last_states_ = of.states;
+        if (holds(of, at, reach)) {
+            ++served_;
+            return {true, std::nullopt};
         }
+        const double step = most_apart(before, at, reach);
+        near_queries_ = same_states && step <= most_step * size ? near_queries_ + 1 : 0;
+        if (margin_ >= 0) fail_or_forgive();
         if (waits_ > 0) {
             --waits_;
-            return std::nullopt;
+            return {false, std::nullopt};
         }
-        if (last_states_ != of.states) return std::nullopt;
-        const double step = most_apart(last_at_, at, reach);
-        if (!(step <= most_step * size)) return std::nullopt;
-        return std::sqrt(step * size / 5);
+        if (near_queries_ < least_near_queries) return {false, std::nullopt};
+        return {false, std::sqrt(step * size / 5)};
     }
 
-    /// @param fill called as `fill(pairs)`, of which there are none
+    /// @param fill called as `fill(pairs)`, of which there are none; returns false where there would be too many
+    /// @returns whether they are kept
     template <class Fill>
-    void make(const model_pair& of, const box_motion& at, double margin, const Fill& fill) {
+    bool make(const model_pair& of, const box_motion& at, double margin, const Fill& fill) {
         pairs_.clear();
-        fill(pairs_);
+        served_ = 0;
+        if (!fill(pairs_)) {
+            fail_or_forgive();
+            return false;
+        }
         made_states_ = of.states;
         made_at_ = at;
         margin_ = margin;
-        served_ = 0;
+        return true;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(pairs_); }
@@ -95,23 +110,29 @@ public:
     /// Of a leaf's size: beyond, so much lies within a margin that serves long that a walk from the roots is faster.
     static constexpr double most_step = 1.0 / 32;
 
-    /// A pair of triangles that met in the last query for one.
-    std::optional<index_pair> hit;
-
 private:
-    static constexpr std::uint32_t least_served = 2;
+    /// More than one, since some ask twice about every pose of what moves fast.
+    static constexpr std::uint32_t least_near_queries = 2;
+    static constexpr std::uint32_t least_served = 2;  // below, pairs were not worth their making
     static constexpr std::uint32_t most_failures = 6;
 
-    std::array<std::uint64_t, 2> numbers_;
+    void fail_or_forgive() noexcept {
+        failures_ = served_ < least_served ? std::min(failures_ + 1, most_failures) : 0;
+        waits_ = (1U << failures_) - 1;
+        margin_ = -1;
+    }
+
+    std::array<std::uint64_t, 2> numbers_{};
     std::array<std::uint64_t, 2> last_states_{};  // of a query; no model's at first
     box_motion last_at_{};
     std::array<std::uint64_t, 2> made_states_{};
     box_motion made_at_{};
-    double margin_ = -1;
+    double margin_ = -1;  // negative where no pairs are kept
     std::vector<kept_pair> pairs_;
-    std::uint32_t served_ = 0;
-    std::uint32_t failures_ = 0;
-    std::uint32_t waits_ = 0;
+    std::uint32_t near_queries_ = 0;  // in a row
+    std::uint32_t served_ = 0;        // queries since these were made
+    std::uint32_t failures_ = 0;      // in a row
+    std::uint32_t waits_ = 0;         // queries until others may be made
 };
 
 }  // namespace aabb

@@ -56,7 +56,7 @@ public:
                                   std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                                   Counters& counters, const Take& take) {
         for (std::size_t begin = 0; begin < leaves_a.size();) {
-            const met meeting = meet(a, b, to_a, leaves_a, leaves_b, begin, counters);
+            const group meeting = meet(a, b, to_a, leaves_a, leaves_b, begin, counters);
             begin = meeting.end;
             std::size_t left = 0;
             for (const found& f : meeting.pairs) {
@@ -78,7 +78,7 @@ public:
                        std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                        Counters& counters, const Take& take) {
         for (std::size_t begin = 0; begin < leaves_a.size();) {
-            const met meeting = meet(a, b, to_a, leaves_a, leaves_b, begin, counters);
+            const group meeting = meet(a, b, to_a, leaves_a, leaves_b, begin, counters);
             begin = meeting.end;
             for (const found& f : meeting.pairs) {
                 const leaf_of_a& of_a = of_a_[leaves_a[f.pair]];
@@ -105,7 +105,8 @@ private:
         reader_(m, store, [&](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
             leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
             leaf.block.bounds(leaf.boxes);
-            if (sizeof...(frame) > 0 && margin_ > 0) leaf.boxes.grow(margin_);
+            if constexpr (sizeof...(frame) > 0)
+                if (margin_ > 0) leaf.boxes.grow(margin_);
             leaf.bounds = box_row(leaf.boxes);
             if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, leaf.bounds.bounds());
             if (one_mesh_) leaf.corners.load(m.triangles(), m.tree(), number);
@@ -116,16 +117,16 @@ private:
         std::size_t pair;
         std::uint64_t which;
     };
-    struct met {
+    struct group {
         std::span<const found> pairs;
         std::size_t end;
     };
 
     /// Of as many pairs from `begin` on as there are places for, those whose triangles have boxes that meet.
     template <class Counters>
-    [[nodiscard]] inline met meet(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                  std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
-                                  std::size_t begin, Counters& counters) {
+    [[nodiscard]] inline group meet(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                    std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
+                                    std::size_t begin, Counters& counters) {
         std::size_t end = begin;
         of_a_.release_claims();
         of_b_.release_claims();

@@ -19,7 +19,7 @@ export namespace aabb {
 /// than their boxes where a surface is smooth. What lies beyond it meets none of them.
 class leaf_slab {
 public:
-    /// @param bounds of the block
+    /// @param bounds box around the block
     void fit(const triangle_block& block, const box& bounds) noexcept {
         set_normal(block);
         float magnitude = 0;
@@ -36,7 +36,7 @@ public:
     }
 
     /// Bit j for each triangle j of the other block that reaches into the slab, or may.
-    /// @param bounds of the other block, which meet those of this leaf
+    /// @param bounds box around the other block, which meets that of this leaf
     /// @param margin within which it is said to reach
     [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, const box& bounds,
                                                   float margin = 0) const noexcept {

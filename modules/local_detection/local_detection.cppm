@@ -20,7 +20,8 @@ export import :corner_numbers;
 export import :depth_first_walk;
 export import :eight_boxes;
 export import :front_keeper;
-export import :kept_pairs;
+export import :front_walk;
+export import :kept_leaves;
 export import :leaf_front;
 export import :leaf_order;
 export import :leaf_pairs;
@@ -56,7 +57,7 @@ struct walk_of {
 };
 template <WideTreePolicy Tree, class Triangle, class Counters>
 struct walk_of<Tree, Triangle, Counters> {
-    using type = batched_walk<Tree, Triangle, Counters>;
+    using type = front_walk<Tree, Triangle, Counters>;
 };
 
 }  // namespace aabb::detail
@@ -65,8 +66,8 @@ export namespace aabb {
 
 /// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles: wide
 /// trees in batches, others depth first. The work is done in A's frame (`relative_pose`). Nothing is allocated once the
-/// walk's memory has grown to the deepest query. Every query throws input_error as `require_ieee_arithmetic` and
-/// `relative_pose` do.
+/// walk's memory has grown to the deepest query, and to what is kept from query to query. Every query throws
+/// input_error as `require_ieee_arithmetic` and `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);

@@ -55,9 +55,9 @@ public:
     }
     /// @throws input_error when the last refit did not succeed.
     void require_fit() const { fit_.require(); }
-    /// No other model has it.
+    /// No other model has it but a copy.
     [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
-    /// No other model has had it, nor this one before its last refit.
+    /// Whoever has the same holds the same boxes of the same mesh: each refit gives another one.
     [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
     /// Of the root.
     /// @throws input_error when the last refit did not succeed.

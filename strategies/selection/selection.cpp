@@ -12,6 +12,7 @@ module aabb.selection;
 
 import aabb.costs;
 import aabb.geometry;
+import aabb.local_detection;
 import aabb.policy;
 import aabb.registry;
 
@@ -57,8 +58,10 @@ bool fetches_vertices(const scene_outlook& scene) {
            scene.queries < least_queries_of_vertex_lists(scene);
 }
 
+/// More pairs of objects a frame than fronts are kept of would find none again.
 bool keeps_front(const scene_outlook& scene) {
-    return scene.triangles > 0 && scene.frames >= fewest_frames_to_keep;
+    return scene.triangles > 0 && scene.frames >= fewest_frames_to_keep &&
+           scene.queries <= scene.frames * front_keeper::most;
 }
 
 const char* prepare_for(const scene_outlook& scene) {
@@ -150,7 +153,8 @@ void select_for_scene(composition& completed, const named_strategies& named, con
         !named[strategy_kind::tree] && tree.name == "implicit") {
         tree.settings.clear();
         if (fetches_vertices(scene)) tree.settings.push_back({"vertices", "fetched"});
-        if (keeps_front(scene)) tree.settings.push_back({"front", "kept"});
+        if (keeps_front(scene) && is_exact(completed, stage::local_detection))
+            tree.settings.push_back({"front", "kept"});
     }
 }
 

@@ -55,8 +55,9 @@ public:
         choice_parameter{
             "vertices", &config::vertices, std::array<std::string_view, 2>{"listed", "fetched"},
             "of a leaf: in a list, for 5 to 6 bytes a triangle, or through the mesh's triangles, which are waited for"},
-        choice_parameter{"front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
-                         "pairs of leaves near each other: forgotten, or kept for queries at poses nearby"}};
+        choice_parameter{
+            "front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
+            "pairs of leaves near each other: forgotten, or kept for queries nearby, of exact triangle tests"}};
 
     implicit_tree() = default;
     explicit implicit_tree(const config& c) : config_(c) {}

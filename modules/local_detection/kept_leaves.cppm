@@ -3,7 +3,7 @@ module;
 #include <cstdint>
 #include <span>
 
-export module aabb.local_detection:kept_pairs;
+export module aabb.local_detection:kept_leaves;
 
 import aabb.geometry;
 import :leaf_front;
@@ -18,17 +18,15 @@ export namespace aabb {
 
 /// Reads the triangles of pairs of leaves of which is known which may meet, those of B in A's frame.
 template <WideTreePolicy Tree>
-class kept_pairs {
+class kept_leaves {
 public:
-    void begin(const model<Tree>& a, const model<Tree>& b) {
-        of_a_.begin(leaves_of(a));
-        of_b_.begin(leaves_of(b));
-    }
-
+    /// @param read shared with others
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
     template <class Take>
     [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                   std::span<const kept_pair> pairs, leaf_reader<Tree>& read, const Take& take) {
+        of_a_.begin(leaves_of(a));
+        of_b_.begin(leaves_of(b));
         for (std::size_t begin = 0; begin < pairs.size();) {
             std::size_t end = begin;
             of_a_.release_claims();
