@@ -20,20 +20,21 @@ export namespace aabb {
 class front_keeper {
 public:
     static constexpr std::size_t most = 1024;
+    static constexpr std::size_t least_leaves = 64;  ///< of two meshes: fewer are walked before a front is found
 
     /// @param reach box of B's vertices, in its own frame
     /// @param near how far B may have moved since the front's last query
     /// @returns the front, or a new one, which has had no query
     [[nodiscard]] leaf_front& find(const model_pair& of, const box_motion& at, const box& reach, double near) {
-        const std::size_t place = place_of(of, at, reach, near);
-        for (std::size_t k = 0; k < 3; ++k)
-            shifts_[place / width][k][place % width] = static_cast<float>(at.shift[static_cast<int>(k)]);
+        const std::array<float, 3> centre = centre_of(at, reach);
+        const std::size_t place = place_of(of, at, reach, near, centre);
+        for (std::size_t k = 0; k < 3; ++k) centres_[place / width][k][place % width] = centre[k];
         last_ = place;
         return fronts_[place];
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(fronts_) + bytes_of(shifts_);
+        std::size_t all = bytes_of(fronts_) + bytes_of(centres_);
         for (const leaf_front& f : fronts_) all += f.bytes();
         return all;
     }
@@ -42,18 +43,28 @@ private:
     static constexpr std::size_t width = 8;
     using row = std::array<float, width>;
 
-    [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& reach, double near) {
+    /// Of B, in A's frame: it moves no further than the rest.
+    [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& at, const box& reach) noexcept {
+        vec3d centre = at.shift;
+        for (int j = 0; j < 3; ++j)
+            for (int k = 0; k < 3; ++k)
+                centre[k] +=
+                    at.columns[static_cast<std::size_t>(j)][k] * ((double{reach.min[j]} + double{reach.max[j]}) / 2);
+        return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
+    }
+
+    [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& reach, double near,
+                                       const std::array<float, 3>& centre) {
         const auto is_it = [&](std::size_t place) {
             return fronts_[place].holds(of, at, reach) || fronts_[place].is_near(of, at, reach, near);
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
         if (next < fronts_.size() && is_it(next)) return found_again(next);
-        for (std::size_t group = 0; group < shifts_.size(); ++group) {
+        for (std::size_t group = 0; group < centres_.size(); ++group) {
             simd::eight_floats furthest{};
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto away =
-                    __builtin_elementwise_abs(simd::load_eight<simd::eight_floats>(shifts_[group][k].data()) -
-                                              static_cast<float>(at.shift[static_cast<int>(k)]));
+                const auto away = __builtin_elementwise_abs(
+                    simd::load_eight<simd::eight_floats>(centres_[group][k].data()) - centre[k]);
                 furthest = away > furthest ? away : furthest;
             }
             for (std::uint32_t near_ones = simd::bits_of_eight(furthest <= static_cast<float>(near)); near_ones != 0;
@@ -74,7 +85,7 @@ private:
     [[nodiscard]] std::size_t new_place(const model_pair& of) {
         std::size_t place = fronts_.size();
         if (place < most) {
-            if (place == shifts_.size() * width) shifts_.emplace_back();
+            if (place == centres_.size() * width) centres_.emplace_back();
             fronts_.emplace_back();
         } else {
             while (std::exchange(fronts_[hand_].is_used, false)) hand_ = (hand_ + 1) % most;
@@ -86,9 +97,9 @@ private:
     }
 
     std::vector<leaf_front> fronts_;
-    std::vector<std::array<row, 3>> shifts_;  // of the fronts' last queries, by eights
-    std::size_t last_ = 0;                    // found
-    std::size_t hand_ = 0;                    // where room is sought
+    std::vector<std::array<row, 3>> centres_;  // of B in the fronts' last queries, by eights
+    std::size_t last_ = 0;                     // found
+    std::size_t hand_ = 0;                     // where room is sought
 };
 
 }  // namespace aabb

@@ -33,7 +33,8 @@ public:
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
         if constexpr (requires { requires Triangle::filtered; })
-            if (a.tree().keeps_front()) return follow(test, a, b, to_a, goal, emit);
+            if (a.tree().keeps_front() && leaves_of(a) + leaves_of(b) >= front_keeper::least_leaves)
+                return follow(test, a, b, to_a, goal, emit);
         walk_.between(test, a, b, to_a, goal, emit);
     }
 
@@ -62,7 +63,7 @@ private:
         b.require_fit();
         const model_pair of{{a.number(), b.number()}, {a.state(), b.state()}};
         const box_motion at = to_a.to_boxes();
-        const double size = std::min(size_of_leaf(a), size_of_leaf(b));
+        const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
         const double near = leaf_front::most_step * size;
         // Where rounding moves it further than that, nothing is worth keeping.
         if (!(2 * most_rounding(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
@@ -108,12 +109,11 @@ private:
     }
 
     /// About: the area of the mesh's box, shared among its leaves.
-    [[nodiscard]] static double size_of_leaf(const model<Tree>& m) {
+    [[nodiscard]] static double area_of_leaf(const model<Tree>& m) {
         const box& b = m.bounds();
         std::array<double, 3> edge;
         for (int k = 0; k < 3; ++k) edge[static_cast<std::size_t>(k)] = double{b.max[k]} - double{b.min[k]};
-        const double area = 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]);
-        return std::sqrt(area / static_cast<double>(leaves_of(m)));
+        return 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]) / static_cast<double>(leaves_of(m));
     }
 
     batched_walk<Tree, Triangle, Counters> walk_;

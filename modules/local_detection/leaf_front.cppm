@@ -3,6 +3,7 @@ module;
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -78,8 +79,8 @@ public:
             ++served_;
             return {true, std::nullopt};
         }
-        const double step = most_apart(before, at, reach);
-        near_queries_ = same_states && step <= most_step * size ? near_queries_ + 1 : 0;
+        const double step = same_states ? most_apart(before, at, reach) : std::numeric_limits<double>::infinity();
+        near_queries_ = step <= most_step * size ? near_queries_ + 1 : 0;
         if (margin_ >= 0) fail_or_forgive();
         if (waits_ > 0) {
             --waits_;

@@ -60,7 +60,8 @@ bool fetches_vertices(const scene_outlook& scene) {
 
 /// More pairs of objects a frame than fronts are kept of would find none again.
 bool keeps_front(const scene_outlook& scene) {
-    return scene.triangles > 0 && scene.frames >= fewest_frames_to_keep &&
+    constexpr std::size_t least_triangles = front_keeper::least_leaves * balanced_order::leaf_triangles;
+    return 2 * scene.triangles >= least_triangles * scene.meshes && scene.frames >= fewest_frames_to_keep &&
            scene.queries <= scene.frames * front_keeper::most;
 }
 

@@ -14,7 +14,9 @@
 #include "../random_poses.hpp"
 
 import aabb;
+import aabb.build.median;
 import aabb.registry;
+import aabb.tree.implicit;
 import aabb.triangle.exact;
 
 using namespace aabb;
@@ -90,6 +92,48 @@ TEST_CASE("images of a vertex under two poses are no further apart than is said,
     }));
 }
 
+TEST_CASE("children within a margin of each other are found, however one node is turned against the other") {
+    REQUIRE(rc::check([] {
+        const double margin = uniform(0.01, 0.5);
+        const double turn = *rc::gen::element(0.0, 0.01, 1.0);
+        const pose pose_b = turned_by({1, uniform(-turn, turn), uniform(-turn, turn), uniform(-turn, turn)},
+                                      {uniform(-2, 2), uniform(-2, 2), uniform(-2, 2)});
+        // A leaf is one point, eight times.
+        std::array<mesh, 2> meshes;
+        for (std::uint32_t point = 0; point < 8; ++point) {
+            vec3d here;
+            vec3d away;
+            double square = 0;
+            for (int k = 0; k < 3; ++k) {
+                here[k] = static_cast<float>(uniform(-1, 1));
+                away[k] = uniform(-1, 1);
+                square += away[k] * away[k];
+            }
+            vec3f back{};
+            for (int j = 0; j < 3; ++j) {
+                double sum = 0;
+                for (int k = 0; k < 3; ++k)
+                    sum += pose_b.rotation[3 * k + j] *
+                           (here[k] + 0.999 * margin * away[k] / std::sqrt(square) - pose_b.translation[k]);
+                back[j] = static_cast<float>(sum);
+            }
+            meshes[0].vertices.push_back(
+                {static_cast<float>(here[0]), static_cast<float>(here[1]), static_cast<float>(here[2])});
+            meshes[1].vertices.push_back(back);
+            for (mesh& m : meshes) m.triangles.insert(m.triangles.end(), 8, {point, point, point});
+        }
+        const model<implicit_tree> a(meshes[0], built_by<median_build>());
+        const model<implicit_tree> b(meshes[1], built_by<median_build>());
+        child_pairs<implicit_tree> pairs;
+        pairs.begin(a.tree(), b.tree(), relative_pose({}, pose_b, b.bounds()), a.bounds(), true, margin);
+        const std::uint64_t met = pairs(*a.tree().level(0), *b.tree().level(0)).met;
+        for (std::uint32_t i = 0; i < 8; ++i)
+            for (std::uint32_t j = 0; j < 8; ++j)
+                if (a.tree().triangle_at(8 * i) / 8 == b.tree().triangle_at(8 * j) / 8)
+                    RC_ASSERT((met >> (8 * j + i) & 1U) != 0);
+    }));
+}
+
 // The margin of a front is a few hundredths of a leaf, so a step in ten or so ends it. Several objects of several
 // meshes of any size, far from their own origin and turned by what is hardly a rotation.
 TEST_CASE("kept pairs of leaves hold all that meets, however meshes creep, stop, jump and change") {
@@ -100,7 +144,7 @@ TEST_CASE("kept pairs of leaves hold all that meets, however meshes creep, stop,
         const float off = *rc::gen::element(0.0F, 0.0F, 100.0F);
         std::vector<mesh> meshes;
         for (const float height : {0.2F, 0.1F, 0.05F}) {
-            meshes.push_back(waves(*rc::gen::inRange(2U, 14U), height));
+            meshes.push_back(waves(*rc::gen::inRange(12U, 20U), height));
             for (vec3f& p : meshes.back().vertices)
                 for (int k = 0; k < 3; ++k) p[k] = (p[k] + off) * size;
         }
@@ -129,6 +173,11 @@ TEST_CASE("kept pairs of leaves hold all that meets, however meshes creep, stop,
             for (double& x : o.at) x = uniform(-0.2, 0.2);
             o.turn = off == 0 ? uniform(-0.5, 0.5) : 0;
             o.skew = *rc::gen::element(0.0, 4e-7, -4e-7);
+            // Other meshes at the same place.
+            if (*rc::gen::arbitrary<bool>()) {
+                o.at = objects[0].at;
+                o.turn = objects[0].turn;
+            }
             choose_way(o);
         }
         for (int frame = 0; frame < 25; ++frame) {
@@ -273,6 +322,27 @@ TEST_CASE("objects of the same meshes have fronts of their own, in whatever orde
     CHECK(queries.nodes_opened(object(20)) > 0);
 }
 
+TEST_CASE("a front that makes room forgets what met") {
+    const std::array<mesh, 2> meshes{waves(40, 0.1F), waves(12, 0.1F)};
+    const auto kept = local_of(keeping());
+    for (const mesh& m : meshes) kept->add_model(m);
+    const auto first = [&](std::uint32_t model, std::size_t i, double step) {
+        const auto column = static_cast<double>(i % 40);
+        const auto row = static_cast<double>(i / 40);
+        return kept->first_pair(model, {}, model, moved({step * column, step * row, 0.03}, 0.2));
+    };
+    const std::size_t most = front_keeper::most;
+    std::array<std::size_t, 2> met{};
+    for (std::size_t i = 0; i < most; ++i) met[0] += first(0, i, 0.003).has_value();
+    for (std::size_t i = 0; i < 80; ++i)
+        if (const std::optional<index_pair> of_small = first(1, i, 0.01)) {
+            ++met[1];
+            REQUIRE(std::max(of_small->a, of_small->b) < meshes[1].triangle_count());
+        }
+    CHECK(met[0] > most / 2);
+    CHECK(met[1] > 20);
+}
+
 TEST_CASE("the pair that met last is tried first, and what did not meet is not searched again") {
     const mesh m = waves(40, 0.1F);
     counted_queries queries(m);
@@ -284,6 +354,18 @@ TEST_CASE("the pair that met last is tried first, and what did not meet is not s
     CHECK(queries.nodes_opened_for_first(apart) == 0);
     apart.translation[2] -= 1e-6;
     CHECK(queries.nodes_opened_for_first(apart) == 0);
+
+    // What met and came apart.
+    const auto at = [](double z) { return moved({0.17, 0.11, z}, 0); };
+    double z = 0.21;
+    const auto fresh = local_of(forgetting());
+    fresh->add_model(m);
+    while (!fresh->first_pair(0, {}, 0, at(z))) z -= 1e-4;
+    counted_queries parting(m);
+    CHECK(parting.nodes_opened_for_first(at(z)) > 0);
+    CHECK(parting.nodes_opened_for_first(at(z)) == 0);
+    CHECK(parting.nodes_opened_for_first(at(z + 1e-4)) > 0);
+    CHECK(parting.nodes_opened_for_first(at(z + 1e-4)) == 0);
 }
 
 TEST_CASE("an inexact triangle test answers as if nothing were kept") {

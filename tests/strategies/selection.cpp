@@ -120,15 +120,17 @@ TEST_CASE("auto lists vertices where queries repay it or fetch them from far, an
     CHECK(selected(strategy_kind::tree, {}, {1, 100, 100, 2}) == "implicit");
     CHECK(selected(strategy_kind::tree, {}, {1}) == "implicit");
     // What frames have in common is kept.
-    CHECK(selected(strategy_kind::tree, {}, {3, 100, 100, 2}) == "implicit");
-    CHECK(selected(strategy_kind::tree, {}, {4, 100, 100, 2}) == "implicit:front=kept");
+    CHECK(selected(strategy_kind::tree, {}, {3, 150'816, 100, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {4, 150'816, 100, 2}) == "implicit:front=kept");
+    CHECK(selected(strategy_kind::tree, {}, {4, 512, 100, 2}) == "implicit:front=kept");
+    CHECK(selected(strategy_kind::tree, {}, {4, 511, 100, 2}) == "implicit");
     CHECK(selected(strategy_kind::tree, {}, {4, 20'000, 100, 2}) == "implicit:vertices=fetched,front=kept");
     CHECK(selected(strategy_kind::tree, {}, {4}) == "implicit");
-    CHECK(selected(strategy_kind::tree, {}, {10, 100, 10'240, 2}) == "implicit:front=kept");
-    CHECK(selected(strategy_kind::tree, {}, {10, 100, 10'241, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, {}, {10, 150'816, 10'240, 2}) == "implicit:front=kept");
+    CHECK(selected(strategy_kind::tree, {}, {10, 150'816, 10'241, 2}) == "implicit");
     named_strategies inexact;
     inexact[strategy_kind::triangle] = strategy_choice{"moller", {}};
-    CHECK(selected(strategy_kind::tree, inexact, {4, 100, 100, 2}) == "implicit");
+    CHECK(selected(strategy_kind::tree, inexact, {4, 150'816, 100, 2}) == "implicit");
     named_strategies named;
     named[strategy_kind::tree] = strategy_choice{"implicit", {}};
     CHECK(selected(strategy_kind::tree, named, {1, 150'816, 1, 2}) == "implicit");

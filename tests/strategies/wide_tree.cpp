@@ -173,11 +173,23 @@ TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shap
                 leaf_slab slab;
                 slab.fit(blocks[0], bounds[0]);
                 const std::uint32_t reached = slab.reached_by(blocks[1], bounds[1]);
+                // Before it moved to where it is, by no more than the margin.
+                const float margin = static_cast<float>(size) * 0.1F;
+                triangle_block before = blocks[1];
+                for (auto& corner : before.corner)
+                    for (std::size_t k = 0; k < 3; ++k)
+                        for (float& x : corner[k]) x -= margin * (k == 0 ? 0.6F : k == 1 ? -0.63F : 0.47F);
+                box there = bounds[1];
+                for (int k = 0; k < 3; ++k) {
+                    there.min[k] -= margin;
+                    there.max[k] += margin;
+                }
+                const std::uint32_t near = slab.reached_by(before, there, margin);
                 for (std::size_t j = 0; j < 8; ++j)
                     for (std::size_t i = 0; i < 8; ++i) {
                         if (!exact_triangle::intersects(sides[0][i], sides[1][j])) continue;
                         ++met;
-                        found_all &= (reached >> j & 1U) != 0;
+                        found_all &= (reached >> j & near >> j & 1U) != 0;
                     }
             }
             CHECK(found_all);
