@@ -307,7 +307,10 @@ TEST_CASE("a front is made in the third query of meshes that hardly move, and op
 TEST_CASE("objects of the same meshes have fronts of their own, in whatever order they come") {
     const mesh m = waves(20, 0.1F);
     counted_queries queries(m);
-    const auto object = [](int i) { return moved({0.05 + 0.02 * (i % 40), 0.02 * (i / 40), 0.03}, 0.2 + 0.02 * i); };
+    const auto object = [](int i) {
+        const int row = i / 40;
+        return moved({0.05 + 0.02 * (i % 40), 0.02 * row, 0.03}, 0.2 + 0.02 * i);
+    };
     for (int frame = 0; frame < 3; ++frame)
         for (int i = 0; i < 20; ++i) CHECK(queries.nodes_opened(object(i)) > 0);
     for (int i = 0; i < 20; ++i) CHECK(queries.nodes_opened(object(i)) == 0);
@@ -327,9 +330,9 @@ TEST_CASE("a front that makes room forgets what met") {
     const auto kept = local_of(keeping());
     for (const mesh& m : meshes) kept->add_model(m);
     const auto first = [&](std::uint32_t model, std::size_t i, double step) {
-        const auto column = static_cast<double>(i % 40);
-        const auto row = static_cast<double>(i / 40);
-        return kept->first_pair(model, {}, model, moved({step * column, step * row, 0.03}, 0.2));
+        const std::size_t row = i / 40;
+        const vec3d by{step * static_cast<double>(i % 40), step * static_cast<double>(row), 0.03};
+        return kept->first_pair(model, {}, model, moved({by[0], by[1], by[2]}, 0.2));
     };
     const std::size_t most = front_keeper::most;
     std::array<std::size_t, 2> met{};
