@@ -43,13 +43,14 @@ void print_parts(std::string_view stage, const std::string& made_of, const std::
         print(fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes)));
 }
 
+void print_wrapped(std::string_view before, const std::string& text) {
+    std::istringstream lines(wrapped(text, std::max<std::size_t>(output_width(), 40) - before.size()));
+    for (std::string line; std::getline(lines, line);) print(fmt::format("{}{}\n", before, line));
+}
+
 void print_sentences(std::string_view of, const std::vector<std::string>& sentences) {
     if (!sentences.empty()) print(fmt::format("    {}\n", of));
-    constexpr std::string_view before = "      ";
-    for (const std::string& sentence : sentences) {
-        std::istringstream lines(wrapped(sentence, std::max<std::size_t>(output_width(), 40) - before.size()));
-        for (std::string line; std::getline(lines, line);) print(fmt::format("{}{}\n", before, line));
-    }
+    for (const std::string& sentence : sentences) print_wrapped("      ", sentence);
 }
 
 /// What the stage is made of.
@@ -69,7 +70,7 @@ void explain_contender(const scene_choice& choice, const contender& who) {
     player p(who, scene, aabb::instrumentation::none);
     play(scene, p, [](const played_frame&) {}, explained_frames);
     const contender_name& name = who.name;
-    print("  " + text_of(name) + "\n");
+    print_wrapped("  ", text_of(name));
     print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());

@@ -167,6 +167,18 @@ TEST_CASE("Motion is measured: the way, what is not alike, rest, inversions") {
     CHECK(is_near(passing.inversions, 0.5));
 }
 
+namespace {
+
+void require_narrow(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        INFO(line);
+        CHECK(line.size() <= 80);
+    }
+}
+
+}  // namespace
+
 TEST_CASE("explain says of a recording what was measured, selected and saved") {
     const temporary_folder folder;
     const std::string file = (folder / "p.aabbs").string();
@@ -184,11 +196,7 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     for (const char* part : {"\nsweep: nothing else can be composed with the rest.\n", "\nratio: ms/frame over",
                              "\nms/frame: update, search", "\nbuild ms: the stages are made"})
         CHECK(told.out.find(part) != std::string::npos);
-    std::istringstream lines(told.out);
-    for (std::string line; std::getline(lines, line);) {
-        INFO(line);
-        CHECK(line.size() <= 80);
-    }
+    require_narrow(told.out);
     CHECK(run_program({"explain", file, file}).err.find("a recording is a scene of its own") != std::string::npos);
 }
 
@@ -231,6 +239,13 @@ TEST_CASE("explain takes meshes, and a motion with its meshes") {
     const program_result moved = run_program({"explain", motion, "icosphere:triangles=80"});
     CHECK(moved.status == 0);
     CHECK(moved.out.find("triangles     80 in the meshes\n") != std::string::npos);
+    // The name of what is selected is long.
+    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "2", "--frames", "5", "--normalise", "no", "--mesh",
+                         "torus_knot:triangles=20000", "--motion", motion})
+                .status == 0);
+    const program_result large = run_program({"explain", motion, "torus_knot:triangles=20000"});
+    CHECK(large.out.find("implicit:vertices=fetched,front=kept") != std::string::npos);
+    require_narrow(large.out);
     const program_result pair = run_program({"explain", "icosphere:triangles=80", "torus_knot:triangles=96"});
     CHECK(pair.status == 0);
     for (const char* part : {"canonical", "sah", "interval_arithmetic"})
