@@ -51,7 +51,8 @@ public:
         walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, walk_goal::every_pair, emit);
     }
 
-    /// Appends the pairs of leaves with triangles within a margin of each other.
+    /// Appends the pairs of leaves with triangles within a margin of each other, less what rounding takes of it
+    /// (`most_rounding`).
     /// @returns false when it stopped at more than so many
     [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
                             std::size_t most, std::vector<kept_pair>& pairs) {

@@ -16,7 +16,8 @@ import :leaf_front;
 export namespace aabb {
 
 /// The fronts of many pairs of objects. Nobody says which object is which: a front is found again by its models and by
-/// where they were in its last query, the one behind the last found first, since objects mostly come in the same order.
+/// where they were in its last query, or because its pairs hold, the one behind the last found first, since objects
+/// mostly come in the same order.
 class front_keeper {
 public:
     static constexpr std::size_t most = 1024;

@@ -67,7 +67,7 @@ public:
         bool holds;                    ///< these pairs, for this query
         std::optional<double> margin;  ///< of others that are worth making
     };
-    /// Notes a query. Pairs that do not hold for it are forgotten, and others are worth making where the last two
+    /// Notes a query. Pairs that do not hold for it are forgotten, and others are worth making where the last two such
     /// queries moved B by little and changed neither mesh, unless those made before were of no use. A margin that
     /// serves long holds many pairs, so that it grows like the root of the step.
     /// @param size of a leaf
