@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../compositions.hpp"
+#include "../sheets.hpp"
 #include "counted_new.hpp"
 
 using namespace aabb;
@@ -29,18 +30,9 @@ std::vector<box> orbiting(int frame) {
 }
 
 mesh ripples(std::uint32_t n) {
-    mesh m;
-    for (std::uint32_t i = 0; i <= n; ++i)
-        for (std::uint32_t j = 0; j <= n; ++j)
-            m.vertices.push_back(
-                {static_cast<float>(i), static_cast<float>(j), std::sin(static_cast<float>(i + 2 * j))});
-    for (std::uint32_t i = 0; i < n; ++i)
-        for (std::uint32_t j = 0; j < n; ++j) {
-            const std::uint32_t v = i * (n + 1) + j;
-            m.triangles.push_back({v, v + 1, v + n + 1});
-            m.triangles.push_back({v + 1, v + n + 2, v + n + 1});
-        }
-    return m;
+    return sheet_of(n, [](std::uint32_t i, std::uint32_t j) -> vec3f {
+        return {static_cast<float>(i), static_cast<float>(j), std::sin(static_cast<float>(i + 2 * j))};
+    });
 }
 
 }  // namespace
@@ -77,7 +69,7 @@ TEST_CASE("global search allocates nothing in steady state") {
 }
 
 TEST_CASE("local detection allocates nothing in steady state") {
-    mesh m = ripples(8);
+    mesh m = ripples(12);  // enough leaves for fronts to be kept
     for (const aabb::composition& composition : all_local_compositions()) {
         INFO(text_of_local(composition));
         const auto stage = local_of(composition, instrumentation::none);

@@ -12,6 +12,7 @@
 
 #include "../compositions.hpp"
 #include "../random_poses.hpp"
+#include "../sheets.hpp"
 
 import aabb;
 import aabb.build.median;
@@ -37,20 +38,11 @@ composition forgetting() {
 
 /// A sheet of 2 edges² triangles, as long and broad as 1, in waves.
 mesh waves(std::uint32_t edges, float height) {
-    mesh m;
-    for (std::uint32_t i = 0; i <= edges; ++i)
-        for (std::uint32_t j = 0; j <= edges; ++j) {
-            const float x = static_cast<float>(i) / static_cast<float>(edges);
-            const float y = static_cast<float>(j) / static_cast<float>(edges);
-            m.vertices.push_back({x, y, height * std::sin(9 * x) * std::cos(7 * y)});
-        }
-    for (std::uint32_t i = 0; i < edges; ++i)
-        for (std::uint32_t j = 0; j < edges; ++j) {
-            const std::uint32_t v = i * (edges + 1) + j;
-            m.triangles.push_back({v, v + 1, v + edges + 1});
-            m.triangles.push_back({v + 1, v + edges + 2, v + edges + 1});
-        }
-    return m;
+    return sheet_of(edges, [&](std::uint32_t i, std::uint32_t j) -> vec3f {
+        const float x = static_cast<float>(i) / static_cast<float>(edges);
+        const float y = static_cast<float>(j) / static_cast<float>(edges);
+        return {x, y, height * std::sin(9 * x) * std::cos(7 * y)};
+    });
 }
 
 pose moved(const std::array<double, 3>& by, double turn) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "../compositions.hpp"
+#include "../sheets.hpp"
 
 import aabb;
 import aabb.registry;
@@ -29,17 +30,9 @@ namespace {
 
 /// A wavy sheet of 2 n² triangles, with a few of them repeated and a few of zero area.
 mesh sheet(std::uint32_t n) {
-    mesh m;
-    for (std::uint32_t i = 0; i <= n; ++i)
-        for (std::uint32_t j = 0; j <= n; ++j)
-            m.vertices.push_back(
-                {static_cast<float>(i), static_cast<float>(j), static_cast<float>((i * 7 + j * 13) % 5)});
-    for (std::uint32_t i = 0; i < n; ++i)
-        for (std::uint32_t j = 0; j < n; ++j) {
-            const std::uint32_t v = i * (n + 1) + j;
-            m.triangles.push_back({v, v + 1, v + n + 1});
-            m.triangles.push_back({v + 1, v + n + 2, v + n + 1});
-        }
+    mesh m = sheet_of(n, [](std::uint32_t i, std::uint32_t j) -> vec3f {
+        return {static_cast<float>(i), static_cast<float>(j), static_cast<float>((i * 7 + j * 13) % 5)};
+    });
     m.triangles.push_back(m.triangles[0]);
     m.triangles.push_back({0, 0, 1});
     return m;

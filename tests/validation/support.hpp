@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "../sheets.hpp"
+
 import aabb;
 
 namespace aabb {
@@ -99,16 +101,8 @@ inline mesh tetrahedron() {
 
 /// n × n squares of side 1 in the plane z = 0, each cut into two triangles.
 inline mesh grid(std::uint32_t n) {
-    mesh m;
-    for (std::uint32_t y = 0; y <= n; ++y)
-        for (std::uint32_t x = 0; x <= n; ++x) m.vertices.push_back({static_cast<float>(x), static_cast<float>(y), 0});
-    for (std::uint32_t y = 0; y < n; ++y)
-        for (std::uint32_t x = 0; x < n; ++x) {
-            const std::uint32_t corner = y * (n + 1) + x;
-            m.triangles.push_back({corner, corner + 1, corner + n + 1});
-            m.triangles.push_back({corner + 1, corner + n + 2, corner + n + 1});
-        }
-    return m;
+    return sheet_of(
+        n, [](std::uint32_t y, std::uint32_t x) -> vec3f { return {static_cast<float>(x), static_cast<float>(y), 0}; });
 }
 
 /// A unit sphere of `rings` rings of squares; those at the poles are cut into a triangle with and one without area.
