@@ -105,6 +105,9 @@ public:
             columns_b_[k] = lanes{b.rotation[k], b.rotation[3 + k], b.rotation[6 + k]};
             rows_a_[k] = lanes{a.rotation[3 * k], a.rotation[3 * k + 1], a.rotation[3 * k + 2]};
         }
+        turns_a_ = turns(a);
+        turns_b_ = turns(b);
+        moves_ = turns_a_ || turns_b_ || from != to;
         lanes world = magnitudes(between_);
         for (int j = 0; j < 3; ++j)
             world +=
@@ -128,6 +131,9 @@ public:
             throw input_error("seen from one mesh, the other lies beyond the range of float");
     }
 
+    /// Whether any image is not the vertex itself.
+    [[nodiscard]] bool moves() const noexcept { return moves_; }
+
     /// Image of a vertex of B, as defined above.
     [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {
         const lanes turned =
@@ -140,12 +146,15 @@ public:
         return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
     }
 
-    /// Images of several vertices at once, by coordinate: bit by bit those of the vertices one by one.
+    /// Images of several vertices at once, by coordinate: equal to those of the vertices one by one.
     template <class Doubles>
     [[nodiscard]] inline std::array<Doubles, 3> images(const std::array<Doubles, 3>& x) const noexcept {
-        std::array<Doubles, 3> world;
-        for (int i = 0; i < 3; ++i)
-            world[i] = ((columns_b_[0][i] * x[0] + columns_b_[1][i] * x[1]) + columns_b_[2][i] * x[2]) + between_[i];
+        std::array<Doubles, 3> world = x;
+        if (turns_b_)
+            for (int i = 0; i < 3; ++i)
+                world[i] = (columns_b_[0][i] * x[0] + columns_b_[1][i] * x[1]) + columns_b_[2][i] * x[2];
+        for (int i = 0; i < 3; ++i) world[i] += between_[i];
+        if (!turns_a_) return world;
         std::array<Doubles, 3> seen;
         for (int i = 0; i < 3; ++i)
             seen[i] = (rows_a_[0][i] * world[0] + rows_a_[1][i] * world[1]) + rows_a_[2][i] * world[2];
@@ -224,6 +233,12 @@ private:
         return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
     }
 
+    [[nodiscard]] static bool turns(const pose& p) noexcept { return p.rotation != pose{}.rotation; }
+
+    // What does not turn is not multiplied by 1 and 0, which would change nothing.
+    bool turns_a_ = false;
+    bool turns_b_ = false;
+    bool moves_ = false;
     std::array<lanes, 3> columns_b_{};
     std::array<lanes, 3> rows_a_{};
     lanes between_{};              // tᴮ - tᴬ

@@ -94,7 +94,7 @@ public:
 private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
-    static constexpr std::size_t most_at_once = 64;
+    static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
     static constexpr std::size_t most_missed = 2;
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
@@ -221,15 +221,12 @@ private:
         const bool opens_b = steps_[step + 1].b < at.b;
         const node_pairs& from = pairs_[step];
         node_pairs& to = pairs_[step + 1];
-        for (std::size_t i = begin; i < end; ++i) {
+        const std::span some_a = std::span(from.a).subspan(begin, end - begin);
+        const std::span some_b = std::span(from.b).subspan(begin, end - begin);
+        for (auto [pair, met] : children_(nodes_a, some_a, nodes_b, some_b, counters_)) {
             to.make_room();
-            const std::uint32_t node_a = from.a[i];
-            const std::uint32_t node_b = from.b[i];
-            const wide_node& of_a = nodes_a[node_a];
-            const wide_node& of_b = nodes_b[node_b];
-            auto [met, box_tests] = children_(of_a, of_b);
-            counters_.add(work::box_tests, box_tests);
-            if (met == 0) continue;
+            const std::uint32_t node_a = some_a[pair];
+            const std::uint32_t node_b = some_b[pair];
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
             if (!opens_a) met = any_of_columns(met);
             if (!opens_b) met = any_of_rows(met);
@@ -239,7 +236,7 @@ private:
             simd::store_places(places.data(), met);
             const auto count = static_cast<std::size_t>(std::popcount(met));
             if (nearest_last && opens_a && opens_b && count > 1)
-                put_nearest_last(places.data(), count, of_a, children_.in_a(of_b));
+                put_nearest_last(places.data(), count, nodes_a[node_a], children_.in_a(nodes_b[node_b]));
             std::size_t p = 0;
             do {  // mostly once, which is foreseen
                 const auto place =

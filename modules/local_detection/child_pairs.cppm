@@ -1,9 +1,12 @@
 module;
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 export module aabb.local_detection:child_pairs;
 
+import aabb.counters;
 import aabb.geometry;
 import :box_images;
 import :eight_boxes;
@@ -33,17 +36,49 @@ public:
         in_b_.begin(nodes(a));
     }
 
-    /// Bit 8 j + i for child i of A's node and child j of B's. Pairs of children whose triangles meet are among them.
+    static constexpr std::size_t most_at_once = 64;
+
+    /// Bit 8 j + i of `met` for child i of A's node and child j of B's.
     struct found {
+        std::size_t pair;
         std::uint64_t met;
-        std::uint32_t box_tests;
     };
-    [[nodiscard]] inline found operator()(const wide_node& a, const wide_node& b) {
-        const std::uint32_t pairs = std::uint32_t{a.children} * b.children;
-        const std::uint64_t met = a.planes.overlaps(a.grid(), in_a(b));
-        if (!turned_ || met == 0) return {met, pairs};
-        const eight_boxes& boxes = in_b_.get(number(a, first_a_), [&](eight_boxes& made) { to_b_.store(a, made); });
-        return {met & transposed(b.planes.overlaps(b.grid(), boxes)), 2 * pairs};
+
+    /// Of up to so many pairs of nodes those that have children which may meet, by their place, in order. Pairs of
+    /// children whose triangles meet are among them. One test is made of all pairs before the next, so that the
+    /// processor need not guess.
+    /// @param nodes_a of a level, of which `a` has numbers
+    template <class Counters>
+    [[nodiscard]] std::span<const found> operator()(const wide_node* nodes_a, std::span<const std::uint32_t> a,
+                                                    const wide_node* nodes_b, std::span<const std::uint32_t> b,
+                                                    Counters& counters) {
+        std::uint64_t tests = 0;
+        std::size_t left = 0;
+        for (std::size_t p = 0; p < a.size(); ++p) {
+            const wide_node& of_a = nodes_a[a[p]];
+            const wide_node& of_b = nodes_b[b[p]];
+            tests += pairs(of_a, of_b);
+            const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), in_a(of_b));
+            in_one_[left] = {p, met};
+            left += met != 0;
+        }
+        std::span<const found> meeting = std::span(in_one_).first(left);
+        if (turned_) {
+            left = 0;
+            for (const auto& [p, met_in_a] : meeting) {
+                const wide_node& of_a = nodes_a[a[p]];
+                const wide_node& of_b = nodes_b[b[p]];
+                tests += pairs(of_a, of_b);
+                const eight_boxes& boxes =
+                    in_b_.get(number(of_a, first_a_), [&](eight_boxes& made) { to_b_.store(of_a, made); });
+                const std::uint64_t met = met_in_a & transposed(of_b.planes.overlaps(of_b.grid(), boxes));
+                in_both_[left] = {p, met};
+                left += met != 0;
+            }
+            meeting = std::span(in_both_).first(left);
+        }
+        counters.add(work::box_tests, tests);
+        return meeting;
     }
 
     /// The boxes of the children of B's node in A's frame.
@@ -64,6 +99,9 @@ private:
     }
     [[nodiscard]] static std::size_t nodes(const Tree& t) noexcept {
         return static_cast<std::size_t>(t.level(t.levels() - 1) - t.level(0)) + 1;
+    }
+    [[nodiscard]] static inline std::uint64_t pairs(const wide_node& a, const wide_node& b) noexcept {
+        return std::uint64_t{a.children} * b.children;
     }
     [[nodiscard]] static inline std::uint32_t number(const wide_node& n, const wide_node* first) noexcept {
         return static_cast<std::uint32_t>(&n - first);
@@ -88,6 +126,8 @@ private:
     recently_made<eight_boxes, most_kept> in_a_;
     recently_made<eight_boxes, most_kept> in_b_;
     bool turned_ = false;
+    std::array<found, most_at_once + 1> in_one_{};
+    std::array<found, most_at_once + 1> in_both_{};
 };
 
 }  // namespace aabb

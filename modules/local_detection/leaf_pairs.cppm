@@ -102,15 +102,21 @@ private:
     /// @param frame of B
     template <class Leaf, class... Frame>
     inline void read(const model<Tree>& m, leaf_store<Leaf>& store, const Frame&... frame) {
-        reader_(m, store, [&](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
-            leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
-            leaf.block.bounds(leaf.boxes);
-            if constexpr (sizeof...(frame) > 0)
-                if (margin_ > 0) leaf.boxes.grow(margin_);
-            leaf.bounds = box_row(leaf.boxes);
-            if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, leaf.bounds.bounds());
-            if (one_mesh_) leaf.corners.load(m.triangles(), m.tree(), number);
-        });
+        reader_(
+            m, store,
+            [&](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
+                leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
+            },
+            [&](Leaf& leaf, std::uint32_t number, const vertex_list&) {
+                leaf.block.bounds(leaf.boxes);
+                if constexpr (sizeof...(frame) > 0)
+                    if (margin_ > 0) leaf.boxes.grow(margin_);
+                leaf.bounds = box_row(leaf.boxes);
+                if (one_mesh_) leaf.corners.load(m.triangles(), m.tree(), number);
+            },
+            [&](Leaf& leaf, std::uint32_t, const vertex_list&) {
+                if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, leaf.bounds.bounds());
+            });
     }
 
     struct found {

@@ -25,16 +25,20 @@ template <WideTreePolicy Tree>
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:
-    /// @param read called for each as `read(leaf, number, its vertices)`
-    template <class Leaf, class Read>
-    inline void operator()(const model<Tree>& m, leaf_store<Leaf>& store, const Read& read) {
+    /// @param steps each called for all of them before the next, as `step(leaf, number, its vertices)`, so that none
+    /// waits for what was made just before
+    template <class Leaf, class... Steps>
+    inline void operator()(const model<Tree>& m, leaf_store<Leaf>& store, const Steps&... steps) {
         const std::span<const std::uint32_t> missing = store.take_missing();
         for (const std::uint32_t number : missing) m.tree().fetch(number);
         for (std::size_t i = 0; i < missing.size(); ++i) {
             m.tree().read_vertices(missing[i], lists_[i]);
             lists_[i].fetch(m.triangles());
         }
-        for (std::size_t i = 0; i < missing.size(); ++i) read(store[missing[i]], missing[i], lists_[i]);
+        const auto do_all = [&](const auto& step) {
+            for (std::size_t i = 0; i < missing.size(); ++i) step(store[missing[i]], missing[i], lists_[i]);
+        };
+        (do_all(steps), ...);
     }
 
 private:

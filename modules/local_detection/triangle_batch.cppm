@@ -93,15 +93,16 @@ private:
         return t;
     }
 
+    /// Fewer than a vector holds are left, so that whole vectors are moved.
     void keep_from(std::size_t done) noexcept {
         pairs_ -= done;
         if (pairs_ == 0) return clear();
         for (std::size_t row = 0; row < rows; ++row) {
-            std::copy_n(&a_[row][done], pairs_, a_[row].data());
-            std::copy_n(&b_[row][done], pairs_, b_[row].data());
+            std::copy_n(&a_[row][done], simd::width, a_[row].data());
+            std::copy_n(&b_[row][done], simd::width, b_[row].data());
         }
         const std::uint32_t first = origin_[done] >> pair_bits;
-        for (std::size_t i = 0; i < pairs_; ++i) origin_[i] = origin_[done + i] - (first << pair_bits);
+        simd::store(origin_.data(), simd::load(&origin_[done]) - (first << pair_bits));
         leaf_pairs_ -= first;
         std::copy_n(&leaves_[first], leaf_pairs_, leaves_.data());
     }

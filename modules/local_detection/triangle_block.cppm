@@ -32,14 +32,12 @@ struct triangle_block {
     template <WideTreePolicy Tree>
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
               const relative_pose& to_a) noexcept {
-        load(m, tree, leaf, list, [&](std::array<row, 3>& eight) {
+        if (!to_a.moves()) return load(m, tree, leaf, list);
+        load(m, tree, leaf, list, [&](columns& eight) {
             std::array<simd::eight_doubles, 3> x;
-            for (std::size_t k = 0; k < 3; ++k)
-                x[k] =
-                    __builtin_convertvector(simd::load_eight<simd::eight_floats>(eight[k].data()), simd::eight_doubles);
+            for (std::size_t k = 0; k < 3; ++k) x[k] = __builtin_convertvector(eight[k], simd::eight_doubles);
             x = to_a.images(x);
-            for (std::size_t k = 0; k < 3; ++k)
-                simd::store_eight(eight[k].data(), __builtin_convertvector(x[k], simd::eight_floats));
+            for (std::size_t k = 0; k < 3; ++k) eight[k] = __builtin_convertvector(x[k], simd::eight_floats);
         });
     }
 
@@ -55,25 +53,29 @@ struct triangle_block {
     }
 
 private:
+    using columns = std::array<simd::eight_floats, 3>;
+
     /// @param change takes eight points, coordinate by coordinate
     template <class Tree, class Change>
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
                      Change change) noexcept {
         triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
         if (list.count == 0) return load_from_mesh(m, tree, leaf, change);
-        // Two times eight points, side by side: [axis][eight].
-        alignas(64) std::array<std::array<row, 2>, 3> points;
-        for (std::size_t half = 0; half < 2; ++half) {
+        const auto eight_from = [&](std::size_t first) __attribute__((always_inline)) {
             std::array<const float*, width> from;
-            for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[half * width + i]].at;
-            alignas(32) std::array<row, 3> eight;
-            simd::store_columns_of_eight_points(from.data(), eight[0].data());
+            for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[first + i]].at;
+            columns eight = simd::columns_of_eight_points(from.data());
             change(eight);
-            for (std::size_t k = 0; k < 3; ++k) points[k][half] = eight[k];
+            return eight;
+        };
+        const columns low = eight_from(0);
+        const columns high = eight_from(width);
+        for (std::size_t k = 0; k < 3; ++k) {
+            // Joined in a register: a processor waits where it reads as a whole what it has just written in parts.
+            const simd::sixteen_floats points = simd::joined(low[k], high[k]);
+            for (std::size_t c = 0; c < 3; ++c)
+                simd::store_eight(corner[c][k].data(), simd::taken_of_sixteen(points, list.places[c]));
         }
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t k = 0; k < 3; ++k)
-                simd::store_eight(corner[c][k].data(), simd::taken_of_sixteen(points[k][0].data(), list.places[c]));
     }
 
     template <class Tree, class Change>
@@ -84,8 +86,9 @@ private:
         for (std::size_t c = 0; c < 3; ++c) {
             std::array<const float*, width> points;
             for (std::size_t i = 0; i < width; ++i) points[i] = m.vertices[vertices[i][c]].at;
-            simd::store_columns_of_eight_points(points.data(), corner[c][0].data());
-            change(corner[c]);
+            columns eight = simd::columns_of_eight_points(points.data());
+            change(eight);
+            for (std::size_t k = 0; k < 3; ++k) simd::store_eight(corner[c][k].data(), eight[k]);
         }
     }
 };

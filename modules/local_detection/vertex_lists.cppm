@@ -25,9 +25,9 @@ struct vertex_list {
     std::array<std::uint32_t, 3> places;  ///< by corner: 4 bits a triangle; the last one fills the rest
     std::uint32_t count;                  ///< 0 where they have to be found in the mesh
 
-    /// Tells memory that they will be read.
+    /// Tells memory that they will be read: of every fourth, since neighbours mostly share a line of it.
     inline void fetch(const mesh& m) const noexcept {
-        for (const std::uint32_t v : std::span(vertices).first(count)) __builtin_prefetch(&m.vertices[v]);
+        for (std::size_t i = 0; i < most; i += 4) __builtin_prefetch(&m.vertices[vertices[i]]);
     }
 };
 

@@ -1,4 +1,5 @@
 module;
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -49,7 +50,7 @@ namespace aabb::simd::detail {
 #endif
 #if defined(__AVX512F__)
 using eight_floats_taken = float __attribute__((vector_size(32)));
-[[nodiscard, gnu::always_inline]] inline eight_floats_taken take_of_sixteen(const float* from,
+[[nodiscard, gnu::always_inline]] inline eight_floats_taken take_of_sixteen(const void* from,
                                                                             const void* places) noexcept {
     const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(places)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
@@ -117,6 +118,7 @@ using two_points_of_four = float __attribute__((vector_size(32)));
 export namespace aabb::simd {
 
 using eight_floats = float __attribute__((vector_size(32)));
+using sixteen_floats = float __attribute__((vector_size(64)));
 using eight_doubles = double __attribute__((vector_size(64)));
 using eight_words = std::uint32_t __attribute__((vector_size(32)));
 using eight_bytes = std::uint8_t __attribute__((vector_size(8)));
@@ -135,8 +137,9 @@ template <class Number, class Vector>
     std::memcpy(to, &v, sizeof v);
 }
 
-/// Of eight points of three numbers: their columns, eight numbers each, one behind the other.
-[[gnu::always_inline]] inline void store_columns_of_eight_points(const float* const* points, float* columns) noexcept {
+/// Of eight points of three numbers: their columns.
+[[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> columns_of_eight_points(
+    const float* const* points) noexcept {
     const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
     const auto low = [](eight_floats p, eight_floats q) {
         return __builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -152,9 +155,8 @@ template <class Number, class Vector>
     };
     const eight_floats xy_01 = low(row(0), row(1));
     const eight_floats xy_23 = low(row(2), row(3));
-    store_eight(columns, first_halves(xy_01, xy_23));
-    store_eight(columns + 8, last_halves(xy_01, xy_23));
-    store_eight(columns + 16, first_halves(high(row(0), row(1)), high(row(2), row(3))));
+    return {first_halves(xy_01, xy_23), last_halves(xy_01, xy_23),
+            first_halves(high(row(0), row(1)), high(row(2), row(3)))};
 }
 
 /// Of eight numbers those at these places, of which the lowest three bits count.
@@ -168,16 +170,23 @@ template <class Number, class Vector>
     return v;
 }
 
+/// One behind the other.
+[[nodiscard, gnu::always_inline]] inline sixteen_floats joined(eight_floats low, eight_floats high) noexcept {
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
 /// Of sixteen numbers those at eight places of 4 bits each.
-[[nodiscard, gnu::always_inline]] inline eight_floats taken_of_sixteen(const float* from,
+[[nodiscard, gnu::always_inline]] inline eight_floats taken_of_sixteen(const sixteen_floats& from,
                                                                        std::uint32_t places) noexcept {
     constexpr eight_words shift{0, 4, 8, 12, 16, 20, 24, 28};
     const eight_words at = (eight_words{} + places) >> shift;
 #if defined(__AVX512F__)
-    return detail::take_of_sixteen(from, &at);
+    return detail::take_of_sixteen(&from, &at);
 #else
-    const eight_floats low = taken(from, at);
-    const eight_floats high = taken(from + 8, at);
+    std::array<float, 16> halves;
+    std::memcpy(halves.data(), &from, sizeof from);
+    const eight_floats low = taken(halves.data(), at);
+    const eight_floats high = taken(halves.data() + 8, at);
     return (at & 8U) != 0 ? high : low;
 #endif
 }

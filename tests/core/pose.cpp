@@ -130,6 +130,34 @@ TEST_CASE("two meshes moved together keep their vertices") {
     }));
 }
 
+TEST_CASE("vertices taken over together have the images of one by one, whichever pose turns or moves") {
+    REQUIRE(rc::check([] {
+        const auto any_of_both = [] {
+            pose p = any_pose(*rc::gen::element(1.0, 1e6));
+            if (*rc::gen::arbitrary<bool>()) p.rotation = pose{}.rotation;
+            if (*rc::gen::arbitrary<bool>()) p.translation = pose{}.translation;
+            return p;
+        };
+        const pose a = any_of_both();
+        const pose b = *rc::gen::arbitrary<bool>() ? any_of_both() : a;
+        const box reach = any_box();
+        const relative_pose to_a(a, b, reach);
+        bool all_stay = true;
+        for (int repeat = 0; repeat < 20; ++repeat) {
+            const vec3f x = any_point(reach);
+            const vec3f image = to_a(x);
+            const auto taken = to_a.images(std::array<double, 3>{x[0], x[1], x[2]});
+            for (int k = 0; k < 3; ++k) {
+                RC_ASSERT(static_cast<float>(taken[static_cast<std::size_t>(k)]) == image[k]);
+                all_stay &= image[k] == x[k];
+            }
+        }
+        RC_ASSERT(to_a.moves() || all_stay);
+        RC_ASSERT(to_a.moves() == (a.rotation != pose{}.rotation || b.rotation != pose{}.rotation ||
+                                   !(a.translation == b.translation)));
+    }));
+}
+
 TEST_CASE("meshes that meet in A's frame have overlapping world boxes") {
     REQUIRE(rc::check([] {
         const box local_a = any_box();

@@ -161,8 +161,7 @@ TEST_CASE("eight points become three columns") {
         for (std::size_t k = 0; k < 3; ++k) points[i][k] = static_cast<float>(10 * i + k);
         from[i] = points[i].data();
     }
-    std::array<float, 24> columns{};
-    simd::store_columns_of_eight_points(from.data(), columns.data());
+    const auto columns = simd::columns_of_eight_points(from.data());
     for (std::size_t i = 0; i < 8; ++i)
-        for (std::size_t k = 0; k < 3; ++k) REQUIRE(columns[8 * k + i] == points[i][k]);
+        for (std::size_t k = 0; k < 3; ++k) REQUIRE(columns[k][i] == points[i][k]);
 }

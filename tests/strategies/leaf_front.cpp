@@ -118,7 +118,10 @@ TEST_CASE("children within a margin of each other are found, however one node is
         const model<implicit_tree> b(meshes[1], built_by<median_build>());
         child_pairs<implicit_tree> pairs;
         pairs.begin(a.tree(), b.tree(), relative_pose({}, pose_b, b.bounds()), a.bounds(), true, margin);
-        const std::uint64_t met = pairs(*a.tree().level(0), *b.tree().level(0)).met;
+        no_counters counters;
+        const std::array<std::uint32_t, 1> roots{0};
+        const auto found = pairs(a.tree().level(0), roots, b.tree().level(0), roots, counters);
+        const std::uint64_t met = found.empty() ? 0 : found[0].met;
         for (std::uint32_t i = 0; i < 8; ++i)
             for (std::uint32_t j = 0; j < 8; ++j)
                 if (a.tree().triangle_at(8 * i) / 8 == b.tree().triangle_at(8 * j) / 8)
