@@ -2,6 +2,7 @@ module;
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 #include <algorithm>
@@ -36,6 +37,10 @@ void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size
             },
             tbb::simple_partitioner());
     });
+}
+
+void worker_threads::share_both(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second) {
+    arena_->of.execute([&] { tbb::parallel_invoke([&] { first(of_first); }, [&] { second(of_second); }); });
 }
 
 }  // namespace aabb

@@ -33,10 +33,22 @@ public:
                        [&](std::size_t r, std::size_t) { work(r * size, std::min(n, (r + 1) * size)); });
     }
 
+    /// Calls both, on two threads where one is free. Either may call this again, or share out work that does not ask
+    /// for the worker.
+    template <class First, class Second>
+    void both(First first, Second second) {
+        const auto call_first = [](void* made) { (*static_cast<First*>(made))(); };
+        const auto call_second = [](void* made) { (*static_cast<Second*>(made))(); };
+        if (count_ > 1) return share_both(call_first, &first, call_second, &second);
+        first();
+        second();
+    }
+
 private:
     struct arena;
 
     void share_out(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work);
+    void share_both(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second);
 
     unsigned count_;
     std::unique_ptr<arena> arena_;  // none for one thread
