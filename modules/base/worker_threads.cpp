@@ -28,7 +28,7 @@ worker_threads& worker_threads::operator=(worker_threads&&) noexcept = default;
 worker_threads::~worker_threads() = default;
 
 void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work) {
-    arena_->of.execute([&] {
+    const auto share = [&] {
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, n, 1),
             [&](const tbb::blocked_range<std::size_t>& range) {
@@ -36,7 +36,9 @@ void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size
                 for (std::size_t i = range.begin(); i != range.end(); ++i) call(work, i, worker);
             },
             tbb::simple_partitioner());
-    });
+    };
+    // Who waits for the rest of this work takes up no other, which might be long.
+    arena_->of.execute([&] { tbb::this_task_arena::isolate(share); });
 }
 
 void worker_threads::share_both(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second) {

@@ -33,8 +33,8 @@ public:
                        [&](std::size_t r, std::size_t) { work(r * size, std::min(n, (r + 1) * size)); });
     }
 
-    /// Calls both, on two threads where one is free. Either may call this again, or share out work that does not ask
-    /// for the worker.
+    /// Calls both, on two threads where a second is free. Either may call this again, or share out work that does not
+    /// ask for the worker. An exception leaves it; whether the other one is called then is not said.
     template <class First, class Second>
     void both(First first, Second second) {
         const auto call_first = [](void* made) { (*static_cast<First*>(made))(); };

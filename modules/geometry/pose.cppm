@@ -131,7 +131,7 @@ public:
             throw input_error("seen from one mesh, the other lies beyond the range of float");
     }
 
-    /// Whether any image is not the vertex itself.
+    /// False where every image is known to be the vertex itself.
     [[nodiscard]] bool moves() const noexcept { return moves_; }
 
     /// Image of a vertex of B, as defined above.

@@ -16,9 +16,9 @@ import :wide_tree_policy;
 
 export namespace aabb {
 
-/// Which children of two nodes, of the same pair of trees, may meet: all sixty-four pairs at once. The boxes of B's
-/// children are taken into A's frame and held against those of A's node, and where a turn makes them much larger, those
-/// of A's into B's frame as well. A node meets many, so that its boxes in the other frame are kept.
+/// Which children of pairs of nodes, of the same pair of trees, may meet: all sixty-four of a pair at once. The boxes
+/// of B's children are taken into A's frame and held against those of A's node, and where a turn makes them much
+/// larger, those of A's into B's frame as well. A node meets many, so that its boxes in the other frame are kept.
 template <WideTreePolicy Tree>
 class child_pairs {
 public:
@@ -126,8 +126,8 @@ private:
     recently_made<eight_boxes, most_kept> in_a_;
     recently_made<eight_boxes, most_kept> in_b_;
     bool turned_ = false;
-    std::array<found, most_at_once + 1> in_one_{};
-    std::array<found, most_at_once + 1> in_both_{};
+    std::array<found, most_at_once> in_one_{};
+    std::array<found, most_at_once> in_both_{};
 };
 
 }  // namespace aabb

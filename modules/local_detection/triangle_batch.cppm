@@ -93,7 +93,7 @@ private:
         return t;
     }
 
-    /// Fewer than a vector holds are left, so that whole vectors are moved.
+    /// Fewer are left than a vector holds: one vector of each row is moved.
     void keep_from(std::size_t done) noexcept {
         pairs_ -= done;
         if (pairs_ == 0) return clear();

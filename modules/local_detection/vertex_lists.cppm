@@ -27,6 +27,7 @@ struct vertex_list {
 
     /// Tells memory that they will be read: of every fourth, since neighbours mostly share a line of it.
     inline void fetch(const mesh& m) const noexcept {
+        if (count == 0) return;
         for (std::size_t i = 0; i < most; i += 4) __builtin_prefetch(&m.vertices[vertices[i]]);
     }
 };

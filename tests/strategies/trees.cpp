@@ -392,6 +392,12 @@ TEST_CASE("an implicit tree is packed alike by any number of threads, and anew")
     }
 }
 
+TEST_CASE("a tree nearly as deep as its mesh is large is built by two threads as by one") {
+    const mesh m = nested(20000);
+    const auto nodes = midpoint_build().build(m, leaf_arrangement::any);
+    CHECK(std::ranges::equal(midpoint_build({2}).build(m, leaf_arrangement::any), nodes, {}, told_of, told_of));
+}
+
 TEST_CASE("in a balanced tree triangles are split where halves are full, across one axis, by any number of threads") {
     const auto before = [](const mesh& m, std::uint32_t p, std::uint32_t q, int k) {
         const auto centre = [&](std::uint32_t t) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "../random_poses.hpp"
@@ -496,13 +497,20 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
         std::array<double, 4> q{};
         for (double& x : q) x = uniform(-1, 1);
         q[0] += 1.01;
-        const pose pose_a = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+        const auto any_of_both = [&] {
+            pose p = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+            if (*rc::gen::arbitrary<bool>()) p.rotation = pose{}.rotation;
+            if (*rc::gen::arbitrary<bool>()) p.translation = pose{}.translation;
+            return p;
+        };
+        const pose pose_a = any_of_both();
+        const pose pose_b = any_of_both();
         const float size = *rc::gen::element(1e-30F, 1.0F, 1e30F);
         // More than sixteen are not listed. Of so many vertices, their indices take one byte, two or three.
         const mesh m = any_mesh(*rc::gen::inRange<std::uint32_t>(1, 20),
                                 *rc::gen::element<std::uint32_t>(1, 3, 9, 256, 257, 65536, 100000),
                                 *rc::gen::element<std::uint32_t>(12, 40), size);
-        const relative_pose to_a(pose_a, {}, bounds_of(m));
+        const relative_pose to_a(pose_a, pose_b, bounds_of(m));
         for (const auto vertices : {implicit_tree::vertex_choice::listed, implicit_tree::vertex_choice::fetched}) {
             const model<aabb::implicit_tree> built(m, aabb::median_build(), implicit_tree({vertices}));
             for (std::uint32_t leaf = 0; 8 * leaf < m.triangle_count(); ++leaf) {
@@ -534,4 +542,46 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
             }
         }
     }));
+}
+
+TEST_CASE("pairs of nodes asked for together have the children that meet of each alone, in order") {
+    std::size_t turned = 0;
+    REQUIRE(rc::check([&] {
+        std::array<double, 4> q{};
+        for (double& x : q) x = uniform(-1, 1);
+        q[0] += 1.01;
+        const pose pose_b = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+        // More nodes than their images have places.
+        const std::uint32_t triangles = *rc::gen::element<std::uint32_t>(9, 700, 3000);
+        const mesh m = any_mesh(triangles, 300, 300, 1);
+        const model<implicit_tree> a(m, median_build());
+        const model<implicit_tree> b(m, median_build());
+        const relative_pose to_a({}, pose_b, b.bounds());
+        turned += to_a.growth() > 1.2;
+        const auto nodes = [](const model<implicit_tree>& of) { return (of.triangles().triangle_count() + 63) / 64; };
+        const wide_node* const of_a = a.tree().level(0);
+        const wide_node* const of_b = b.tree().level(0);
+        std::vector<std::uint32_t> some_a(*rc::gen::inRange<std::size_t>(0, 65));
+        std::vector<std::uint32_t> some_b(some_a.size());
+        for (std::uint32_t& n : some_a) n = *rc::gen::inRange<std::uint32_t>(0, nodes(a));
+        for (std::uint32_t& n : some_b) n = *rc::gen::inRange<std::uint32_t>(0, nodes(b));
+        no_counters counters;
+        child_pairs<implicit_tree> together;
+        together.begin(a.tree(), b.tree(), to_a, a.bounds(), true, 0);
+        const auto found = together(of_a, some_a, of_b, some_b, counters);
+        std::size_t next = 0;
+        for (std::size_t p = 0; p < some_a.size(); ++p) {
+            child_pairs<implicit_tree> alone;
+            alone.begin(a.tree(), b.tree(), to_a, a.bounds(), true, 0);
+            const auto one =
+                alone(of_a, std::span(some_a).subspan(p, 1), of_b, std::span(some_b).subspan(p, 1), counters);
+            if (one.empty()) continue;
+            RC_ASSERT(next < found.size());
+            RC_ASSERT(found[next].pair == p);
+            RC_ASSERT(found[next].met == one[0].met);
+            ++next;
+        }
+        RC_ASSERT(next == found.size());
+    }));
+    CHECK(turned > 20);
 }
