@@ -17,7 +17,6 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.simd;
 import :child_pairs;
-import :corner_numbers;
 import :kept_leaves;
 import :leaf_front;
 import :leaf_pairs;
@@ -56,7 +55,8 @@ public:
     /// @returns false when it stopped at more than so many
     [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
                             std::size_t most, std::vector<kept_pair>& pairs) {
-        leaves_.begin(a, b, false, std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
+        leaves_.begin(a, b, to_a, false,
+                      std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
         return !descend(a, b, to_a, extent::two_meshes, walk_goal::every_pair, margin,
                         [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
                             leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
@@ -129,7 +129,7 @@ private:
         bool reached_leaves = false;
         const bool stopped = descend(a, b, to_a, what, goal, 0,
                                      [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                                         if (!reached_leaves) leaves_.begin(a, b, what == extent::one_mesh, 0);
+                                         if (!reached_leaves) leaves_.begin(a, b, to_a, what == extent::one_mesh, 0);
                                          reached_leaves = true;
                                          return test_leaves(test, a, b, to_a, what, of_a, of_b, emit_pair) ||
                                                 (any_pair && waiting_.decide(test, true, emit_pair));
@@ -255,29 +255,29 @@ private:
     [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                                    const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
                                    std::span<const std::uint32_t> leaves_b, const Emit& emit) {
-        return leaves_(a, b, to_a, leaves_a, leaves_b, counters_,
-                       [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b, std::uint64_t met) {
-                           if (what == extent::one_mesh) {
-                               if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
-                               if (emit_neighbours(of_a.corners, of_b.corners, met, leaves_a[p], leaves_b[p], emit))
-                                   return true;
-                               if (met == 0) return false;
-                           }
-                           counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
-                           waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
-                           return waiting_.is_full() && waiting_.decide(test, false, emit);
-                       });
+        // Called in one place, where a call would cost as much as a tenth of what it does.
+        const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b, std::uint64_t met)
+                              __attribute__((always_inline)) {
+                                  if (what == extent::one_mesh) {
+                                      if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
+                                      if (emit_neighbours(met, leaves_a[p], leaves_b[p], emit)) return true;
+                                      if (met == 0) return false;
+                                  }
+                                  counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
+                                  waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
+                                  return waiting_.is_full() && waiting_.decide(test, false, emit);
+                              };
+        return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
     }
 
     /// An exact test would find that triangles with a corner in common meet there.
     /// @param met loses those that are handed over
     /// @returns whether to stop
     template <class Emit>
-    [[nodiscard]] static bool emit_neighbours(const corner_numbers& of_a, const corner_numbers& of_b,
-                                              std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
-                                              const Emit& emit) {
+    [[nodiscard]] bool emit_neighbours(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
+                                       const Emit& emit) const {
         if constexpr (requires { requires Triangle::filtered; }) {
-            const std::uint64_t shared = of_a.shared_with(of_b);
+            const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
             for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
                 const auto place = static_cast<std::uint32_t>(std::countr_zero(found));
                 if (emit(leaf_a, place & 7U, leaf_b, place >> 3U)) return true;

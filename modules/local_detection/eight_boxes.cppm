@@ -20,19 +20,20 @@ struct eight_boxes {
     alignas(32) std::array<row, 3> upper;
     std::uint32_t count;
 
+    /// @param rows as they stand here
+    inline void take(const std::array<simd::eight_floats, 6>& rows, std::size_t boxes) noexcept {
+        for (std::size_t k = 0; k < 3; ++k) {
+            simd::store_eight(lower[k].data(), rows[k]);
+            simd::store_eight(upper[k].data(), rows[3 + k]);
+        }
+        count = static_cast<std::uint32_t>(boxes);
+    }
+
     /// Sixty-four pairs at once: bit 8 j + i for box i of these and box j of `others`, where they overlap.
     [[nodiscard]] inline std::uint64_t overlaps(const eight_boxes& others) const noexcept {
         const std::uint64_t columns = std::uint64_t{0x0101010101010101} * (0xffU >> (most - count));
         const std::uint64_t rows = ~std::uint64_t{0} >> (most * (most - others.count));
         return simd::pairs_of_eight_that_overlap(lower[0].data(), others.lower[0].data()) & columns & rows;
-    }
-
-    /// Floats that lie outside by no more than this are in the boxes then.
-    inline void grow(float by) noexcept {
-        for (std::size_t k = 0; k < 3; ++k) {
-            simd::store_eight(lower[k].data(), simd::load_eight<simd::eight_floats>(lower[k].data()) - by);
-            simd::store_eight(upper[k].data(), simd::load_eight<simd::eight_floats>(upper[k].data()) + by);
-        }
     }
 };
 

@@ -1,16 +1,20 @@
 module;
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 export module aabb.local_detection:leaf_pairs;
 
+import aabb.base;
 import aabb.counters;
 import aabb.geometry;
-import :box_row;
+import aabb.simd;
 import :corner_numbers;
 import :eight_boxes;
+import :leaf_boxes;
 import :leaf_reader;
 import :leaf_slab;
 import :leaf_store;
@@ -23,10 +27,8 @@ export namespace aabb {
 
 /// Triangles of a leaf, in A's frame.
 struct read_leaf {
-    box_row bounds;
-    eight_boxes boxes;
+    leaf_boxes boxes;
     triangle_block block;
-    corner_numbers corners;  ///< of one mesh only
 };
 
 struct leaf_of_a : read_leaf {
@@ -39,11 +41,16 @@ class leaf_pairs {
 public:
     /// @param one_mesh whether both are the same, so that triangles may share corners
     /// @param margin within which triangles are said to meet
-    void begin(const model<Tree>& a, const model<Tree>& b, bool one_mesh, float margin) {
-        one_mesh_ = one_mesh;
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh, float margin) {
+        grid_.begin(a.bounds(), to_a(b.bounds()));
         margin_ = margin;
         of_a_.begin(leaves_of(a));
         of_b_.begin(leaves_of(b));
+        if (one_mesh) {
+            corners_of_a_.resize(of_a_.places());
+            corners_of_b_.resize(of_b_.places());
+        }
+        one_mesh_ = one_mesh;
     }
 
     /// Hands over, in order, those pairs of leaves whose triangles may meet: their boxes do, and those of B reach into
@@ -60,9 +67,8 @@ public:
             begin = meeting.end;
             std::size_t left = 0;
             for (const found& f : meeting.pairs) {
-                const read_leaf& of_b = of_b_[leaves_b[f.pair]];
                 const std::uint64_t which =
-                    f.which & rows(of_a_[leaves_a[f.pair]].slab.reached_by(of_b.block, of_b.bounds.bounds()));
+                    f.which & rows(of_a_[leaves_a[f.pair]].slab.reached_by(of_b_[leaves_b[f.pair]].block));
                 left_[left] = {f.pair, which};
                 left += which != 0;
             }
@@ -84,39 +90,52 @@ public:
                 const leaf_of_a& of_a = of_a_[leaves_a[f.pair]];
                 const read_leaf& of_b = of_b_[leaves_b[f.pair]];
                 leaf_slab slab_of_b;
-                slab_of_b.fit(of_b.block, of_b.bounds.bounds());
-                const std::uint64_t which = f.which &
-                                            rows(of_a.slab.reached_by(of_b.block, of_b.bounds.bounds(), margin_)) &
-                                            columns(slab_of_b.reached_by(of_a.block, of_a.bounds.bounds(), margin_));
+                slab_of_b.fit(of_b.block, grid_.edges());
+                const std::uint64_t which = f.which & rows(of_a.slab.reached_by(of_b.block, margin_)) &
+                                            columns(slab_of_b.reached_by(of_a.block, margin_));
                 if (which != 0) take(f.pair, which);
             }
         }
     }
 
+    /// Of one mesh: where triangle i of A's leaf and j of B's have a corner in common, bit 8 j + i.
+    [[nodiscard]] inline std::uint64_t neighbours(std::uint32_t leaf_a, std::uint32_t leaf_b) const noexcept {
+        return corners_of_a_[of_a_.place(leaf_a)].shared_with(corners_of_b_[of_b_.place(leaf_b)]);
+    }
+
     [[nodiscard]] leaf_reader<Tree>& reader() noexcept { return reader_; }
-    [[nodiscard]] std::size_t bytes() const noexcept { return of_a_.bytes() + of_b_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return of_a_.bytes() + of_b_.bytes() + bytes_of(corners_of_a_) + bytes_of(corners_of_b_);
+    }
 
 private:
     static constexpr std::size_t most_at_once = most_claims;
+    static constexpr int many = 32;  // of 64 pairs whose boxes overlap: more are rare
 
     /// @param frame of B
     template <class Leaf, class... Frame>
-    inline void read(const model<Tree>& m, leaf_store<Leaf>& store, const Frame&... frame) {
+    inline void read(const model<Tree>& m, leaf_store<Leaf>& store, std::vector<corner_numbers>& corners,
+                     const Frame&... frame) {
         reader_(
             m, store,
             [&](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
                 leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
             },
             [&](Leaf& leaf, std::uint32_t number, const vertex_list&) {
-                leaf.block.bounds(leaf.boxes);
-                if constexpr (sizeof...(frame) > 0)
-                    if (margin_ > 0) leaf.boxes.grow(margin_);
-                leaf.bounds = box_row(leaf.boxes);
-                if (one_mesh_) leaf.corners.load(m.triangles(), m.tree(), number);
-            },
-            [&](Leaf& leaf, std::uint32_t, const vertex_list&) {
-                if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, leaf.bounds.bounds());
+                auto bounds = leaf.block.bounds();
+                if (sizeof...(frame) > 0 && margin_ > 0) grow(bounds);
+                leaf.boxes.take(grid_, bounds, leaf.block.triangles);
+                if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, grid_.edges());
+                if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
             });
+    }
+
+    /// Floats that lie outside by no more than the margin are in the boxes then.
+    inline void grow(std::array<simd::eight_floats, 6>& bounds) const noexcept {
+        for (std::size_t k = 0; k < 3; ++k) {
+            bounds[k] -= margin_;
+            bounds[3 + k] += margin_;
+        }
     }
 
     struct found {
@@ -139,24 +158,33 @@ private:
         while (end < leaves_a.size() && end - begin < most_at_once && of_a_.claim(leaves_a[end]) &&
                of_b_.claim(leaves_b[end]))
             ++end;
-        read(a, of_a_);
-        read(b, of_b_, to_a);
-        counters.add(work::box_tests, end - begin);
-        std::size_t near = 0;
-        for (; begin < end; ++begin) {
-            near_[near] = begin;
-            near += of_a_[leaves_a[begin]].bounds.meets(of_b_[leaves_b[begin]].bounds);
-        }
+        read(a, of_a_, corners_of_a_);
+        read(b, of_b_, corners_of_b_, to_a);
         std::size_t meeting = 0;
-        for (const std::size_t p : std::span(near_).first(near)) {
-            const leaf_of_a& of_a = of_a_[leaves_a[p]];
-            const read_leaf& of_b = of_b_[leaves_b[p]];
+        for (; begin < end; ++begin) {
+            const leaf_of_a& of_a = of_a_[leaves_a[begin]];
+            const read_leaf& of_b = of_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
-            const std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
-            meeting_[meeting] = {p, which};
+            std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
+            if (std::popcount(which) > many) which &= overlaps_where_coarse(of_a, of_b);
+            meeting_[meeting] = {begin, which};
             meeting += which != 0;
         }
         return {std::span(meeting_).first(meeting), end};
+    }
+
+    /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where
+    /// 16 bits serve.
+    [[nodiscard, gnu::noinline]] std::uint64_t overlaps_where_coarse(const read_leaf& of_a,
+                                                                     const read_leaf& of_b) const noexcept {
+        if (!of_a.boxes.are_coarse() || !of_b.boxes.are_coarse()) return ~std::uint64_t{0};
+        eight_boxes boxes_a;
+        eight_boxes boxes_b;
+        auto bounds_of_b = of_b.block.bounds();
+        grow(bounds_of_b);
+        boxes_a.take(of_a.block.bounds(), of_a.block.triangles);
+        boxes_b.take(bounds_of_b, of_b.block.triangles);
+        return boxes_a.overlaps(boxes_b);
     }
 
     /// All bits of row j for bit j.
@@ -171,11 +199,13 @@ private:
         return which * 0x0101010101010101;
     }
 
+    leaf_grid grid_;
     bool one_mesh_ = false;
     float margin_ = 0;
     leaf_store<leaf_of_a> of_a_;
     leaf_store<read_leaf> of_b_;
-    std::array<std::size_t, most_at_once + 1> near_{};
+    std::vector<corner_numbers> corners_of_a_;  // of one mesh only, at the places of the leaves
+    std::vector<corner_numbers> corners_of_b_;
     std::array<found, most_at_once + 1> meeting_{};
     std::array<found, most_at_once + 1> left_{};
     leaf_reader<Tree> reader_;

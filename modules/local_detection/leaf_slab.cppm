@@ -3,6 +3,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 export module aabb.local_detection:leaf_slab;
 
@@ -19,37 +20,29 @@ export namespace aabb {
 /// than their boxes where a surface is smooth. What lies beyond it meets none of them.
 class leaf_slab {
 public:
-    /// @param bounds box around the block
-    void fit(const triangle_block& block, const box& bounds) noexcept {
+    /// @param edges of a box around all vertices that are held against it, and its own
+    void fit(const triangle_block& block, const std::array<float, 3>& edges) noexcept {
         set_normal(block);
         float magnitude = 0;
-        for (int k = 0; k < 3; ++k) {
-            const auto axis = static_cast<std::size_t>(k);
-            origin_[axis] = bounds.min[k];
-            extent_[axis] = bounds.max[k] - bounds.min[k];
-            magnitude += std::abs(normal_[axis]) * extent_[axis];
+        for (std::size_t k = 0; k < 3; ++k) {
+            origin_[k] = block.corner[0][k][0];
+            magnitude += std::abs(normal_[k]) * edges[k];
         }
+        low_ = -std::numeric_limits<float>::infinity();
+        high_ = std::numeric_limits<float>::infinity();
+        if (!(magnitude < most_magnitude)) return;
         const heights own(*this, block);
         const float error = error_of(magnitude);
-        low_ = simd::least(own.low) - error;
-        high_ = -simd::least(-own.high) + error;
+        low_ = simd::least(own.low) - 2 * error;
+        high_ = -simd::least(-own.high) + 2 * error;
     }
 
     /// Bit j for each triangle j of the other block that reaches into the slab, or may.
-    /// @param bounds box around the other block, which meets that of this leaf
     /// @param margin within which it is said to reach
-    [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, const box& bounds,
-                                                  float margin = 0) const noexcept {
-        float magnitude = 0;
-        for (int k = 0; k < 3; ++k) {
-            const auto axis = static_cast<std::size_t>(k);
-            magnitude += std::abs(normal_[axis]) * (extent_[axis] + (bounds.max[k] - bounds.min[k]));
-        }
-        if (!(magnitude < most_magnitude)) return 0xff;
+    [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, float margin = 0) const noexcept {
         const heights of_other(*this, other);
-        const float error = error_of(magnitude) + margin * length();
-        return 0xffU &
-               ~(simd::bits_of_eight(of_other.low > high_ + error) | simd::bits_of_eight(of_other.high < low_ - error));
+        const float grown = margin == 0 ? 0 : margin * length();
+        return 0xffU & ~simd::bits_of_eight((of_other.low > high_ + grown) | (of_other.high < low_ - grown));
     }
 
 private:
@@ -100,7 +93,6 @@ private:
 
     std::array<float, 3> normal_{};  // of any length
     std::array<float, 3> origin_{};
-    std::array<float, 3> extent_{};
     float low_ = 0;
     float high_ = 0;
 };

@@ -32,14 +32,14 @@ public:
 
     /// @returns false where another one that is claimed has the place
     [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
-        const std::size_t place = number & (leaves_.size() - 1);
-        const bool is_missing = held_[place] != number;
+        const std::size_t at = place(number);
+        const bool is_missing = held_[at] != number;
         // Of the two, one is mostly false and the other hard to foresee, so there is one branch for both.
-        if (static_cast<unsigned>(is_missing) & static_cast<unsigned>(claims_[place] == claim_)) return false;
+        if (static_cast<unsigned>(is_missing) & static_cast<unsigned>(claims_[at] == claim_)) return false;
         missing_[missing_count_] = number;
         missing_count_ += is_missing;
-        held_[place] = number;
-        claims_[place] = claim_;
+        held_[at] = number;
+        claims_[at] = claim_;
         return true;
     }
 
@@ -48,14 +48,17 @@ public:
         return std::span(missing_).first(std::exchange(missing_count_, 0));
     }
 
-    [[nodiscard]] inline Leaf& operator[](std::uint32_t number) noexcept {
-        return leaves_[number & (leaves_.size() - 1)];
+    [[nodiscard]] inline Leaf& operator[](std::uint32_t number) noexcept { return leaves_[place(number)]; }
+
+    [[nodiscard]] std::size_t places() const noexcept { return leaves_.size(); }
+    [[nodiscard]] inline std::size_t place(std::uint32_t number) const noexcept {
+        return number & (leaves_.size() - 1);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(leaves_); }
 
 private:
-    static constexpr std::size_t most_places = 128;
+    static constexpr std::size_t most_places = 256;
     static constexpr std::uint32_t nothing = 0xffffffff;
 
     std::array<std::uint32_t, most_places> held_{};

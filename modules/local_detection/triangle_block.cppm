@@ -41,15 +41,17 @@ struct triangle_block {
         });
     }
 
-    inline void bounds(eight_boxes& boxes) const noexcept {
+    /// Of the triangles' boxes: lower bounds along each axis, then upper ones.
+    [[nodiscard]] inline std::array<simd::eight_floats, 6> bounds() const noexcept {
         const auto lesser = [](simd::eight_floats p, simd::eight_floats q) { return p < q ? p : q; };
         const auto greater = [](simd::eight_floats p, simd::eight_floats q) { return p > q ? p : q; };
+        std::array<simd::eight_floats, 6> rows;
         for (std::size_t k = 0; k < 3; ++k) {
             const auto at = [&](std::size_t c) { return simd::load_eight<simd::eight_floats>(corner[c][k].data()); };
-            simd::store_eight(boxes.lower[k].data(), lesser(lesser(at(0), at(1)), at(2)));
-            simd::store_eight(boxes.upper[k].data(), greater(greater(at(0), at(1)), at(2)));
+            rows[k] = lesser(lesser(at(0), at(1)), at(2));
+            rows[3 + k] = greater(greater(at(0), at(1)), at(2));
         }
-        boxes.count = triangles;
+        return rows;
     }
 
 private:

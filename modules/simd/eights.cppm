@@ -95,6 +95,13 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
            std::uint64_t{met[3]} << 48U;
 }
 #endif
+#if defined(__AVX512BW__)
+/// Bits 16 i to 16 i + 7 of eight numbers of `a` that are negative, the others of eight of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t negative_of_eights_in_turn(const void* a,
+                                                                                  const void* b) noexcept {
+    return _mm512_movepi8_mask(_mm512_packs_epi16(_mm512_loadu_si512(a), _mm512_loadu_si512(b)));
+}
+#endif
 #if defined(__AVX2__)
 [[gnu::always_inline]] inline void take_eight(const float* from, const void* places, void* to) noexcept {
     const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
@@ -122,6 +129,7 @@ using sixteen_floats = float __attribute__((vector_size(64)));
 using eight_doubles = double __attribute__((vector_size(64)));
 using eight_words = std::uint32_t __attribute__((vector_size(32)));
 using eight_bytes = std::uint8_t __attribute__((vector_size(8)));
+using sixteen_halves = std::int16_t __attribute__((vector_size(32)));
 
 template <class Vector, class Number>
 [[nodiscard, gnu::always_inline]] inline Vector load_eight(const Number* from) noexcept {
@@ -198,26 +206,6 @@ template <class Number, class Vector>
     return lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6))[0];
 }
 
-/// The least number of each of three rows of eight, then of each of three other rows, negated; then two of no account.
-[[nodiscard, gnu::always_inline]] inline eight_floats least_of_rows(const float* rows, const float* negated) noexcept {
-    const auto lesser = [](eight_floats p, eight_floats q) { return p < q ? p : q; };
-    const auto by_twos = [&](eight_floats p, eight_floats q) {
-        return lesser(__builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13),
-                      __builtin_shufflevector(p, q, 2, 10, 3, 11, 6, 14, 7, 15));
-    };
-    const auto by_fours = [&](eight_floats p, eight_floats q) {
-        return lesser(__builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13),
-                      __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15));
-    };
-    const auto row = [&](int r) { return load_eight<eight_floats>(rows + 8 * r); };
-    const auto other = [&](int r) { return -load_eight<eight_floats>(negated + 8 * r); };
-    const eight_floats first = by_fours(by_twos(row(0), row(1)), by_twos(row(2), other(0)));
-    const eight_floats last_two = by_twos(other(1), other(2));
-    const eight_floats last = by_fours(last_two, last_two);
-    return lesser(__builtin_shufflevector(first, last, 0, 1, 2, 3, 8, 9, 10, 11),
-                  __builtin_shufflevector(first, last, 4, 5, 6, 7, 12, 13, 14, 15));
-}
-
 [[nodiscard, gnu::always_inline]] inline float sum(eight_floats v) noexcept {
     v += __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
     v += __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
@@ -244,6 +232,14 @@ template <class Flags>
     const eight_floats above = v > none ? v : none;
     const eight_floats most = none + 254;
     return __builtin_convertvector(__builtin_convertvector(above < most ? above : most, eight_ints), eight_bytes);
+}
+
+/// Of each of sixteen numbers the whole part, as far as 16 bits reach. It never falls when the number grows.
+[[nodiscard, gnu::always_inline]] inline sixteen_halves whole_halves(sixteen_floats v) noexcept {
+    using sixteen_ints = std::int32_t __attribute__((vector_size(64)));
+    const sixteen_floats most = sixteen_floats{} + 32767;
+    const sixteen_floats above = v > -most ? v : -most;
+    return __builtin_convertvector(__builtin_convertvector(above < most ? above : most, sixteen_ints), sixteen_halves);
 }
 
 /// Bit 8 j + i is set where number i of `a` is at most number j of `b`.
@@ -310,6 +306,59 @@ template <class Flags>
         met |= std::uint64_t{bits_of_eight(row)} << 8 * j;
     }
     return met;
+#endif
+}
+
+/// The same of boxes in whole numbers of 16 bits.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const std::int16_t* a,
+                                                                                   const std::int16_t* b) noexcept {
+    using eight_halves = std::int16_t __attribute__((vector_size(16)));
+    using four_rows = std::int16_t __attribute__((vector_size(64)));
+    // Rows of pairs with even j and those with odd j: differences, of which one is negative where two boxes lie apart.
+    four_rows even{};
+    four_rows odd{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto four_times = [](eight_halves v) {
+            return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7,
+                                           0, 1, 2, 3, 4, 5, 6, 7);
+        };
+        const auto each_even = [](eight_halves v) {
+            return __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0, 2, 2, 2, 2, 2, 2, 2, 2, 4, 4, 4, 4, 4, 4, 4, 4,
+                                           6, 6, 6, 6, 6, 6, 6, 6);
+        };
+        const auto each_odd = [](eight_halves v) {
+            return __builtin_shufflevector(v, v, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 5, 5, 5, 5, 5, 5, 5, 5,
+                                           7, 7, 7, 7, 7, 7, 7, 7);
+        };
+        const auto row = [k](const std::int16_t* of, std::size_t first) {
+            return load_eight<eight_halves>(of + 8 * (first + k));
+        };
+        const four_rows lower = four_times(row(a, 0));
+        const four_rows upper = four_times(row(a, 3));
+        const eight_halves lower_of_b = row(b, 0);
+        const eight_halves upper_of_b = row(b, 3);
+        even |= __builtin_elementwise_sub_sat(each_even(upper_of_b), lower) |
+                __builtin_elementwise_sub_sat(upper, each_even(lower_of_b));
+        odd |= __builtin_elementwise_sub_sat(each_odd(upper_of_b), lower) |
+               __builtin_elementwise_sub_sat(upper, each_odd(lower_of_b));
+    }
+#if defined(__AVX512BW__)
+    return ~detail::negative_of_eights_in_turn(&even, &odd);
+#else
+    using bytes = std::int8_t __attribute__((vector_size(32)));
+    using bools = bool __attribute__((ext_vector_type(32)));
+    const auto apart_even = __builtin_convertvector(even < 0, bytes);
+    const auto apart_odd = __builtin_convertvector(odd < 0, bytes);
+    const auto bits = [](bytes v) {
+        return std::uint64_t{__builtin_bit_cast(std::uint32_t, __builtin_convertvector(v, bools))};
+    };
+    const std::uint64_t first =
+        bits(__builtin_shufflevector(apart_even, apart_odd, 0, 1, 2, 3, 4, 5, 6, 7, 32, 33, 34, 35, 36, 37, 38, 39, 8,
+                                     9, 10, 11, 12, 13, 14, 15, 40, 41, 42, 43, 44, 45, 46, 47));
+    const std::uint64_t last =
+        bits(__builtin_shufflevector(apart_even, apart_odd, 16, 17, 18, 19, 20, 21, 22, 23, 48, 49, 50, 51, 52, 53, 54,
+                                     55, 24, 25, 26, 27, 28, 29, 30, 31, 56, 57, 58, 59, 60, 61, 62, 63));
+    return ~(first | last << 32U);
 #endif
 }
 

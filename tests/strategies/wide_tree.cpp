@@ -147,6 +147,106 @@ TEST_CASE("of the boxes of two leaves those that meet are found, and no others")
     CHECK(met > 100);
 }
 
+TEST_CASE("boxes of leaves in 16 bits meet where boxes do, and not where these are some steps apart") {
+    std::size_t met = 0;
+    std::size_t apart = 0;
+    REQUIRE(rc::check([&] {
+        const std::vector<box> a = any_boxes();
+        std::vector<box> b = any_boxes();
+        // Such as lie where those of A do, and any others.
+        if (*rc::gen::inRange(0, 4) > 0)
+            for (box& one : b) {
+                const box& of_a = a[*rc::gen::inRange<std::size_t>(0, a.size())];
+                for (int k = 0; k < 3; ++k) {
+                    const float edge = of_a.max[k] - of_a.min[k];
+                    const float low = of_a.min[k] + edge * static_cast<float>(uniform(-1, 1));
+                    if (!(std::abs(low) < 1e37F) || !(edge < 1e37F)) continue;
+                    one.min[k] = low;
+                    one.max[k] = low + edge * static_cast<float>(uniform(0, 1));
+                }
+            }
+        const box all_a = all_of(a);
+        const box all_b = all_of(b);
+        leaf_grid grid;
+        grid.begin(all_a, all_b);
+        const auto in_grid = [&](const std::vector<box>& boxes) {
+            const eight_boxes eight = in_eight(boxes);
+            std::array<simd::eight_floats, 6> rows;
+            for (std::size_t k = 0; k < 3; ++k) {
+                rows[k] = simd::load_eight<simd::eight_floats>(eight.lower[k].data());
+                rows[3 + k] = simd::load_eight<simd::eight_floats>(eight.upper[k].data());
+            }
+            leaf_boxes made;
+            made.take(grid, rows, boxes.size());
+            return made;
+        };
+        // Along an axis with a grid of steps that floats can tell apart.
+        const auto are_far = [&](const box& p, const box& q) {
+            for (int k = 0; k < 3; ++k) {
+                const double low = std::max(all_a.min[k], all_b.min[k]);
+                const double high = std::min(all_a.max[k], all_b.max[k]);
+                if (!(high - low > 1e-25) || std::max(-low, high) > 16 * (high - low) || high > 1e37) continue;
+                const double edge = double{std::max(all_a.max[k], all_b.max[k])} - std::min(all_a.min[k], all_b.min[k]);
+                if (edge > 1e30 * (high - low) || edge > 1e37) continue;
+                const double begin = std::max(low, double{std::min(p.max[k], q.max[k])});
+                const double end = std::min(high, double{std::max(p.min[k], q.min[k])});
+                if (end - begin > 2.5 * (high - low) / 65000) return true;
+            }
+            return false;
+        };
+        const std::uint64_t found = in_grid(a).overlaps(in_grid(b));
+        for (std::size_t j = 0; j < 8; ++j)
+            for (std::size_t i = 0; i < 8; ++i) {
+                const bool bit = (found >> (8 * j + i) & 1U) != 0;
+                if (i >= a.size() || j >= b.size()) {
+                    RC_ASSERT(!bit);
+                    continue;
+                }
+                if (overlaps(a[i], b[j])) {
+                    RC_ASSERT(bit);
+                    ++met;
+                } else if (are_far(a[i], b[j])) {
+                    RC_ASSERT(!bit);
+                    ++apart;
+                }
+            }
+    }));
+    CHECK(met > 20);
+    CHECK(apart > 100);
+}
+
+TEST_CASE("triangles much smaller than their meshes are held apart by their boxes too") {
+    // Rows of crossing triangles, each pair by itself, in meshes a million times as long.
+    constexpr std::uint32_t crossing = 800;
+    std::array<mesh, 2> meshes;
+    for (std::size_t side = 0; side < 2; ++side) {
+        mesh& m = meshes[side];
+        const auto add = [&](vec3f p, vec3f q, vec3f r) {
+            const auto first = static_cast<std::uint32_t>(m.vertices.size());
+            for (const vec3f& v : {p, q, r}) m.vertices.push_back(v);
+            m.triangles.push_back({first, first + 1, first + 2});
+        };
+        for (std::uint32_t i = 0; i < crossing; ++i) {
+            const float x = 0.003F * static_cast<float>(i);
+            if (side == 0)
+                add({x, 0, 0}, {x + 0.001F, 0, 0}, {x, 0.001F, 0});
+            else
+                add({x + 0.0002F, 0.0002F, -0.001F}, {x + 0.0002F, 0.0002F, 0.001F}, {x + 0.0004F, 0.0002F, 0.001F});
+        }
+        const float at = side == 0 ? 1000.0F : 900.0F;
+        add({at, at, at}, {at, at, at + 1}, {at, at + 1, at});
+        add({-at, -at, -at}, {-at, -at, -at - 1}, {-at, -at - 1, -at});
+    }
+    const model<implicit_tree> a(meshes[0], median_build());
+    const model<implicit_tree> b(meshes[1], median_build());
+    local_detection<implicit_tree, exact_triangle, work_counters> detection;
+    std::vector<index_pair> pairs;
+    detection.all_pairs(a, {}, b, {}, pairs);
+    CHECK(pairs.size() == crossing);
+    // Those, and some of the leaves in which the far ones are.
+    CHECK(detection.counters()[work::triangle_tests] < 2 * crossing);
+}
+
 TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shape and size") {
     triangle_pairs::generator g{8};
     std::size_t met = 0;
@@ -171,21 +271,19 @@ TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shap
                     }
                 }
                 if (!overlaps(bounds[0], bounds[1]) || !is_valid(bounds[0]) || !is_valid(bounds[1])) continue;
-                leaf_slab slab;
-                slab.fit(blocks[0], bounds[0]);
-                const std::uint32_t reached = slab.reached_by(blocks[1], bounds[1]);
-                // Before it moved to where it is, by no more than the margin.
                 const float margin = static_cast<float>(size) * 0.1F;
+                const box both = merged(bounds[0], bounds[1]);
+                std::array<float, 3> edges{};
+                for (int k = 0; k < 3; ++k) edges[static_cast<std::size_t>(k)] = both.max[k] - both.min[k] + 2 * margin;
+                leaf_slab slab;
+                slab.fit(blocks[0], edges);
+                const std::uint32_t reached = slab.reached_by(blocks[1]);
+                // Before it moved to where it is, by no more than the margin.
                 triangle_block before = blocks[1];
                 for (auto& corner : before.corner)
                     for (std::size_t k = 0; k < 3; ++k)
                         for (float& x : corner[k]) x -= margin * (k == 0 ? 0.6F : k == 1 ? -0.63F : 0.47F);
-                box there = bounds[1];
-                for (int k = 0; k < 3; ++k) {
-                    there.min[k] -= margin;
-                    there.max[k] += margin;
-                }
-                const std::uint32_t near = slab.reached_by(before, there, margin);
+                const std::uint32_t near = slab.reached_by(before, margin);
                 for (std::size_t j = 0; j < 8; ++j)
                     for (std::size_t i = 0; i < 8; ++i) {
                         if (!exact_triangle::intersects(sides[0][i], sides[1][j])) continue;
@@ -212,20 +310,14 @@ TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every
         block.triangles = 8;
         return block;
     };
-    const auto bounds_of_block = [](const triangle_block& block) {
-        eight_boxes boxes{};
-        block.bounds(boxes);
-        return box_row(boxes).bounds();
-    };
     for (const float size : {1e-9F, 1.0F, 1e9F}) {
         CAPTURE(size);
         const triangle_block here = sheet(size, 0);
         const triangle_block above = sheet(size, 0.001F);
-        REQUIRE(overlaps(bounds_of_block(here), bounds_of_block(above)));
         leaf_slab slab;
-        slab.fit(here, bounds_of_block(here));
-        CHECK(slab.reached_by(here, bounds_of_block(here)) == 0xff);
-        CHECK(slab.reached_by(above, bounds_of_block(above)) == 0);
+        slab.fit(here, {2 * size, 2 * size, 2 * size});
+        CHECK(slab.reached_by(here) == 0xff);
+        CHECK(slab.reached_by(above) == 0);
     }
 }
 
@@ -386,42 +478,6 @@ TEST_CASE("children that meet are found, however one node is turned against the 
     CHECK(apart_in_b > 1000);
 }
 
-TEST_CASE("the box of eight boxes in a row meets others as boxes do") {
-    std::size_t met = 0;
-    std::size_t apart = 0;
-    CHECK(rc::check([&] {
-        std::array<box_row, 2> rows;
-        std::array<box, 2> merged_boxes{empty_box(), empty_box()};
-        for (std::size_t side = 0; side < 2; ++side) {
-            eight_boxes boxes{};
-            boxes.count = 8;
-            for (std::size_t i = 0; i < 8; ++i) {
-                box one;
-                for (int k = 0; k < 3; ++k) {
-                    const auto axis = static_cast<std::size_t>(k);
-                    const int low = *rc::gen::inRange(-20, 20);
-                    boxes.lower[axis][i] = one.min[k] = static_cast<float>(low);
-                    boxes.upper[axis][i] = one.max[k] = static_cast<float>(low + *rc::gen::inRange(0, 5));
-                }
-                merged_boxes[side] = merged(merged_boxes[side], one);
-            }
-            rows[side] = box_row(boxes);
-            RC_ASSERT(rows[side].bounds() == merged_boxes[side]);
-            // A single box, so that some lie apart.
-            if (side == 0) continue;
-            for (auto* bounds : {&boxes.lower, &boxes.upper})
-                for (auto& row : *bounds) row.fill(row[0]);
-            RC_ASSERT(box_row(boxes).meets(rows[0]) == overlaps(box_row(boxes).bounds(), merged_boxes[0]));
-            RC_ASSERT(box_row(boxes).meets(box_row(boxes)));
-            const bool meets = rows[0].meets(box_row(boxes));
-            RC_ASSERT(meets == overlaps(box_row(boxes).bounds(), merged_boxes[0]));
-            (meets ? met : apart) += 1;
-        }
-    }));
-    CHECK(met > 0);
-    CHECK(apart > 0);
-}
-
 TEST_CASE("pairs are put in order of their distance, the nearest last") {
     CHECK(rc::check([] {
         std::vector<box> children;
@@ -521,9 +577,8 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
                 block.load(m, built.tree(), leaf, list);
                 triangle_block moved;
                 moved.load(m, built.tree(), leaf, list, to_a);
-                eight_boxes bounds{};
-                moved.bounds(bounds);
-                RC_ASSERT(bounds.count == triangles);
+                const auto bounds = moved.bounds();
+                RC_ASSERT(moved.triangles == triangles);
                 for (std::uint32_t i = 0; i < 8; ++i) {
                     const triangle3f t = m.triangle(built.tree().triangle_at(8 * leaf + std::min(i, triangles - 1)));
                     const triangle3f image = to_a(t);
@@ -535,8 +590,8 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
                         RC_ASSERT(moved.corner[row / 3][row % 3][i] == image[c][k]);
                     }
                     for (int k = 0; k < 3; ++k) {
-                        RC_ASSERT(bounds.lower[static_cast<std::size_t>(k)][i] == around.min[k]);
-                        RC_ASSERT(bounds.upper[static_cast<std::size_t>(k)][i] == around.max[k]);
+                        RC_ASSERT(bounds[static_cast<std::size_t>(k)][i] == around.min[k]);
+                        RC_ASSERT(bounds[static_cast<std::size_t>(k) + 3][i] == around.max[k]);
                     }
                 }
             }
