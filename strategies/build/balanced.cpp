@@ -14,6 +14,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.build.balanced_item;
+import aabb.build.binned_items;
 import aabb.build.few_items;
 import aabb.build.halving;
 
@@ -25,7 +26,6 @@ namespace aabb {
 namespace {
 
 constexpr std::size_t leaf_triangles = balanced_order::leaf_triangles;
-constexpr std::size_t sampled = 32;  // of more than few
 constexpr std::size_t bins = 256;
 
 /// A range of places, and where its items are.
@@ -128,7 +128,7 @@ private:
 
     [[nodiscard]] std::array<item_bounds, 2> split_few(std::span<const balanced_item> from, std::span<balanced_item> to,
                                                        const box& bounds, std::size_t left) const noexcept {
-        auto [axis, first] = best_split(few_items(from, 1), bounds, left);
+        auto [axis, first] = best_split(few_items(from), bounds, left);
         while (std::popcount(first) != static_cast<int>(left)) first &= ~last_of(from, first, axis);
         std::array<std::size_t, 2> next{left, 0};
         std::array<item_bounds, 2> halves;
@@ -150,6 +150,23 @@ private:
                 centre_order{axis}(items[last], items[i]))
                 last = i;
         return std::uint64_t{1} << last;
+    }
+
+    [[nodiscard]] std::size_t best_axis(std::span<const balanced_item> items, const box& bounds,
+                                        std::size_t left) const noexcept {
+        const auto longest = static_cast<std::size_t>(longest_axis(bounds));
+        if (rule_ == axis_rule::longest) return longest;
+        const std::size_t step = (items.size() + binned_items::most - 1) / binned_items::most;
+        const binned_items some(items, step, bounds);
+        const auto cost_of = [&](std::size_t axis) { return some.cost_of(axis, left / step); };
+        std::size_t best = longest;
+        double least = cost_of(longest);
+        for (const std::size_t axis : {(longest + 1) % 3, (longest + 2) % 3})
+            if (const double cost = cost_of(axis); cost < least) {
+                least = cost;
+                best = axis;
+            }
+        return best;
     }
 
     /// What falls to one thread of a range that is split.
@@ -178,10 +195,7 @@ private:
     [[nodiscard]] std::array<item_bounds, 2> split_shared(std::span<balanced_item> from, std::span<balanced_item> to,
                                                           const box& bounds, std::size_t left, std::uint8_t* bin,
                                                           worker_threads& workers, std::span<share> shares) const {
-        const std::size_t step = (from.size() + sampled - 1) / sampled;
-        const std::size_t axis = rule_ == axis_rule::longest
-                                     ? static_cast<std::size_t>(longest_axis(bounds))
-                                     : best_split(few_items(from, step), bounds, (left + step - 1) / step).axis;
+        const std::size_t axis = best_axis(from, bounds, left);
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {

@@ -27,6 +27,11 @@ struct alignas(32) balanced_item {
     [[nodiscard]] inline float centre(std::size_t axis) const noexcept {
         return 0.5F * lower[axis] - 0.5F * negated_upper[axis];
     }
+    /// Along each axis; then numbers of no account.
+    [[nodiscard]] inline simd::eight_floats centres() const noexcept {
+        const auto half = 0.5F * std::bit_cast<simd::eight_floats>(*this);
+        return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
+    }
 };
 
 /// In the order of centres along an axis; ties go by triangle, so that it is clear who goes to which side.

@@ -24,15 +24,12 @@ class few_items {
 public:
     static constexpr std::size_t most = 64;
 
-    /// Every so many of `items`.
-    few_items(std::span<const balanced_item> items, std::size_t step) noexcept {
-        for (std::size_t i = 0; i < items.size(); i += step) {
+    explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
+        for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
-                lower_[k][count_] = items[i].lower[k];
-                negated_upper_[k][count_] = items[i].negated_upper[k];
+                lower_[k][i] = items[i].lower[k];
+                negated_upper_[k][i] = items[i].negated_upper[k];
             }
-            ++count_;
-        }
         // The last one fills the rest, as far as whole vectors are looked at.
         for (std::size_t i = count_; i < std::max(std::bit_ceil(count_), most_lanes); ++i)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -112,7 +109,7 @@ private:
 
     alignas(64) std::array<row, 3> lower_;
     alignas(64) std::array<row, 3> negated_upper_;
-    std::size_t count_ = 0;
+    std::size_t count_;
 };
 
 }  // namespace aabb
