@@ -55,7 +55,7 @@ public:
     /// @returns false when it stopped at more than so many
     [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
                             std::size_t most, std::vector<kept_pair>& pairs) {
-        leaves_.begin(a, b, to_a, false,
+        leaves_.begin(a, b, to_a, false, false,
                       std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
         return !descend(a, b, to_a, extent::two_meshes, walk_goal::every_pair, margin,
                         [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
@@ -96,6 +96,8 @@ private:
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
     static constexpr std::size_t most_missed = 2;
+    /// Whether a filter decides where rounding leaves no doubt: of exact tests alone.
+    static constexpr bool is_filtered = requires { requires Triangle::filtered; };
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
 
@@ -129,7 +131,8 @@ private:
         bool reached_leaves = false;
         const bool stopped = descend(a, b, to_a, what, goal, 0,
                                      [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                                         if (!reached_leaves) leaves_.begin(a, b, to_a, what == extent::one_mesh, 0);
+                                         if (!reached_leaves)
+                                             leaves_.begin(a, b, to_a, what == extent::one_mesh, !is_filtered, 0);
                                          reached_leaves = true;
                                          return test_leaves(test, a, b, to_a, what, of_a, of_b, emit_pair) ||
                                                 (any_pair && waiting_.decide(test, true, emit_pair));
@@ -276,7 +279,7 @@ private:
     template <class Emit>
     [[nodiscard]] bool emit_neighbours(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
                                        const Emit& emit) const {
-        if constexpr (requires { requires Triangle::filtered; }) {
+        if constexpr (is_filtered) {
             const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
             for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
                 const auto place = static_cast<std::uint32_t>(std::countr_zero(found));

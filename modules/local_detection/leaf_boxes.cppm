@@ -64,7 +64,7 @@ private:
 };
 
 /// The boxes of a leaf's triangles in 16 bits a plane. They overlap wherever the triangles' boxes do, and elsewhere
-/// only where these are less than some two steps apart.
+/// only where these are less than some two steps apart, or where 16 bits will not do (`are_coarse`).
 class leaf_boxes {
 public:
     /// @param rows lower bounds along each axis, then upper ones

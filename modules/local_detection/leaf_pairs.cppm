@@ -3,6 +3,7 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -40,9 +41,13 @@ template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
     /// @param one_mesh whether both are the same, so that triangles may share corners
+    /// @param only_boxes_that_meet whether none may be handed over whose boxes lie less than a step of the grid apart:
+    /// what an inexact test makes of these would depend on the grid
     /// @param margin within which triangles are said to meet
-    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh, float margin) {
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh,
+               bool only_boxes_that_meet, float margin) {
         grid_.begin(a.bounds(), to_a(b.bounds()));
+        only_boxes_that_meet_ = only_boxes_that_meet;
         margin_ = margin;
         of_a_.begin(leaves_of(a));
         of_b_.begin(leaves_of(b));
@@ -130,11 +135,14 @@ private:
             });
     }
 
-    /// Floats that lie outside by no more than the margin are in the boxes then.
+    /// Floats that lie outside by no more than the margin are in the boxes then, which end where floats do.
     inline void grow(std::array<simd::eight_floats, 6>& bounds) const noexcept {
+        const simd::eight_floats most = simd::eight_floats{} + std::numeric_limits<float>::max();
         for (std::size_t k = 0; k < 3; ++k) {
-            bounds[k] -= margin_;
-            bounds[3 + k] += margin_;
+            const simd::eight_floats lower = bounds[k] - margin_;
+            const simd::eight_floats upper = bounds[3 + k] + margin_;
+            bounds[k] = lower > -most ? lower : -most;
+            bounds[3 + k] = upper < most ? upper : most;
         }
     }
 
@@ -166,7 +174,7 @@ private:
             const read_leaf& of_b = of_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
             std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
-            if (std::popcount(which) > many) which &= overlaps_where_coarse(of_a, of_b);
+            if (only_boxes_that_meet_ || std::popcount(which) > many) which &= overlaps_where_coarse(of_a, of_b);
             meeting_[meeting] = {begin, which};
             meeting += which != 0;
         }
@@ -174,10 +182,11 @@ private:
     }
 
     /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where
-    /// 16 bits serve.
+    /// 16 bits will do.
     [[nodiscard, gnu::noinline]] std::uint64_t overlaps_where_coarse(const read_leaf& of_a,
                                                                      const read_leaf& of_b) const noexcept {
-        if (!of_a.boxes.are_coarse() || !of_b.boxes.are_coarse()) return ~std::uint64_t{0};
+        const bool are_coarse = of_a.boxes.are_coarse() && of_b.boxes.are_coarse();
+        if (!are_coarse && !only_boxes_that_meet_) return ~std::uint64_t{0};
         eight_boxes boxes_a;
         eight_boxes boxes_b;
         auto bounds_of_b = of_b.block.bounds();
@@ -201,6 +210,7 @@ private:
 
     leaf_grid grid_;
     bool one_mesh_ = false;
+    bool only_boxes_that_meet_ = false;
     float margin_ = 0;
     leaf_store<leaf_of_a> of_a_;
     leaf_store<read_leaf> of_b_;

@@ -27,9 +27,10 @@ struct alignas(32) balanced_item {
     [[nodiscard]] inline float centre(std::size_t axis) const noexcept {
         return 0.5F * lower[axis] - 0.5F * negated_upper[axis];
     }
-    /// Along each axis; then numbers of no account.
+    /// Along each axis; then numbers of no account. The triangle's is no float: products with one may be slow.
     [[nodiscard]] inline simd::eight_floats centres() const noexcept {
-        const auto half = 0.5F * std::bit_cast<simd::eight_floats>(*this);
+        const auto bounds = std::bit_cast<simd::eight_floats>(*this);
+        const auto half = 0.5F * __builtin_shufflevector(bounds, bounds, 0, 1, 2, 2, 4, 5, 6, 6);
         return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
     }
 };

@@ -47,7 +47,7 @@ public:
     [[nodiscard]] double cost_of(std::size_t axis, std::size_t left) const noexcept {
         std::size_t end = 0;
         std::size_t in_left = 0;
-        while (in_left + in_bin_[axis][end] / 2U < left) in_left += in_bin_[axis][end++];
+        while (end < bins && in_left + in_bin_[axis][end] / 2U < left) in_left += in_bin_[axis][end++];
         std::array<item_bounds, 2> sides;
         for (std::size_t i = 0; i < count_; ++i) {
             const bool is_left = bin_[axis][i] < end;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -285,6 +286,32 @@ private:
 };
 
 }  // namespace
+
+TEST_CASE("a front holds all that meets at the ends of the range of floats, which margins pass") {
+    constexpr float most = std::numeric_limits<float>::max();
+    const auto crossing = [](bool upright) {
+        return sheet_of(16, [&](std::uint32_t i, std::uint32_t j) -> vec3f {
+            const float x = (static_cast<float>(i) / 8 - 1) * most;
+            const float y = (static_cast<float>(j) / 8 - 1) * most;
+            return upright ? vec3f{x, 0, y} : vec3f{x, y, 0};
+        });
+    };
+    const std::array meshes{crossing(false), crossing(true)};
+    const auto kept = local_of(keeping());
+    const auto forgotten = local_of(forgetting());
+    for (const mesh& m : meshes) {
+        kept->add_model(m);
+        forgotten->add_model(m);
+    }
+    std::vector<index_pair> wanted;
+    forgotten->all_pairs(0, {}, 1, {}, wanted);
+    CHECK(wanted.size() > 16);
+    for (int query = 0; query < 5; ++query) {
+        std::vector<index_pair> pairs;
+        kept->all_pairs(0, {}, 1, {}, pairs);
+        CHECK(sorted(pairs) == sorted(wanted));
+    }
+}
 
 TEST_CASE("a front is made in the third query of meshes that hardly move, and opens no nodes from then on") {
     const mesh m = waves(40, 0.1F);

@@ -255,14 +255,33 @@ TEST_CASE("layouts take the bytes that the paper says, or less") {
 }
 
 TEST_CASE("a balanced tree by surface area is split across the axis that makes boxes small, not the longest") {
-    mesh bars;
-    for (std::uint32_t i = 0; i < 64; ++i) {
-        const auto y = static_cast<float>(37 * i % 64);
-        bars.vertices.insert(bars.vertices.end(), {{-100, y, 0}, {100, y, 0}, {0, y, 0.5F}});
-        bars.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    for (const std::uint32_t n : {64U, 256U, 4096U}) {
+        CAPTURE(n);
+        mesh bars;
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const auto y = static_cast<float>(37 * i % n);
+            const auto x = 2 * static_cast<float>(n);
+            bars.vertices.insert(bars.vertices.end(), {{-x, y, 0}, {x, y, 0}, {0, y, 0.5F}});
+            bars.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        for (const box& leaf : sah_build().order(bars).bounds) CHECK(leaf.max[1] - leaf.min[1] == 7);
+        for (const box& leaf : median_build().order(bars).bounds) CHECK(leaf.max[1] - leaf.min[1] > 7);
     }
-    for (const box& leaf : sah_build().order(bars).bounds) CHECK(leaf.max[1] - leaf.min[1] == 7);
-    for (const box& leaf : median_build().order(bars).bounds) CHECK(leaf.max[1] - leaf.min[1] > 7);
+}
+
+TEST_CASE("a balanced tree by surface area is built where nearly all centroids lie at one end") {
+    // One large triangle, others in its corner: more than half of them are to go to the left, and lie in the last bin.
+    mesh m;
+    m.vertices = {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}};
+    m.triangles = {{0, 1, 2}};
+    for (std::uint32_t i = 0; i < 128; ++i) {
+        const float at = 0.998F + 1e-5F * static_cast<float>(i);
+        m.vertices.insert(m.vertices.end(), {{at, at, at}, {at, at, at + 1e-5F}, {at, at + 1e-5F, at}});
+        m.triangles.push_back({3 * i + 3, 3 * i + 4, 3 * i + 5});
+    }
+    std::vector<std::uint32_t> order = sah_build().order(m).triangles;
+    std::ranges::sort(order);
+    for (std::uint32_t i = 0; i < 129; ++i) CHECK(order[i] == i);
 }
 
 TEST_CASE("trees are refitted to meshes whose vertices were numbered anew") {

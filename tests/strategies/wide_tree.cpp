@@ -296,6 +296,38 @@ TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shap
     CHECK(met > 1000);
 }
 
+TEST_CASE("a slab leaves out no triangle that touches a plane of large odd numbers from above") {
+    REQUIRE(rc::check([&] {
+        // Whole numbers, so that all points lie in the plane; their differences and products are rounded.
+        const auto any_number = [](int most) { return *rc::gen::inRange(-most, most + 1); };
+        const std::array<int, 3> u{any_number(2000) | 1, any_number(2000) | 1, any_number(2000) | 1};
+        const std::array<int, 3> v{any_number(2000) | 1, any_number(2000) | 1, any_number(2000) | 1};
+        const std::array<double, 3> normal{static_cast<double>(u[1] * v[2] - u[2] * v[1]),
+                                           static_cast<double>(u[2] * v[0] - u[0] * v[2]),
+                                           static_cast<double>(u[0] * v[1] - u[1] * v[0])};
+        const auto point = [&](int p, int q, std::size_t k) { return static_cast<float>(p * u[k] + q * v[k]); };
+        std::array<triangle_block, 2> blocks{};
+        for (std::size_t i = 0; i < 8; ++i) {
+            const int p = 3 * any_number(200);
+            const int q = 3 * any_number(200);
+            for (std::size_t k = 0; k < 3; ++k) {
+                blocks[0].corner[0][k][i] = point(p, q, k);
+                blocks[0].corner[1][k][i] = point(p + 3, q, k);
+                blocks[0].corner[2][k][i] = point(p, q + 3, k);
+                // From the middle upward.
+                const float up = normal[k] > 0 ? 1e6F : -1e6F;
+                blocks[1].corner[0][k][i] = point(p + 1, q + 1, k);
+                blocks[1].corner[1][k][i] = point(p + 1, q + 1, k) + up;
+                blocks[1].corner[2][k][i] = point(p + 2, q, k) + up;
+            }
+        }
+        for (triangle_block& b : blocks) b.triangles = 8;
+        leaf_slab slab;
+        slab.fit(blocks[0], {1e7F, 1e7F, 1e7F});
+        RC_ASSERT(slab.reached_by(blocks[1]) == 0xff);
+    }));
+}
+
 TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every size") {
     // Long triangles along (1, 1, 1), side by side in a plane.
     const auto sheet = [](float size, float height) {
@@ -314,6 +346,10 @@ TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every
         CAPTURE(size);
         const triangle_block here = sheet(size, 0);
         const triangle_block above = sheet(size, 0.001F);
+        std::array<eight_boxes, 2> boxes;
+        boxes[0].take(here.bounds(), 8);
+        boxes[1].take(above.bounds(), 8);
+        REQUIRE(boxes[0].overlaps(boxes[1]) != 0);
         leaf_slab slab;
         slab.fit(here, {2 * size, 2 * size, 2 * size});
         CHECK(slab.reached_by(here) == 0xff);
