@@ -174,7 +174,7 @@ private:
             const read_leaf& of_b = of_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
             std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
-            if (only_boxes_that_meet_ || std::popcount(which) > many) which &= overlaps_where_coarse(of_a, of_b);
+            if (only_boxes_that_meet_ || std::popcount(which) > many) which &= overlaps_in_floats(of_a, of_b);
             meeting_[meeting] = {begin, which};
             meeting += which != 0;
         }
@@ -183,8 +183,8 @@ private:
 
     /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where
     /// 16 bits will do.
-    [[nodiscard, gnu::noinline]] std::uint64_t overlaps_where_coarse(const read_leaf& of_a,
-                                                                     const read_leaf& of_b) const noexcept {
+    [[nodiscard, gnu::noinline]] std::uint64_t overlaps_in_floats(const read_leaf& of_a,
+                                                                  const read_leaf& of_b) const noexcept {
         const bool are_coarse = of_a.boxes.are_coarse() && of_b.boxes.are_coarse();
         if (!are_coarse && !only_boxes_that_meet_) return ~std::uint64_t{0};
         eight_boxes boxes_a;

@@ -1,5 +1,4 @@
 module;
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

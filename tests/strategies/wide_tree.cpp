@@ -19,6 +19,7 @@ import aabb.build.median;
 import aabb.simd;
 import aabb.tree.implicit;
 import aabb.triangle.exact;
+import aabb.triangle.moller;
 
 using namespace aabb;
 
@@ -245,6 +246,44 @@ TEST_CASE("triangles much smaller than their meshes are held apart by their boxe
     CHECK(pairs.size() == crossing);
     // Those, and some of the leaves in which the far ones are.
     CHECK(detection.counters()[work::triangle_tests] < 2 * crossing);
+}
+
+TEST_CASE("an inexact test is not asked about triangles whose boxes lie apart, however little") {
+    // By less than a step of 16 bits, across planes that cross; the last ones make the meshes large.
+    std::array<mesh, 2> meshes;
+    const auto build = [&](float gap) {
+        for (std::size_t side = 0; side < 2; ++side) {
+            mesh& m = meshes[side];
+            m = {};
+            const auto add = [&](vec3f p, vec3f q, vec3f r) {
+                const auto first = static_cast<std::uint32_t>(m.vertices.size());
+                m.vertices.insert(m.vertices.end(), {p, q, r});
+                m.triangles.push_back({first, first + 1, first + 2});
+            };
+            for (std::uint32_t i = 0; i < 64; ++i) {
+                const float y = 3 * static_cast<float>(i);
+                if (side == 0)
+                    add({0, y, 0}, {1, y, 0}, {1, y + 1, 0});
+                else
+                    add({1 + gap, y, -1}, {1 + gap, y, 1}, {2 + gap, y + 1, 1});
+            }
+            const float at = side == 0 ? 1000.0F : 900.0F;
+            for (const float far : {at, -at}) add({far, far, far}, {far, far, far + 1}, {far, far + 1, far});
+        }
+    };
+    const auto tests_made = [&]<class Triangle>(const Triangle&) {
+        const model<implicit_tree> a(meshes[0], median_build());
+        const model<implicit_tree> b(meshes[1], median_build());
+        local_detection<implicit_tree, Triangle, work_counters> detection;
+        std::vector<index_pair> pairs;
+        detection.all_pairs(a, {}, b, {}, pairs);
+        return detection.counters()[work::triangle_tests];
+    };
+    build(0);
+    CHECK(tests_made(moller_triangle()) >= 64);
+    build(0.001F);
+    CHECK(tests_made(moller_triangle()) == 0);
+    CHECK(tests_made(exact_triangle()) > 0);
 }
 
 TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shape and size") {
