@@ -57,8 +57,11 @@ float any_float() {
 
 std::vector<box> any_boxes() {
     std::vector<box> boxes(*rc::gen::inRange<std::size_t>(1, 9));
-    const vec3f centre{any_float(), any_float(), any_float()};
-    const float size = std::abs(any_float());
+    // Every other time near 1: of other numbers, few boxes lie clearly apart.
+    const bool is_usual = *rc::gen::arbitrary<bool>();
+    const auto number = [&] { return is_usual ? static_cast<float>(uniform(0.5, 1)) : any_float(); };
+    const vec3f centre{number(), number(), number()};
+    const float size = std::abs(number());
     for (box& b : boxes)
         for (int k = 0; k < 3; ++k) {
             const auto near = [&] {
@@ -145,7 +148,7 @@ TEST_CASE("of the boxes of two leaves those that meet are found, and no others")
                 met += meets;
             }
     }));
-    CHECK(met > 100);
+    CHECK(met > 50);
 }
 
 TEST_CASE("boxes of leaves in 16 bits meet where boxes do, and not where these are some steps apart") {
@@ -212,8 +215,8 @@ TEST_CASE("boxes of leaves in 16 bits meet where boxes do, and not where these a
                 }
             }
     }));
-    CHECK(met > 20);
-    CHECK(apart > 100);
+    CHECK(met > 10);
+    CHECK(apart > 50);
 }
 
 TEST_CASE("triangles much smaller than their meshes are held apart by their boxes too") {
