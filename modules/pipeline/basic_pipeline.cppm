@@ -111,7 +111,11 @@ public:
                 const auto [a, b] = models_of(i);
                 triangle_pairs_.clear();
                 local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
-                for (const index_pair found : triangle_pairs_) contacts_.push_back(contact_of(i, found));
+                // Room for all of them first: asking for each takes longer than writing it.
+                const std::size_t before = contacts_.size();
+                contacts_.resize(before + triangle_pairs_.size());
+                contact* to = contacts_.data() + before;
+                for (const index_pair found : triangle_pairs_) *to++ = contact_of(i, found);
             }
         });
     }
