@@ -6,6 +6,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,7 +22,7 @@ import :kept_leaves;
 import :leaf_front;
 import :leaf_pairs;
 import :model;
-import :nearest_last;
+import :nearest_few;
 import :triangle_batch;
 import :triangle_block;
 import :triangle_policy;
@@ -238,8 +239,13 @@ private:
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
             simd::store_places(places.data(), met);
             const auto count = static_cast<std::size_t>(std::popcount(met));
-            if (nearest_last && opens_a && opens_b && count > 1)
-                put_nearest_last(places.data(), count, nodes_a[node_a], children_.in_a(nodes_b[node_b]));
+            std::optional<nearest_few> to_open_first;
+            if (nearest_last && opens_a && opens_b && count > 1) {
+                to_open_first.emplace(places, count, nodes_a[node_a], children_.in_a(nodes_b[node_b]));
+                std::uint64_t others = met;
+                for (const std::uint32_t place : to_open_first->places()) others &= ~(std::uint64_t{1} << place);
+                simd::store_places(places.data(), others);
+            }
             std::size_t p = 0;
             do {  // mostly once, which is foreseen
                 const auto place =
@@ -249,6 +255,12 @@ private:
                 p += children;
             } while (p < count);
             to.size += count;
+            if (!to_open_first) continue;
+            std::size_t last = to.size;
+            for (const std::uint32_t place : to_open_first->places()) {
+                to.a[--last] = first_a + (place & 7U);
+                to.b[last] = first_b + (place >> 3U);
+            }
         }
     }
 

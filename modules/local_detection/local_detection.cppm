@@ -31,7 +31,7 @@ export import :leaf_store;
 export import :leaf_test;
 export import :mesh_fit;
 export import :model;
-export import :nearest_last;
+export import :nearest_few;
 export import :recently_made;
 export import :tree_policy;
 export import :tree_survey;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "../random_poses.hpp"
@@ -556,7 +557,7 @@ TEST_CASE("children that meet are found, however one node is turned against the 
     CHECK(apart_in_b > 1000);
 }
 
-TEST_CASE("pairs are put in order of their distance, the nearest last") {
+TEST_CASE("of pairs those are found whose centres are the least distance apart") {
     CHECK(rc::check([] {
         std::vector<box> children;
         eight_boxes others{};
@@ -569,25 +570,80 @@ TEST_CASE("pairs are put in order of their distance, the nearest last") {
         }
         wide_node node{};
         node.encode(children);
+        // In any order; beyond their number, pairs that are not asked about.
         std::array<std::uint8_t, 64> pairs{};
         for (std::uint8_t i = 0; i < 64; ++i) pairs[i] = i;
-        put_nearest_last(pairs.data(), pairs.size(), node, others);
-        double last = std::numeric_limits<double>::infinity();
-        std::uint64_t seen = 0;
-        for (const std::uint8_t p : pairs) {
-            seen |= std::uint64_t{1} << p;
-            double distance = 0;
+        for (std::size_t i = 64; i > 1; --i) std::swap(pairs[i - 1], pairs[*rc::gen::inRange<std::size_t>(0, i)]);
+        const auto count = *rc::gen::inRange<std::size_t>(1, 65);
+        const auto distance = [&](std::uint32_t p) {
+            double sum = 0;
             const box child = node.child(p & 7U);
             for (int k = 0; k < 3; ++k) {
                 const double way =
                     (double{child.min[k]} + child.max[k]) / 2 - others.lower[static_cast<std::size_t>(k)][p >> 3U];
-                distance += way * way;
+                sum += way * way;
             }
-            RC_ASSERT(distance <= last * (1 + 1e-4) + 1e-6);
-            last = distance;
+            return sum;
+        };
+        const nearest_few found(pairs, count, node, others);
+        RC_ASSERT(found.places().size() == std::min<std::size_t>(count, 2));
+        const auto asked = std::span(pairs).first(count);
+        double last = 0;
+        const auto follows = [&](double d) { return last <= d * (1 + 1e-4) + 1e-6; };
+        std::uint64_t seen = 0;
+        for (const std::uint32_t p : found.places()) {
+            RC_ASSERT(std::ranges::count(asked, p) == 1);
+            RC_ASSERT(follows(distance(p)));
+            last = distance(p);
+            seen |= std::uint64_t{1} << p;
         }
-        RC_ASSERT(seen == ~std::uint64_t{0});
+        RC_ASSERT(static_cast<std::size_t>(std::popcount(seen)) == found.places().size());
+        for (const std::uint32_t p : asked) RC_ASSERT((seen >> p & 1U) != 0 || follows(distance(p)));
     }));
+}
+
+TEST_CASE("the first pair is found where there are hardly any") {
+    // Shells of small triangles, brought together until they barely touch.
+    triangle_pairs::generator g{10};
+    std::normal_distribution<double> normal;
+    const auto shell = [&] {
+        mesh m;
+        for (std::uint32_t t = 0; t < 3000; ++t) {
+            const std::array<double, 3> at{normal(g), normal(g), normal(g)};
+            const double length = std::hypot(at[0], at[1], at[2]);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                vec3f v;
+                for (int k = 0; k < 3; ++k)
+                    v[k] = static_cast<float>(at[static_cast<std::size_t>(k)] / length + 0.02 * normal(g));
+                m.vertices.push_back(v);
+            }
+            m.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+        }
+        return m;
+    };
+    const std::array meshes{shell(), shell()};
+    const model<implicit_tree> a(meshes[0], median_build());
+    const model<implicit_tree> b(meshes[1], median_build());
+    local_detection<implicit_tree, exact_triangle, no_counters> detection;
+    std::vector<index_pair> pairs;
+    std::size_t few = 0;
+    std::size_t wrong = 0;
+    for (int turn = 0; turn < 40; ++turn) {
+        double meets = 0;
+        double apart = 4;
+        for (int step = 0; step < 16; ++step) {
+            const double middle = (meets + apart) / 2;
+            const pose pose_b = turned_by({1, 0.3 * turn, 0.1, 0.7}, {middle, 0.01 * turn, 0});
+            pairs.clear();
+            detection.all_pairs(a, {}, b, pose_b, pairs);
+            const auto first = detection.first_pair(a, {}, b, pose_b);
+            wrong += first ? std::ranges::count(pairs, *first) != 1 : !pairs.empty();
+            few += !pairs.empty() && pairs.size() < 4;
+            (pairs.empty() ? apart : meets) = middle;
+        }
+    }
+    CHECK(few > 100);
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("a box of A that holds no more than the image of a vertex holds the vertex when taken back") {
