@@ -8,7 +8,6 @@ module;
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 export module aabb.local_detection:batched_walk;
@@ -33,8 +32,9 @@ import :wide_tree_policy;
 export namespace aabb {
 
 /// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
-/// that no step waits for the one before, and few pairs are kept; for the first pair one at a time, nearest first.
-/// Triangles are read and moved once for all the leaves that they meet one after the other, and tested in batches.
+/// that no step waits for the one before, and few pairs are kept; for the first pair one at a time, the two nearest
+/// first. Triangles are read and moved once for all the leaves that they meet one after the other, and tested in
+/// batches.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -215,8 +215,9 @@ private:
         }
     }
 
-    /// Those pairs of children that may meet go to the next step, from which the last is taken first.
-    void open(const Tree& a, const Tree& b, extent what, bool nearest_last, std::size_t step, std::size_t begin,
+    /// Those pairs of children that may meet go to the next step, from which the last is taken first: the nearest
+    /// there, if those come first.
+    void open(const Tree& a, const Tree& b, extent what, bool nearest_first, std::size_t step, std::size_t begin,
               std::size_t end) {
         const heights at = steps_[step];
         const wide_node* const nodes_a = a.level(at.a - 1);
@@ -240,7 +241,7 @@ private:
             simd::store_places(places.data(), met);
             const auto count = static_cast<std::size_t>(std::popcount(met));
             std::optional<nearest_few> to_open_first;
-            if (nearest_last && opens_a && opens_b && count > 1) {
+            if (nearest_first && opens_a && opens_b && count > 1) {
                 to_open_first.emplace(places, count, nodes_a[node_a], children_.in_a(nodes_b[node_b]));
                 std::uint64_t others = met;
                 for (const std::uint32_t place : to_open_first->places()) others &= ~(std::uint64_t{1} << place);

@@ -14,12 +14,14 @@ import :wide_node;
 
 export namespace aabb {
 
-/// Of pairs, 8 j + i for child i of a node and box j, those whose centres are the least distance apart, nearest first:
-/// to be opened first where any pair of triangles will do. More are hardly ever opened, so that the others are not
+/// Of pairs, 8 j + i for child i of a node and box j, the two whose centres are the least distance apart, nearest
+/// first: to be opened first where any pair of triangles will do. Others are hardly ever opened, so they are not
 /// sorted.
 class nearest_few {
 public:
-    /// @param pairs whole eights of them are read
+    static constexpr std::size_t most = 2;
+
+    /// @param pairs so many of them; whole eights are read
     nearest_few(std::span<const std::uint8_t> pairs, std::size_t count, const wide_node& node,
                 const eight_boxes& boxes) noexcept {
         std::array<eight_boxes::row, 3> of_node;
@@ -36,10 +38,11 @@ public:
             simd::store_eight(of_boxes[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
                                                       simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
         }
-        // Floats that are not negative are in the order of their bits; the last six make room for the pair.
+        // Floats that are not negative are in the order of their bits; the last six make room for the pair. What is not
+        // a number comes after all that are.
         constexpr simd::eight_words lanes{0, 1, 2, 3, 4, 5, 6, 7};
         constexpr simd::eight_words none = ~simd::eight_words{};
-        std::array<simd::eight_words, most> least;  // of each lane, in order
+        std::array<simd::eight_words, most> least;  // of each lane, the least first
         least.fill(none);
         for (std::size_t p = 0; p < count; p += 8) {
             const auto place =
@@ -70,8 +73,6 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> places() const noexcept { return std::span(places_).first(count_); }
 
 private:
-    static constexpr std::size_t most = 2;
-
     std::array<std::uint32_t, most> places_;
     std::size_t count_;
 };

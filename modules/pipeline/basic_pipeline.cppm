@@ -111,7 +111,7 @@ public:
                 const auto [a, b] = models_of(i);
                 triangle_pairs_.clear();
                 local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
-                // Room for all of them first: asking for each takes longer than writing it.
+                // Room for all at once: asking for it contact by contact takes longer than writing them.
                 const std::size_t before = contacts_.size();
                 contacts_.resize(before + triangle_pairs_.size());
                 contact* to = contacts_.data() + before;
