@@ -21,7 +21,7 @@ class nearest_few {
 public:
     static constexpr std::size_t most = 2;
 
-    /// @param pairs so many of them; whole eights are read
+    /// @param pairs the first `count` of them count, but whole eights are read
     nearest_few(std::span<const std::uint8_t> pairs, std::size_t count, const wide_node& node,
                 const eight_boxes& boxes) noexcept {
         std::array<eight_boxes::row, 3> of_node;
