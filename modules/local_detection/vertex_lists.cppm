@@ -48,12 +48,17 @@ public:
         while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
         begins_.resize((order.size() + triangles - 1) / triangles);
         std::vector<std::vector<std::byte>> parts((begins_.size() + least_shared - 1) / least_shared);
+        const auto triangles_of = [&](std::size_t leaf) {
+            const std::size_t begin = std::min(leaf * triangles, order.size());
+            return order.subspan(begin, std::min(triangles, order.size() - begin));
+        };
         workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
             // About what surfaces need.
             parts[p].reserve(least_shared * triangles * (width_ * 5 / 4 + 2));
             for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l) {
+                for (const std::uint32_t t : triangles_of(l + ahead)) __builtin_prefetch(&m.triangles[t]);
                 begins_[l] = static_cast<std::uint32_t>(parts[p].size());
-                add(m, order.subspan(l * triangles, std::min(triangles, order.size() - l * triangles)), parts[p]);
+                add(m, triangles_of(l), parts[p]);
             }
         });
         std::vector<std::size_t> offsets;
@@ -102,33 +107,41 @@ private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::places;
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
+    static constexpr std::size_t ahead = 4;            // leaves whose triangles memory is told of
     static constexpr std::size_t least_shared = 1024;  // leaves that are worth another thread
 
     void add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::vector<std::byte>& to) const {
-        constexpr simd::eight_words place_of_lane{0, 1, 2, 3, 4, 5, 6, 7};
-        vertex_list made{};
-        std::uint32_t& count = made.count;
-        std::array<simd::eight_words, 2> seen{};
+        constexpr std::size_t corners = 3 * triangles;
+        alignas(32) std::array<std::uint32_t, corners> all;
         for (std::size_t i = 0; i < triangles; ++i)
-            for (std::size_t c = 0; c < 3; ++c) {
-                const std::uint32_t vertex = m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]][c];
-                const std::uint32_t same =
-                    simd::bits_of_eight(seen[0] == vertex) | simd::bits_of_eight(seen[1] == vertex) << 8U;
-                // One bit more, for a vertex that is new.
-                const auto place = static_cast<std::uint32_t>(std::countr_zero(same | 1U << count));
-                if (place == vertex_list::most) return to.push_back(std::byte{0});
-                seen[0] = place_of_lane == place ? simd::eight_words{} + vertex : seen[0];
-                seen[1] = place_of_lane + 8 == place ? simd::eight_words{} + vertex : seen[1];
-                count += place == count;
-                made.places[c] |= place << 4 * i;
-            }
-        std::memcpy(made.vertices.data(), seen.data(), sizeof seen);
+            std::ranges::copy(m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]], &all[3 * i]);
+        // Where each stands first, of all before any has a place, so that none waits for the one before.
+        std::array<std::uint8_t, corners> first;
+        std::uint32_t is_new = 0;
+        for (std::size_t at = 0; at < corners; ++at) {
+            std::uint32_t same = 0;
+            for (std::size_t eight = 0; eight < corners; eight += 8)
+                same |= simd::bits_of_eight(simd::load_eight<simd::eight_words>(&all[eight]) == all[at]) << eight;
+            first[at] = static_cast<std::uint8_t>(std::countr_zero(same));
+            is_new |= same & -same;
+        }
+        const auto count = static_cast<std::size_t>(std::popcount(is_new));
+        if (count > vertex_list::most) return to.push_back(std::byte{0});
         const std::size_t begin = to.size();
         to.resize(begin + header + width_ * count);
         to[begin] = static_cast<std::byte>(count);
-        std::memcpy(&to[begin + 1], made.places.data(), sizeof made.places);
-        for (std::uint32_t i = 0; i < count; ++i)
-            std::memcpy(&to[begin + header + width_ * i], &made.vertices[i], width_);
+        std::byte* next = &to[begin + header];
+        std::array<std::uint32_t, 3> places{};
+        std::array<std::uint32_t, corners> place;
+        std::uint32_t known = 0;
+        for (std::size_t at = 0; at < corners; ++at) {
+            place[at] = known;
+            known += is_new >> at & 1U;
+            places[at % 3] |= place[first[at]] << 4 * (at / 3);
+        }
+        std::memcpy(&to[begin + 1], places.data(), sizeof places);
+        for (; is_new != 0; is_new &= is_new - 1, next += width_)
+            std::memcpy(next, &all[static_cast<std::size_t>(std::countr_zero(is_new))], width_);
     }
 
     std::vector<std::uint32_t> begins_;  // by leaf

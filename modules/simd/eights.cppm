@@ -219,6 +219,12 @@ template <class Flags>
     return __builtin_bit_cast(std::uint8_t, __builtin_convertvector(flags, bools));
 }
 
+/// The same of sixteen numbers of 16 bits.
+[[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_sixteen(sixteen_halves flags) noexcept {
+    using bools = bool __attribute__((ext_vector_type(16)));
+    return __builtin_bit_cast(std::uint16_t, __builtin_convertvector(flags, bools));
+}
+
 /// The other way round: number i is all ones where bit i is set.
 [[nodiscard, gnu::always_inline]] inline eight_words flags_of_eight(std::uint8_t bits) noexcept {
     constexpr eight_words bit{1, 2, 4, 8, 16, 32, 64, 128};

@@ -97,11 +97,28 @@ private:
         const std::size_t middle = p.begin + std::bit_ceil(p.size()) / 2;
         const std::span from = std::span(items_[p.in_second]).subspan(p.begin, p.size());
         const std::span to = std::span(items_[!p.in_second]).subspan(p.begin, p.size());
-        const auto bounds = p.size() <= few_items::most
-                                ? split_few(from, to, p.bounds, middle - p.begin)
-                                : split_many(from, to, p.bounds, middle - p.begin, &bin_[p.begin], workers);
-        return {part{p.begin, middle, bounds[0].as_box(), !p.in_second},
-                part{middle, p.end, bounds[1].as_box(), !p.in_second}};
+        const std::size_t left = middle - p.begin;
+        if (p.size() <= few_items::most)
+            split_few(from, to, p.bounds, left);
+        else
+            split_many(from, to, p.bounds, left, &bin_[p.begin], workers);
+        return {part{p.begin, middle, bounds_of_items(to.first(left), workers), !p.in_second},
+                part{middle, p.end, bounds_of_items(to.subspan(left), workers), !p.in_second}};
+    }
+
+    /// Of what has just been moved, which lies in a cache: to take each on its way costs more.
+    [[nodiscard]] static box bounds_of_items(std::span<const balanced_item> items, worker_threads& workers) {
+        item_bounds all;
+        if (workers.count() == 1) {
+            all.take(items);
+            return all.as_box();
+        }
+        std::vector<item_bounds> some((items.size() + least_shared - 1) / least_shared);
+        workers.for_each_range(items.size(), least_shared, [&](std::size_t begin, std::size_t end) {
+            some[begin / least_shared].take(items.subspan(begin, end - begin));
+        });
+        for (const item_bounds& one : some) all.take(one);
+        return all.as_box();
     }
 
     /// An axis, and the items before which fewer than `left` others lie along it; with ties there may be more than
@@ -126,19 +143,18 @@ private:
         return best;
     }
 
-    [[nodiscard]] std::array<item_bounds, 2> split_few(std::span<const balanced_item> from, std::span<balanced_item> to,
-                                                       const box& bounds, std::size_t left) const noexcept {
-        auto [axis, first] = best_split(few_items(from), bounds, left);
+    void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
+                   std::size_t left) const noexcept {
+        auto [axis, first] = best_split(few_items(from, bounds), bounds, left);
         while (std::popcount(first) != static_cast<int>(left)) first &= ~last_of(from, first, axis);
-        std::array<std::size_t, 2> next{left, 0};
-        std::array<item_bounds, 2> halves;
+        std::size_t next_first = 0;
+        std::size_t next_other = left;
         for (std::size_t i = 0; i < from.size(); ++i) {
             const bool is_first = first >> i & 1;
-            to[next[is_first]++] = from[i];
-            halves[0].take_if(is_first, from[i]);
-            halves[1].take_if(!is_first, from[i]);
+            to[is_first ? next_first : next_other] = from[i];
+            next_first += is_first;
+            next_other += !is_first;
         }
-        return halves;
     }
 
     /// The bit of the last of those items.
@@ -157,15 +173,10 @@ private:
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
         if (rule_ == axis_rule::longest) return longest;
         const std::size_t step = (items.size() + binned_items::most - 1) / binned_items::most;
-        const binned_items some(items, step, bounds);
-        const auto cost_of = [&](std::size_t axis) { return some.cost_of(axis, left / step); };
+        const std::array<double, 3> costs = binned_items(items, step, bounds).costs(left / step);
         std::size_t best = longest;
-        double least = cost_of(longest);
         for (const std::size_t axis : {(longest + 1) % 3, (longest + 2) % 3})
-            if (const double cost = cost_of(axis); cost < least) {
-                least = cost;
-                best = axis;
-            }
+            if (costs[axis] < costs[best]) best = axis;
         return best;
     }
 
@@ -175,13 +186,11 @@ private:
         std::size_t end;
         std::array<std::uint32_t, bins> count{};
         std::array<std::size_t, 3> next{};  // places for what lies below, in and above the bin that is split
-        std::array<item_bounds, 2> halves{};
     };
 
     /// By how many centres lie in each bin: only those of one bin have to be put in order.
-    [[nodiscard]] std::array<item_bounds, 2> split_many(std::span<balanced_item> from, std::span<balanced_item> to,
-                                                        const box& bounds, std::size_t left, std::uint8_t* bin,
-                                                        worker_threads& workers) const {
+    void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds, std::size_t left,
+                    std::uint8_t* bin, worker_threads& workers) const {
         if (workers.count() == 1) {
             share whole{0, from.size()};
             return split_shared(from, to, bounds, left, bin, workers, std::span(&whole, 1));
@@ -192,20 +201,38 @@ private:
         return split_shared(from, to, bounds, left, bin, workers, shares);
     }
 
-    [[nodiscard]] std::array<item_bounds, 2> split_shared(std::span<balanced_item> from, std::span<balanced_item> to,
-                                                          const box& bounds, std::size_t left, std::uint8_t* bin,
-                                                          worker_threads& workers, std::span<share> shares) const {
+    /// @param bin takes the bin of each
+    /// @returns how many lie in each bin
+    static std::array<std::uint32_t, bins> put_in_bins(std::span<const balanced_item> items, std::size_t axis,
+                                                       float low, float scale, std::uint8_t* bin) noexcept {
+        // Counted in turn: neighbours mostly lie in the same bin, and each would wait for the one before.
+        constexpr std::size_t turns = 4;
+        std::array<std::array<std::uint32_t, bins>, turns> counts{};
+        const auto take = [&](std::size_t i, std::size_t turn) {
+            // Not a number where all are equal.
+            const float place = (items[i].centre(axis) - low) * scale;
+            const auto of_item = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
+            bin[i] = of_item;
+            ++counts[turn][of_item];
+        };
+        std::size_t i = 0;
+        for (; i + turns <= items.size(); i += turns)
+            for (std::size_t turn = 0; turn < turns; ++turn) take(i + turn, turn);
+        for (; i < items.size(); ++i) take(i, 0);
+        for (std::size_t b = 0; b < bins; ++b)
+            for (std::size_t turn = 1; turn < turns; ++turn) counts[0][b] += counts[turn][b];
+        return counts[0];
+    }
+
+    void split_shared(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds, std::size_t left,
+                      std::uint8_t* bin, worker_threads& workers, std::span<share> shares) const {
         const std::size_t axis = best_axis(from, bounds, left);
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
             share& mine = shares[s];
-            for (std::size_t i = mine.begin; i < mine.end; ++i) {
-                // Not a number where all are equal.
-                const float place = (from[i].centre(axis) - low) * scale;
-                bin[i] = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
-                ++mine.count[bin[i]];
-            }
+            mine.count =
+                put_in_bins(from.subspan(mine.begin, mine.end - mine.begin), axis, low, scale, bin + mine.begin);
         });
         std::array<std::uint32_t, bins> count{};
         for (const share& s : shares)
@@ -225,19 +252,17 @@ private:
             next[2] += s.end - s.begin - below - s.count[at];
         }
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
-            std::array<std::size_t, 3> place = shares[s].next;
-            std::array<item_bounds, 2> halves;
+            // In registers: a processor waits for what it reads where it has just written.
+            auto [below, within, above] = shares[s].next;
             for (std::size_t i = shares[s].begin; i < shares[s].end; ++i) {
-                const std::size_t side = std::size_t{bin[i] >= at} + (bin[i] > at);
-                to[place[side]++] = from[i];
-                halves[0].take_if(side == 0, from[i]);
-                halves[1].take_if(side == 2, from[i]);
+                const bool is_below = bin[i] < at;
+                const bool is_above = bin[i] > at;
+                to[is_below ? below : is_above ? above : within] = from[i];
+                below += is_below;
+                above += is_above;
+                within += !is_below && !is_above;
             }
-            shares[s].halves = halves;
         });
-        std::array<item_bounds, 2> halves;
-        for (const share& s : shares)
-            for (std::size_t h = 0; h < 2; ++h) halves[h].take(s.halves[h]);
         // In the order in which they came, whatever the library makes of it: what was read is no longer needed.
         const std::span between = to.subspan(begin, end - begin);
         const std::span came = from.subspan(begin, end - begin);
@@ -249,9 +274,7 @@ private:
         for (const balanced_item& one : came) {
             const bool is_right = !centre_order{axis}(one, first_of_right);
             to[place[is_right]++] = one;
-            halves[is_right].take(one);
         }
-        return halves;
     }
 
     const mesh& mesh_;

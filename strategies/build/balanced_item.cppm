@@ -4,6 +4,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 /// What a balanced build moves about.
 export module aabb.build.balanced_item;
@@ -51,6 +52,17 @@ class item_bounds {
 public:
     inline void take(const balanced_item& one) noexcept { at_ = lesser(one); }
     inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
+    /// Two in turn, of which neither waits for the one before.
+    inline void take(std::span<const balanced_item> items) noexcept {
+        item_bounds odd;
+        std::size_t i = 0;
+        for (; i + 1 < items.size(); i += 2) {
+            take(items[i]);
+            odd.take(items[i + 1]);
+        }
+        if (i < items.size()) take(items[i]);
+        take(odd);
+    }
     /// Without a branch.
     inline void take_if(bool wanted, const balanced_item& one) noexcept {
         const simd::eight_words every = simd::eight_words{} - std::uint32_t{wanted};

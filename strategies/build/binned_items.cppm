@@ -42,21 +42,28 @@ public:
         }
     }
 
-    /// The sum over both sides of their box's area times their number, where about so many go to the left.
-    [[nodiscard]] double cost_of(std::size_t axis, std::size_t left) const noexcept {
-        std::size_t end = 0;
-        std::size_t in_left = 0;
-        while (end < bins && in_left + in_bin_[axis][end] / 2U < left) in_left += in_bin_[axis][end++];
-        std::array<item_bounds, 2> sides;
-        for (std::size_t i = 0; i < count_; ++i) {
-            const bool is_left = bin_[axis][i] < end;
-            sides[0].take_if(is_left, items_[step_ * i]);
-            sides[1].take_if(!is_left, items_[step_ * i]);
-        }
+    /// Along each axis the sum over both sides of their box's area times their number, where about so many go to the
+    /// left.
+    [[nodiscard]] std::array<double, 3> costs(std::size_t left) const noexcept {
+        std::array<std::size_t, 3> end{};
+        std::array<std::size_t, 3> in_left{};
+        for (std::size_t k = 0; k < 3; ++k)
+            while (end[k] < bins && in_left[k] + in_bin_[k][end[k]] / 2U < left) in_left[k] += in_bin_[k][end[k]++];
+        std::array<item_bounds, 3> left_sides;
+        std::array<item_bounds, 3> right_sides;
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const bool is_left = bin_[k][i] < end[k];
+                left_sides[k].take_if(is_left, items_[step_ * i]);
+                right_sides[k].take_if(!is_left, items_[step_ * i]);
+            }
         const auto cost = [](const item_bounds& side, std::size_t number) {
             return number == 0 ? 0 : surface_area(side.as_box()) * static_cast<double>(number);
         };
-        return cost(sides[0], in_left) + cost(sides[1], count_ - in_left);
+        std::array<double, 3> both;
+        for (std::size_t k = 0; k < 3; ++k)
+            both[k] = cost(left_sides[k], in_left[k]) + cost(right_sides[k], count_ - in_left[k]);
+        return both;
     }
 
 private:

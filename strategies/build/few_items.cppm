@@ -11,6 +11,7 @@ module;
 /// How a few triangles are best split.
 export module aabb.build.few_items;
 
+import aabb.geometry;
 import aabb.simd;
 import aabb.build.balanced_item;
 
@@ -24,23 +25,40 @@ class few_items {
 public:
     static constexpr std::size_t most = 64;
 
-    explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
+    /// @param bounds box of all
+    few_items(std::span<const balanced_item> items, const box& bounds) noexcept : count_(items.size()) {
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = items[i].lower[k];
                 negated_upper_[k][i] = items[i].negated_upper[k];
             }
         // The last one fills the rest, as far as whole vectors are looked at.
-        for (std::size_t i = count_; i < std::max(std::bit_ceil(count_), most_lanes); ++i)
+        for (std::size_t i = count_; i < std::max(std::bit_ceil(count_), lanes); ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = lower_[k][count_ - 1];
                 negated_upper_[k][i] = negated_upper_[k][count_ - 1];
             }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float low = bounds.min[static_cast<int>(k)];
+            const float steps = 2 * reach / (bounds.max[static_cast<int>(k)] - low);
+            const bool differ = steps > 0 && steps < std::numeric_limits<float>::max();
+            for (std::size_t i = 0; i < count_; i += lanes) {
+                simd::sixteen_floats lower;
+                simd::sixteen_floats negated_upper;
+                std::memcpy(&lower, &lower_[k][i], sizeof lower);
+                std::memcpy(&negated_upper, &negated_upper_[k][i], sizeof negated_upper);
+                const simd::sixteen_floats centre = 0.5F * lower - 0.5F * negated_upper;
+                const simd::sixteen_halves numbers =
+                    differ ? simd::whole_halves((centre - low) * steps - reach) : simd::sixteen_halves{};
+                std::memcpy(&centre_[k][i], &numbers, sizeof numbers);
+            }
+        }
     }
 
-    /// Bit i for each item i before which, along the axis, there are fewer than `left`.
+    /// Bit i for each item i before which, along the axis, there are fewer than `left`, as far as 16 bits tell: those
+    /// that come first, and maybe others just behind them.
     [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
-        return first_in<1>(axis, static_cast<std::uint32_t>(left));
+        return first_in<1>(axis, static_cast<std::int16_t>(left));
     }
 
     /// The sum, for those in `which` and for the others, of their box's area times their number.
@@ -68,30 +86,23 @@ public:
 private:
     using eight_floats = simd::eight_floats;
     static constexpr std::size_t width = 8;
-    static constexpr std::size_t most_lanes = 16;  // of any vector
+    static constexpr std::size_t lanes = 16;  // of the longest vector
+    static constexpr float reach = 32500;     // of numbers of 16 bits
     using row = std::array<float, most>;
 
     /// By counting, so that nothing is moved: in registers, which is why how many vectors there are must be known.
     template <std::size_t Vectors>
-    [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::uint32_t left) const noexcept {
-        if constexpr (Vectors * simd::width < most)
-            if (count_ > Vectors * simd::width) return first_in<2 * Vectors>(axis, left);
-        std::array<simd::floats, Vectors> centre;
-        std::array<simd::words, Vectors> before{};
-        alignas(64) std::array<float, Vectors * simd::width> centres;
-        std::memcpy(centre.data(), lower_[axis].data(), sizeof centre);
-        for (std::size_t v = 0; v < Vectors; ++v) {
-            simd::floats negated_upper;
-            std::memcpy(&negated_upper, &negated_upper_[axis][v * simd::width], sizeof negated_upper);
-            centre[v] = 0.5F * centre[v] - 0.5F * negated_upper;
-        }
-        std::memcpy(centres.data(), centre.data(), sizeof centres);
+    [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::int16_t left) const noexcept {
+        if constexpr (Vectors * lanes < most)
+            if (count_ > Vectors * lanes) return first_in<2 * Vectors>(axis, left);
+        std::array<simd::sixteen_halves, Vectors> centre;
+        std::array<simd::sixteen_halves, Vectors> before{};
+        std::memcpy(centre.data(), centre_[axis].data(), sizeof centre);
         for (std::size_t i = 0; i < count_; ++i)
-            for (std::size_t v = 0; v < Vectors; ++v)
-                before[v] -= std::bit_cast<simd::words>(simd::all(centres[i]) < centre[v]);
+            for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];
         std::uint64_t which = 0;
         for (std::size_t v = 0; v < Vectors; ++v)
-            which |= std::uint64_t{simd::bits(before[v] < left)} << v * simd::width;
+            which |= std::uint64_t{simd::bits_of_sixteen(before[v] < left)} << v * lanes;
         return which & ~std::uint64_t{0} >> (most - count_);
     }
 
@@ -109,6 +120,7 @@ private:
 
     alignas(64) std::array<row, 3> lower_;
     alignas(64) std::array<row, 3> negated_upper_;
+    alignas(64) std::array<std::array<std::int16_t, most>, 3> centre_;  // whole steps across the box of all
     std::size_t count_;
 };
 

@@ -438,6 +438,9 @@ TEST_CASE("in a balanced tree triangles are split where halves are full, across 
     std::vector<mesh> all = meshes();
     all.push_back(sheet(80));
     all.push_back(many_equal(3000));
+    mesh& longer_than_floats = all.emplace_back(sheet(12));
+    for (vec3f& p : longer_than_floats.vertices)
+        for (int k = 0; k < 3; ++k) p[k] = (p[k] - 6) * 5e37F;
     for (const mesh& m : all)
         for_each_build([&]<class Build>(Build) {
             INFO(Build::name << ", " << m.triangles.size() << " triangles");
