@@ -30,9 +30,9 @@ struct cost_model {
     double column_test = 1;   ///< a test of an entry against a vector of them (`work::box_tests` over `simd::width`)
 
     // Trees, for few queries or for many (`aabb.selection`).
-    double median_triangle = 128;  ///< a triangle that a tree by `median` is built of
-    double sah_triangle = 154;     ///< one that a tree by `sah` is built of
-    double node_visit = 57;        ///< a pair of nodes that a query visits, with its triangles (`work::node_visits`)
+    double median_triangle = 81;  ///< a triangle that a tree by `median` is built of
+    double sah_triangle = 115;    ///< one that a tree by `sah` is built of
+    double node_visit = 46;       ///< a pair of nodes that a query visits, with its triangles (`work::node_visits`)
 
     friend bool operator==(const cost_model&, const cost_model&) = default;
 };

@@ -206,6 +206,12 @@ template <class Number, class Vector>
     return lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6))[0];
 }
 
+[[nodiscard, gnu::always_inline]] inline float least(sixteen_floats v) noexcept {
+    const eight_floats low = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    const eight_floats high = __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
+    return least(low < high ? low : high);
+}
+
 [[nodiscard, gnu::always_inline]] inline float sum(eight_floats v) noexcept {
     v += __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
     v += __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);

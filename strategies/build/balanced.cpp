@@ -106,7 +106,7 @@ private:
                 part{middle, p.end, bounds_of_items(to.subspan(left), workers), !p.in_second}};
     }
 
-    /// Of what has just been moved, which lies in a cache: to take each on its way costs more.
+    /// Of what has just been moved, which mostly lies in a cache: to take each on its way costs more.
     [[nodiscard]] static box bounds_of_items(std::span<const balanced_item> items, worker_threads& workers) {
         item_bounds all;
         if (workers.count() == 1) {
@@ -121,8 +121,7 @@ private:
         return all.as_box();
     }
 
-    /// An axis, and the items before which fewer than `left` others lie along it; with ties there may be more than
-    /// `left` of them.
+    /// An axis, and what `few_items::first` has along it.
     struct few_split {
         std::size_t axis;
         std::uint64_t first;
@@ -145,7 +144,7 @@ private:
 
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
                    std::size_t left) const noexcept {
-        auto [axis, first] = best_split(few_items(from, bounds), bounds, left);
+        auto [axis, first] = best_split(few_items(from), bounds, left);
         while (std::popcount(first) != static_cast<int>(left)) first &= ~last_of(from, first, axis);
         std::size_t next_first = 0;
         std::size_t next_other = left;
@@ -198,7 +197,7 @@ private:
         std::vector<share> shares;
         for (std::size_t begin = 0; begin < from.size(); begin += least_shared)
             shares.push_back({begin, std::min(from.size(), begin + least_shared)});
-        return split_shared(from, to, bounds, left, bin, workers, shares);
+        split_shared(from, to, bounds, left, bin, workers, shares);
     }
 
     /// @param bin takes the bin of each

@@ -11,7 +11,6 @@ module;
 /// How a few triangles are best split.
 export module aabb.build.few_items;
 
-import aabb.geometry;
 import aabb.simd;
 import aabb.build.balanced_item;
 
@@ -25,34 +24,20 @@ class few_items {
 public:
     static constexpr std::size_t most = 64;
 
-    /// @param bounds box of all
-    few_items(std::span<const balanced_item> items, const box& bounds) noexcept : count_(items.size()) {
+    explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = items[i].lower[k];
                 negated_upper_[k][i] = items[i].negated_upper[k];
             }
         // The last one fills the rest, as far as whole vectors are looked at.
-        for (std::size_t i = count_; i < std::max(std::bit_ceil(count_), lanes); ++i)
+        const std::size_t filled = std::max(std::bit_ceil(count_), lanes);
+        for (std::size_t i = count_; i < filled; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = lower_[k][count_ - 1];
                 negated_upper_[k][i] = negated_upper_[k][count_ - 1];
             }
-        for (std::size_t k = 0; k < 3; ++k) {
-            const float low = bounds.min[static_cast<int>(k)];
-            const float steps = 2 * reach / (bounds.max[static_cast<int>(k)] - low);
-            const bool differ = steps > 0 && steps < std::numeric_limits<float>::max();
-            for (std::size_t i = 0; i < count_; i += lanes) {
-                simd::sixteen_floats lower;
-                simd::sixteen_floats negated_upper;
-                std::memcpy(&lower, &lower_[k][i], sizeof lower);
-                std::memcpy(&negated_upper, &negated_upper_[k][i], sizeof negated_upper);
-                const simd::sixteen_floats centre = 0.5F * lower - 0.5F * negated_upper;
-                const simd::sixteen_halves numbers =
-                    differ ? simd::whole_halves((centre - low) * steps - reach) : simd::sixteen_halves{};
-                std::memcpy(&centre_[k][i], &numbers, sizeof numbers);
-            }
-        }
+        for (std::size_t k = 0; k < 3; ++k) number_centres(k, filled / lanes);
     }
 
     /// Bit i for each item i before which, along the axis, there are fewer than `left`, as far as 16 bits tell: those
@@ -90,6 +75,30 @@ private:
     static constexpr float reach = 32500;     // of numbers of 16 bits
     using row = std::array<float, most>;
 
+    /// In whole steps from the least to the greatest.
+    inline void number_centres(std::size_t axis, std::size_t vectors) noexcept {
+        std::array<simd::sixteen_floats, most / lanes> centre;
+        simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
+        simd::sixteen_floats most_negated = least;
+        for (std::size_t v = 0; v < vectors; ++v) {
+            simd::sixteen_floats lower;
+            simd::sixteen_floats negated_upper;
+            std::memcpy(&lower, &lower_[axis][v * lanes], sizeof lower);
+            std::memcpy(&negated_upper, &negated_upper_[axis][v * lanes], sizeof negated_upper);
+            centre[v] = 0.5F * lower - 0.5F * negated_upper;
+            least = centre[v] < least ? centre[v] : least;
+            most_negated = -centre[v] < most_negated ? -centre[v] : most_negated;
+        }
+        const float low = simd::least(least);
+        const float steps = 2 * reach / (-simd::least(most_negated) - low);
+        const bool differ = steps > 0 && steps < std::numeric_limits<float>::max();
+        for (std::size_t v = 0; v < vectors; ++v) {
+            const simd::sixteen_halves numbers =
+                differ ? simd::whole_halves((centre[v] - low) * steps - reach) : simd::sixteen_halves{};
+            std::memcpy(&centre_[axis][v * lanes], &numbers, sizeof numbers);
+        }
+    }
+
     /// By counting, so that nothing is moved: in registers, which is why how many vectors there are must be known.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::int16_t left) const noexcept {
@@ -120,7 +129,7 @@ private:
 
     alignas(64) std::array<row, 3> lower_;
     alignas(64) std::array<row, 3> negated_upper_;
-    alignas(64) std::array<std::array<std::int16_t, most>, 3> centre_;  // whole steps across the box of all
+    alignas(64) std::array<std::array<std::int16_t, most>, 3> centre_;  // in 16 bits
     std::size_t count_;
 };
 

@@ -24,32 +24,36 @@ namespace {
 /// takes about as long as two searches.
 constexpr std::size_t fewest_frames_to_keep = 4;
 
-/// From so many queries on, what `sah` takes longer to build than `median` comes back where each of them takes less by
-/// that share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with
-/// meshes of 5,000 to 200,000. Meshes are taken to be alike.
-std::size_t queries_that_repay(double share, const scene_outlook& scene) {
+/// From so many queries on, what a build takes longer for each triangle comes back where each query takes less by that
+/// share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with meshes
+/// of 5,000 to 200,000. Meshes are taken to be alike.
+/// @param longer in ns
+std::size_t queries_that_repay(double longer, double share, const scene_outlook& scene) {
     constexpr double visits_a_root = 21;
     constexpr double many = 1e18;
-    const cost_model& ns = machine_costs();
     const auto triangles = static_cast<double>(scene.triangles);
     if (triangles == 0) return static_cast<std::size_t>(many);
     const double of_two = 2 * triangles / static_cast<double>(scene.meshes);
-    const double queries = (ns.sah_triangle - ns.median_triangle) * triangles /
-                           (ns.node_visit * visits_a_root * share * std::sqrt(of_two));
+    const double queries =
+        longer * triangles / (machine_costs().node_visit * visits_a_root * share * std::sqrt(of_two));
     return static_cast<std::size_t>(std::clamp(std::ceil(queries), 0.0, many));
+}
+
+double sah_takes_longer() {
+    return machine_costs().sah_triangle - machine_costs().median_triangle;
 }
 
 /// Trees by `sah` are visited a twelfth less.
 std::size_t least_queries_of_sah(const scene_outlook& scene) {
-    return queries_that_repay(1.0 / 12, scene);
+    return queries_that_repay(sah_takes_longer(), 1.0 / 12, scene);
 }
 
-/// Lists of the vertices of each leaf take about as long to write as `sah` takes longer than `median`. A query is
+/// Lists of the vertices of each leaf take about half as long to write as `sah` takes longer than `median`. A query is
 /// faster with them by a tenth where the two meshes have 150,000 triangles, whose vertices outgrow the second cache, by
 /// less where they have fewer, and hardly at all where these fit into it.
 std::size_t least_queries_of_vertex_lists(const scene_outlook& scene) {
     const double of_two = 2 * static_cast<double>(scene.triangles) / static_cast<double>(scene.meshes);
-    return queries_that_repay(std::clamp(of_two / 1'500'000, 1.0 / 200, 1.0 / 10), scene);
+    return queries_that_repay(sah_takes_longer() / 2, std::clamp(of_two / 1'500'000, 1.0 / 200, 1.0 / 10), scene);
 }
 
 bool fetches_vertices(const scene_outlook& scene) {

@@ -112,6 +112,23 @@ TEST_CASE("eight numbers at a time: taken by place, whole parts as bytes, compar
         for (unsigned i = 0; i < 8; ++i) REQUIRE((held >> (8 * j + i) & 1U) == (a[i] <= whole[j] ? 1U : 0U));
 }
 
+TEST_CASE("the whole part of a number in 16 bits never falls when the number grows") {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const simd::sixteen_floats growing{-inf, -1e38F, -32768, -32767, -32766.5F, -2.5F, -1,   -0.5F,
+                                       0,    1e-40F, 0.999F, 1,      32766.5F,  32767, 1e9F, inf};
+    const simd::sixteen_halves whole = simd::whole_halves(growing);
+    const std::array<int, 16> expected{-32767, -32767, -32767, -32767, -32766, -2,    -1,    0,
+                                       0,      0,      0,      1,      32766,  32767, 32767, 32767};
+    for (int i = 0; i < 16; ++i) REQUIRE(int{whole[i]} == expected[static_cast<std::size_t>(i)]);
+    CHECK(simd::bits_of_sixteen(whole < simd::sixteen_halves{}) == 0x7fU);
+    CHECK(simd::least(-growing) == -inf);
+    for (int i = 0; i < 16; ++i) {
+        simd::sixteen_floats one{};
+        one[i] = -1;
+        CHECK(simd::least(one) == -1);
+    }
+}
+
 TEST_CASE("places of set bits come in order") {
     for (const std::uint64_t set : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{1} << 63, ~std::uint64_t{0},
                                     std::uint64_t{0x8421f00d00c0ffee}}) {
