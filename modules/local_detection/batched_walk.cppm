@@ -76,8 +76,7 @@ public:
         const auto emit_pair = emitter(a, b, emit);
         waiting_.clear();
         const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
-            counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
-            waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
+            make_wait(a.tree(), b.tree(), p, of_a, of_b);
             return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, emit_pair);
         };
         if (!leaves(a, b, to_a, pairs, leaves_.reader(), test_pair))
@@ -272,18 +271,26 @@ private:
                                    const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
                                    std::span<const std::uint32_t> leaves_b, const Emit& emit) {
         // Called in one place, where a call would cost as much as a tenth of what it does.
-        const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b, std::uint64_t met)
-                              __attribute__((always_inline)) {
-                                  if (what == extent::one_mesh) {
-                                      if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
-                                      if (emit_neighbours(met, leaves_a[p], leaves_b[p], emit)) return true;
-                                      if (met == 0) return false;
-                                  }
-                                  counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(met)));
-                                  waiting_.add(met, leaves_a[p], of_a.block, leaves_b[p], of_b.block);
-                                  return waiting_.is_full() && waiting_.decide(test, false, emit);
-                              };
+        const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b,
+                              std::uint64_t met) __attribute__((always_inline)) {
+            if (what == extent::one_mesh) {
+                if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
+                if (emit_neighbours(met, leaves_a[p], leaves_b[p], emit)) return true;
+                if (met == 0) return false;
+            }
+            make_wait(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], met}, of_a.block, of_b.block);
+            return waiting_.is_full() && waiting_.decide(test, false, emit);
+        };
         return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
+    }
+
+    /// Until they are tested. Memory is told that it will be asked which triangles they are.
+    [[gnu::always_inline]] inline void make_wait(const Tree& a, const Tree& b, const kept_pair& p,
+                                                 const triangle_block& of_a, const triangle_block& of_b) {
+        counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
+        waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
+        a.fetch_triangles(p.leaf_a);
+        b.fetch_triangles(p.leaf_b);
     }
 
     /// An exact test would find that triangles with a corner in common meet there.

@@ -45,13 +45,17 @@ public:
     };
 
     /// Of up to so many pairs of nodes those that have children which may meet, by their place, in order. Pairs of
-    /// children whose triangles meet are among them. One test is made of all pairs before the next, so that the
-    /// processor need not guess.
+    /// children whose triangles meet are among them. Memory is told of all of them first, so that it is waited for once,
+    /// and one test is made of all pairs before the next, so that the processor need not guess.
     /// @param nodes_a of a level, of which `a` has numbers
     template <class Counters>
     [[nodiscard]] std::span<const found> operator()(const wide_node* nodes_a, std::span<const std::uint32_t> a,
                                                     const wide_node* nodes_b, std::span<const std::uint32_t> b,
                                                     Counters& counters) {
+        for (std::size_t p = 0; p < a.size(); ++p) {
+            __builtin_prefetch(&nodes_a[a[p]]);
+            __builtin_prefetch(&nodes_b[b[p]]);
+        }
         std::uint64_t tests = 0;
         std::size_t left = 0;
         for (std::size_t p = 0; p < a.size(); ++p) {

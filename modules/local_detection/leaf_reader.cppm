@@ -30,7 +30,7 @@ public:
     template <class Leaf, class... Steps>
     inline void operator()(const model<Tree>& m, leaf_store<Leaf>& store, const Steps&... steps) {
         const std::span<const std::uint32_t> missing = store.take_missing();
-        for (const std::uint32_t number : missing) m.tree().fetch(number);
+        for (const std::uint32_t number : missing) m.tree().fetch_vertices(number);
         for (std::size_t i = 0; i < missing.size(); ++i) {
             m.tree().read_vertices(missing[i], lists_[i]);
             lists_[i].fetch(m.triangles());

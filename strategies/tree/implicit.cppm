@@ -148,8 +148,12 @@ public:
 
     [[nodiscard]] inline bool keeps_front() const noexcept { return config_.front == front_choice::kept; }
     /// Tells memory that the leaf's vertices will be asked for.
-    inline void fetch(std::uint32_t leaf) const noexcept {
+    inline void fetch_vertices(std::uint32_t leaf) const noexcept {
         if (!vertices_.empty()) vertices_.fetch(leaf);
+    }
+    /// The same of which triangles the leaf holds.
+    inline void fetch_triangles(std::uint32_t leaf) const noexcept {
+        if (bits_ != 0) __builtin_prefetch(&places_[std::size_t{leaf} * bits_]);
     }
     inline void read_vertices(std::uint32_t leaf, vertex_list& list) const noexcept {
         list.count = 0;
