@@ -45,8 +45,8 @@ public:
     };
 
     /// Of up to so many pairs of nodes those that have children which may meet, by their place, in order. Pairs of
-    /// children whose triangles meet are among them. Memory is told of all of them first, so that it is waited for once,
-    /// and one test is made of all pairs before the next, so that the processor need not guess.
+    /// children whose triangles meet are among them. Memory is told of all of them first, so that it is waited for
+    /// once, and one test is made of all pairs before the next, so that the processor need not guess.
     /// @param nodes_a of a level, of which `a` has numbers
     template <class Counters>
     [[nodiscard]] std::span<const found> operator()(const wide_node* nodes_a, std::span<const std::uint32_t> a,
