@@ -10,15 +10,17 @@ export module aabb.base:large_pages;
 
 namespace aabb::detail {
 
-[[nodiscard]] void* take_large_pages(std::size_t bytes);
-void give_large_pages(void* memory, std::size_t bytes) noexcept;
+[[nodiscard]] void* take_large(std::size_t bytes);
+void give_large(void* memory) noexcept;
 
 }  // namespace aabb::detail
 
 export namespace aabb {
 
-/// Memory in pages of 2 MiB where the system gives them to those who ask, as Linux does: what is written here and there
-/// over many megabytes misses the processor's table of pages less often. Smaller arrays get ordinary memory.
+/// Memory of TBB, which keeps what is given back for whoever asks next: the system clears each page before it gives it,
+/// and lets several threads wait for each other meanwhile. Arrays from 4 MiB on stand in pages of 2 MiB where the
+/// system gives them to those who ask, as Linux does: what is written here and there over many megabytes misses the
+/// processor's table of pages less often. Small arrays get ordinary memory.
 template <class T>
 struct large_pages {
     using value_type = T;
@@ -28,11 +30,11 @@ struct large_pages {
     constexpr large_pages(const large_pages<U>&) noexcept {}
 
     [[nodiscard]] static constexpr T* allocate(std::size_t n) {
-        if (is_large(n)) return static_cast<T*>(detail::take_large_pages(n * sizeof(T)));
+        if (is_large(n)) return static_cast<T*>(detail::take_large(n * sizeof(T)));
         return std::allocator<T>().allocate(n);
     }
     static constexpr void deallocate(T* memory, std::size_t n) noexcept {
-        if (is_large(n)) return detail::give_large_pages(memory, n * sizeof(T));
+        if (is_large(n)) return detail::give_large(memory);
         std::allocator<T>().deallocate(memory, n);
     }
 
@@ -51,7 +53,7 @@ struct large_pages {
 
 private:
     /// A vector never asks for more than its `max_size`, so the product holds.
-    static constexpr bool is_large(std::size_t n) noexcept { return n >= (std::size_t{4} << 20) / sizeof(T); }
+    static constexpr bool is_large(std::size_t n) noexcept { return n >= (std::size_t{128} << 10) / sizeof(T); }
 };
 
 template <class T>

@@ -1,10 +1,10 @@
 module;
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 export module aabb.local_detection:balanced_order;
 
+import aabb.base;
 import aabb.geometry;
 
 export namespace aabb {
@@ -14,9 +14,9 @@ export namespace aabb {
 struct balanced_order {
     static constexpr std::size_t leaf_triangles = 8;
 
-    std::vector<std::uint32_t> triangles;  ///< by place
-    std::vector<box> bounds;               ///< of the triangles of each leaf
-    std::uint32_t threads = 1;             ///< how many may pack it
+    large_vector<std::uint32_t> triangles;  ///< by place
+    large_vector<box> bounds;               ///< of the triangles of each leaf
+    std::uint32_t threads = 1;              ///< how many may pack it
 };
 
 }  // namespace aabb

@@ -47,31 +47,36 @@ public:
     vertex_lists(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
         while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
         begins_.resize((order.size() + triangles - 1) / triangles);
-        std::vector<std::vector<std::byte>> parts((begins_.size() + least_shared - 1) / least_shared);
+        // What one thread lists at a time, with room for the longest lists.
+        const std::size_t room = least_shared * (header + width_ * vertex_list::most);
+        std::vector<std::size_t> sizes((begins_.size() + least_shared - 1) / least_shared);
+        large_vector<std::byte> parts(sizes.size() * room);
         const auto triangles_of = [&](std::size_t leaf) {
             const std::size_t begin = std::min(leaf * triangles, order.size());
             return order.subspan(begin, std::min(triangles, order.size() - begin));
         };
-        workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
-            // About what surfaces need.
-            parts[p].reserve(least_shared * triangles * (width_ * 5 / 4 + 2));
+        workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
+            std::byte* const begin = &parts[p * room];
+            std::byte* end = begin;
             for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l) {
                 for (const std::uint32_t t : triangles_of(l + ahead)) __builtin_prefetch(&m.triangles[t]);
-                begins_[l] = static_cast<std::uint32_t>(parts[p].size());
-                add(m, triangles_of(l), parts[p]);
+                begins_[l] = static_cast<std::uint32_t>(end - begin);
+                end = add(m, triangles_of(l), end);
             }
+            sizes[p] = static_cast<std::size_t>(end - begin);
         });
         std::vector<std::size_t> offsets;
         std::size_t all = 0;
-        for (const auto& part : parts) {
+        for (const std::size_t size : sizes) {
             offsets.push_back(all);
-            all += part.size();
+            all += size;
         }
         if (all > most_bytes)
             throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
         lists_.resize(all + read_beyond);
-        workers.for_each_index(parts.size(), [&](std::size_t p, std::size_t) {
-            std::ranges::copy(parts[p], lists_.begin() + static_cast<std::ptrdiff_t>(offsets[p]));
+        std::fill(lists_.end() - read_beyond, lists_.end(), std::byte{});
+        workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
+            std::memcpy(&lists_[offsets[p]], &parts[p * room], sizes[p]);
             for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l)
                 begins_[l] += static_cast<std::uint32_t>(offsets[p]);
         });
@@ -110,7 +115,8 @@ private:
     static constexpr std::size_t ahead = 4;            // leaves whose triangles memory is told of
     static constexpr std::size_t least_shared = 1024;  // leaves that are worth another thread
 
-    void add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::vector<std::byte>& to) const {
+    /// @returns the end of the list that begins at `to`
+    std::byte* add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;
         alignas(32) std::array<std::uint32_t, corners> all;
         for (std::size_t i = 0; i < triangles; ++i)
@@ -126,11 +132,9 @@ private:
             is_new |= same & -same;
         }
         const auto count = static_cast<std::size_t>(std::popcount(is_new));
-        if (count > vertex_list::most) return to.push_back(std::byte{0});
-        const std::size_t begin = to.size();
-        to.resize(begin + header + width_ * count);
-        to[begin] = static_cast<std::byte>(count);
-        std::byte* next = &to[begin + header];
+        *to = static_cast<std::byte>(count > vertex_list::most ? 0 : count);
+        if (count > vertex_list::most) return to + 1;
+        std::byte* next = to + header;
         std::array<std::uint32_t, 3> places{};
         std::array<std::uint32_t, corners> place;
         std::uint32_t known = 0;
@@ -139,13 +143,14 @@ private:
             known += is_new >> at & 1U;
             places[at % 3] |= place[first[at]] << 4 * (at / 3);
         }
-        std::memcpy(&to[begin + 1], places.data(), sizeof places);
+        std::memcpy(to + 1, places.data(), sizeof places);
         for (; is_new != 0; is_new &= is_new - 1, next += width_)
             std::memcpy(next, &all[static_cast<std::size_t>(std::countr_zero(is_new))], width_);
+        return next;
     }
 
-    std::vector<std::uint32_t> begins_;  // by leaf
-    std::vector<std::byte> lists_;
+    large_vector<std::uint32_t> begins_;  // by leaf
+    large_vector<std::byte> lists_;
     std::size_t width_ = 1;  // bytes of an index
 };
 

@@ -42,7 +42,8 @@ class balancer {
 public:
     balancer(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
         const std::size_t n = m.triangles.size();
-        for (auto& items : items_) items.resize(n);
+        memory_.resize(2 * n);
+        items_ = {std::span(memory_).first(n), std::span(memory_).last(n)};
         bin_.resize(n);
         order_.triangles.resize(n);
         order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);
@@ -95,8 +96,8 @@ private:
 
     [[nodiscard]] std::array<part, 2> split(const part& p, worker_threads& workers) {
         const std::size_t middle = p.begin + std::bit_ceil(p.size()) / 2;
-        const std::span from = std::span(items_[p.in_second]).subspan(p.begin, p.size());
-        const std::span to = std::span(items_[!p.in_second]).subspan(p.begin, p.size());
+        const std::span from = items_[p.in_second].subspan(p.begin, p.size());
+        const std::span to = items_[!p.in_second].subspan(p.begin, p.size());
         const std::size_t left = middle - p.begin;
         if (p.size() <= few_items::most)
             split_few(from, to, p.bounds, left);
@@ -278,8 +279,9 @@ private:
 
     const mesh& mesh_;
     axis_rule rule_;
-    std::array<std::vector<balanced_item, large_pages<balanced_item>>, 2> items_;
-    std::vector<std::uint8_t, large_pages<std::uint8_t>> bin_;
+    large_vector<balanced_item> memory_;
+    std::array<std::span<balanced_item>, 2> items_;
+    large_vector<std::uint8_t> bin_;
     balanced_order order_;
     worker_threads alone_{1};
 };

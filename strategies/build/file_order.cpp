@@ -27,7 +27,7 @@ std::vector<build_node> file_order_build::build(const mesh& m, leaf_arrangement 
 balanced_order file_order_build::order(const mesh& m) const {
     constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
     const std::size_t n = m.triangles.size();
-    balanced_order made{std::vector<std::uint32_t>(n), std::vector<box>((n + in_leaf - 1) / in_leaf, empty_box()),
+    balanced_order made{large_vector<std::uint32_t>(n), large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()),
                         threads};
     std::iota(made.triangles.begin(), made.triangles.end(), 0U);
     worker_threads(threads).for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {

@@ -248,8 +248,8 @@ std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice)
 ordered_mesh in_leaf_order(const mesh& m, const strategy_choice& build) {
     require_known(strategy_kind::build, build);
     require_valid(m);
-    balanced_order order = registry::builder_named(build)->order(m);
-    return {in_leaf_order(m, order), std::move(order.triangles)};
+    const balanced_order order = registry::builder_named(build)->order(m);
+    return {in_leaf_order(m, order), {order.triangles.begin(), order.triangles.end()}};
 }
 
 }  // namespace aabb

@@ -67,14 +67,15 @@ public:
         std::uint32_t index;
     };
 
-    void pack(const mesh& m, const balanced_order& order) {
+    void pack(const mesh& m, balanced_order order) {
         worker_threads workers(order.threads);
         triangles_ = static_cast<std::uint32_t>(order.triangles.size());
         bits_ = 0;
         places_.clear();
         if (!std::ranges::is_sorted(order.triangles)) {
             bits_ = std::bit_width(triangles_ - 1);
-            places_.assign((std::size_t{triangles_} * bits_ + 7) / 8 + read_beyond, {});
+            places_.resize((std::size_t{triangles_} * bits_ + 7) / 8 + read_beyond);
+            std::fill(places_.end() - read_beyond, places_.end(), std::byte{});
             workers.for_each_range(triangles_, least_shared_triangles, [&](std::size_t begin, std::size_t end) {
                 set_triangles(order.triangles, begin, end);
             });
@@ -88,8 +89,7 @@ public:
             all += below;
         }
         nodes_.resize(all);
-        std::vector<box> boxes = order.bounds;
-        fit(boxes, workers);
+        fit(order.bounds, workers);
     }
 
     void refit(const mesh& m, std::vector<box>& boxes) {
@@ -174,12 +174,18 @@ private:
 
     /// Eight numbers fill whole bytes, which no other thread touches.
     void set_triangles(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
+        std::size_t at = begin * bits_ / 8;
+        std::uint64_t unwritten = 0;
+        std::size_t bits = 0;
+        const auto write = [&] {
+            places_[at++] = static_cast<std::byte>(unwritten);
+            unwritten >>= 8U;
+        };
         for (std::size_t place = begin; place < end; ++place) {
-            const std::size_t bit = place * bits_;
-            std::size_t at = bit / 8;
-            for (std::uint64_t rest = std::uint64_t{order[place]} << bit % 8; rest != 0; rest >>= 8U)
-                places_[at++] |= static_cast<std::byte>(rest);
+            unwritten |= std::uint64_t{order[place]} << bits;
+            for (bits += bits_; bits >= 8; bits -= 8) write();
         }
+        if (bits > 0) write();
     }
 
     /// A node of one child is that child.
@@ -229,9 +235,9 @@ private:
     config config_;
     std::uint32_t triangles_ = 0;
     std::size_t bits_ = 0;  // of a triangle's index; none where that is its place
-    std::vector<wide_node> nodes_;
-    std::vector<std::byte> places_;  // which triangle stands where
-    vertex_lists vertices_;          // none where they are fetched
+    large_vector<wide_node> nodes_;
+    large_vector<std::byte> places_;  // which triangle stands where
+    vertex_lists vertices_;           // none where they are fetched
     std::size_t levels_ = 0;
     std::array<std::size_t, most_levels> begins_{};
 };

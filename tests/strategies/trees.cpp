@@ -279,7 +279,7 @@ TEST_CASE("a balanced tree by surface area is built where nearly all centroids l
         m.vertices.insert(m.vertices.end(), {{at, at, at}, {at, at, at + 1e-5F}, {at, at + 1e-5F, at}});
         m.triangles.push_back({3 * i + 3, 3 * i + 4, 3 * i + 5});
     }
-    std::vector<std::uint32_t> order = sah_build().order(m).triangles;
+    auto order = sah_build().order(m).triangles;
     std::ranges::sort(order);
     for (std::uint32_t i = 0; i < 129; ++i) CHECK(order[i] == i);
 }
@@ -445,7 +445,7 @@ TEST_CASE("in a balanced tree triangles are split where halves are full, across 
         for_each_build([&]<class Build>(Build) {
             INFO(Build::name << ", " << m.triangles.size() << " triangles");
             const balanced_order order = Build().order(m);
-            std::vector<std::uint32_t> sorted = order.triangles;
+            auto sorted = order.triangles;
             std::ranges::sort(sorted);
             REQUIRE(sorted.size() == m.triangles.size());
             for (std::uint32_t t = 0; t < sorted.size(); ++t) REQUIRE(sorted[t] == t);
