@@ -6,7 +6,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,8 +32,8 @@ export namespace aabb {
 
 /// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
 /// that no step waits for the one before, and few pairs are kept; for the first pair one at a time, the two nearest
-/// first. Triangles are read and moved once for all the leaves that they meet one after the other, and tested in
-/// batches.
+/// first, and after leaves that did not meet from a higher level again. Triangles are read and moved once for all the
+/// leaves that they meet one after the other, and tested in batches.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -95,7 +94,7 @@ private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
-    static constexpr std::size_t most_missed = 2;
+    static constexpr std::size_t least_back = 2;  // levels
     /// Whether a filter decides where rounding leaves no doubt: of exact tests alone.
     static constexpr bool is_filtered = requires { requires Triangle::filtered; };
 
@@ -171,9 +170,9 @@ private:
             }
             if (at_leaves(std::span(from.a).subspan(begin, end - begin), std::span(from.b).subspan(begin, end - begin)))
                 return true;
-            // What looks near may be parallel all over: then it is better to go on elsewhere.
-            if (any_pair && ++missed % most_missed == 0)
-                for (step = 0; pairs_[step].size == 0 && step + 1 < steps_.size();) ++step;
+            // What looks near may be parallel all over. How far to go back follows the ruler function (Luby, Sinclair,
+            // Zuckerman, "Optimal speedup of Las Vegas algorithms", 1993): mostly little, now and then to the top.
+            if (any_pair) step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
         }
     }
 
@@ -232,20 +231,28 @@ private:
             const std::uint32_t node_a = some_a[pair];
             const std::uint32_t node_b = some_b[pair];
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
-            if (!opens_a) met = any_of_columns(met);
-            if (!opens_b) met = any_of_rows(met);
+            std::uint64_t to_open = met;
+            if (!opens_a) to_open = any_of_columns(to_open);
+            if (!opens_b) to_open = any_of_rows(to_open);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
-            simd::store_places(places.data(), met);
-            const auto count = static_cast<std::size_t>(std::popcount(met));
-            std::optional<nearest_few> to_open_first;
-            if (nearest_first && opens_a && opens_b && count > 1) {
-                to_open_first.emplace(places, count, nodes_a[node_a], children_.in_a(nodes_b[node_b]));
-                std::uint64_t others = met;
-                for (const std::uint32_t place : to_open_first->places()) others &= ~(std::uint64_t{1} << place);
-                simd::store_places(places.data(), others);
+            const auto count = static_cast<std::size_t>(std::popcount(to_open));
+            std::array<std::uint32_t, nearest_few::most> nearest{};
+            std::size_t near = 0;
+            if (nearest_first && count > 1) {
+                simd::store_places(places.data(), met);
+                const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
+                const nearest_few found(places, static_cast<std::size_t>(std::popcount(met)), nodes_a[node_a],
+                                        children_.in_a(nodes_b[node_b]));
+                for (const std::uint32_t place : found.places()) {
+                    const std::uint64_t it = std::uint64_t{1} << (place & opened);
+                    if ((to_open & it) == 0) continue;
+                    to_open &= ~it;
+                    nearest[near++] = place & opened;
+                }
             }
+            simd::store_places(places.data(), to_open);
             std::size_t p = 0;
             do {  // mostly once, which is foreseen
                 const auto place =
@@ -255,9 +262,8 @@ private:
                 p += children;
             } while (p < count);
             to.size += count;
-            if (!to_open_first) continue;
             std::size_t last = to.size;
-            for (const std::uint32_t place : to_open_first->places()) {
+            for (const std::uint32_t place : std::span(nearest).first(near)) {
                 to.a[--last] = first_a + (place & 7U);
                 to.b[last] = first_b + (place >> 3U);
             }
