@@ -30,7 +30,7 @@ if(NOT aabblab_scanning STREQUAL "NEW" AND NOT CMAKE_CXX_SCAN_FOR_MODULES)
 endif()
 
 include(CMakeFindDependencyMacro)
-find_dependency(TBB)
+find_dependency(TBB COMPONENTS tbb tbbmalloc)
 include(${CMAKE_CURRENT_LIST_DIR}/aabblabTargets.cmake)
 
 # The target and whatever its sources see through what it links.

@@ -14,12 +14,12 @@ namespace aabb::detail {
 namespace {
 
 constexpr std::size_t page = std::size_t{2} << 20;
-constexpr std::size_t cache_line = 64;
 
-#if __has_feature(address_sanitizer)
-// It watches the bounds of what malloc gives.
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
+// They watch what malloc gives.
 void* take(std::size_t bytes, std::size_t alignment) {
-    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    void* memory = nullptr;
+    return posix_memalign(&memory, alignment, bytes) == 0 ? memory : nullptr;
 }
 void give(void* memory) noexcept {
     std::free(memory);
@@ -37,7 +37,7 @@ void give(void* memory) noexcept {
 
 void* take_large(std::size_t bytes) {
     const bool in_large_pages = bytes >= 2 * page;
-    void* const memory = take(bytes, in_large_pages ? page : cache_line);
+    void* const memory = take(bytes, in_large_pages ? page : large_alignment);
     if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
     // Only asked for: where it is refused, pages are small and nothing else differs.

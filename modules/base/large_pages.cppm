@@ -10,6 +10,8 @@ export module aabb.base:large_pages;
 
 namespace aabb::detail {
 
+inline constexpr std::size_t large_alignment = 64;
+
 [[nodiscard]] void* take_large(std::size_t bytes);
 void give_large(void* memory) noexcept;
 
@@ -17,13 +19,15 @@ void give_large(void* memory) noexcept;
 
 export namespace aabb {
 
-/// Memory of TBB, which keeps what is given back for whoever asks next: the system clears each page before it gives it,
-/// and lets several threads wait for each other meanwhile. Arrays from 4 MiB on stand in pages of 2 MiB where the
+/// Memory of TBB for arrays from 128 KiB on. Of up to 64 MiB it keeps what is given back for whoever asks next: the
+/// system clears each page before it gives it, and threads that ask at once wait for each other. TBB's
+/// `scalable_allocation_command` gives back what it keeps. Arrays from 4 MiB on stand in pages of 2 MiB where the
 /// system gives them to those who ask, as Linux does: what is written here and there over many megabytes misses the
-/// processor's table of pages less often. Small arrays get ordinary memory.
+/// processor's table of pages less often. Smaller arrays get ordinary memory.
 template <class T>
 struct large_pages {
     using value_type = T;
+    static_assert(alignof(T) <= detail::large_alignment);
 
     constexpr large_pages() noexcept = default;
     template <class U>
@@ -56,6 +60,7 @@ private:
     static constexpr bool is_large(std::size_t n) noexcept { return n >= (std::size_t{128} << 10) / sizeof(T); }
 };
 
+/// A vector in such memory. `resize`, and a constructor that is told a size alone, leave its elements unwritten.
 template <class T>
 using large_vector = std::vector<T, large_pages<T>>;
 

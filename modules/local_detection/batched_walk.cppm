@@ -170,9 +170,12 @@ private:
             }
             if (at_leaves(std::span(from.a).subspan(begin, end - begin), std::span(from.b).subspan(begin, end - begin)))
                 return true;
-            // What looks near may be parallel all over. How far to go back follows the ruler function (Luby, Sinclair,
-            // Zuckerman, "Optimal speedup of Las Vegas algorithms", 1993): mostly little, now and then to the top.
-            if (any_pair) step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
+            if (!any_pair) continue;
+            // What looks near may be parallel all over. So it goes back, mostly a little, at times to the top, as often
+            // as restarts are best made so long (Luby, Sinclair, Zuckerman, "Optimal speedup of Las Vegas algorithms",
+            // 1993), and to the highest pairs from there on.
+            step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
+            while (pairs_[step].size == 0 && step + 1 < steps_.size()) ++step;
         }
     }
 
@@ -239,7 +242,7 @@ private:
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
             const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::array<std::uint32_t, nearest_few::most> nearest{};
-            std::size_t near = 0;
+            std::size_t taken = 0;
             if (nearest_first && count > 1) {
                 simd::store_places(places.data(), met);
                 const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
@@ -249,7 +252,7 @@ private:
                     const std::uint64_t it = std::uint64_t{1} << (place & opened);
                     if ((to_open & it) == 0) continue;
                     to_open &= ~it;
-                    nearest[near++] = place & opened;
+                    nearest[taken++] = place & opened;
                 }
             }
             simd::store_places(places.data(), to_open);
@@ -263,7 +266,7 @@ private:
             } while (p < count);
             to.size += count;
             std::size_t last = to.size;
-            for (const std::uint32_t place : std::span(nearest).first(near)) {
+            for (const std::uint32_t place : std::span(nearest).first(taken)) {
                 to.a[--last] = first_a + (place & 7U);
                 to.b[last] = first_b + (place >> 3U);
             }

@@ -174,11 +174,11 @@ private:
 
     /// Eight numbers fill whole bytes, which no other thread touches.
     void set_triangles(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
-        std::size_t at = begin * bits_ / 8;
+        std::byte* to = &places_[begin * bits_ / 8];
         std::uint64_t unwritten = 0;
         std::size_t bits = 0;
         const auto write = [&] {
-            places_[at++] = static_cast<std::byte>(unwritten);
+            *to++ = static_cast<std::byte>(unwritten);
             unwritten >>= 8U;
         };
         for (std::size_t place = begin; place < end; ++place) {

@@ -1,4 +1,5 @@
-// Counts every allocation of the process: once the buffers have grown to the scene, neither stage may make one.
+// Counts every allocation of the process but those of large arrays (`large_vector`), which no scene here has: once the
+// buffers have grown to the scene, neither stage may make one.
 
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +26,24 @@ import aabb.triangle.moller;
 using namespace aabb;
 
 namespace {
+
+/// Small triangles around a sphere, each with corners of its own.
+mesh shell(triangle_pairs::generator& g, std::uint32_t triangles, double radius) {
+    std::normal_distribution<double> normal;
+    mesh m;
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        const std::array<double, 3> at{normal(g), normal(g), normal(g)};
+        const double length = std::hypot(at[0], at[1], at[2]);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            vec3f v;
+            for (int k = 0; k < 3; ++k)
+                v[k] = static_cast<float>(radius * at[static_cast<std::size_t>(k)] / length + 0.02 * normal(g));
+            m.vertices.push_back(v);
+        }
+        m.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    }
+    return m;
+}
 
 triangle3f as_triangle(const triangle_pairs::triangle& t) {
     triangle3f made;
@@ -622,25 +641,9 @@ TEST_CASE("as many pairs are found where boxes are of any size, as far apart as 
 }
 
 TEST_CASE("the first pair is found where there are hardly any") {
-    // Shells of small triangles, brought together until they barely touch.
+    // Brought together until they barely touch.
     triangle_pairs::generator g{10};
-    std::normal_distribution<double> normal;
-    const auto shell = [&] {
-        mesh m;
-        for (std::uint32_t t = 0; t < 3000; ++t) {
-            const std::array<double, 3> at{normal(g), normal(g), normal(g)};
-            const double length = std::hypot(at[0], at[1], at[2]);
-            for (std::uint32_t c = 0; c < 3; ++c) {
-                vec3f v;
-                for (int k = 0; k < 3; ++k)
-                    v[k] = static_cast<float>(at[static_cast<std::size_t>(k)] / length + 0.02 * normal(g));
-                m.vertices.push_back(v);
-            }
-            m.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-        }
-        return m;
-    };
-    const std::array meshes{shell(), shell()};
+    const std::array meshes{shell(g, 3000, 1), shell(g, GENERATE(3000U, 300U), 1)};
     const model<implicit_tree> a(meshes[0], median_build());
     const model<implicit_tree> b(meshes[1], median_build());
     local_detection<implicit_tree, exact_triangle, no_counters> detection;
@@ -663,6 +666,24 @@ TEST_CASE("the first pair is found where there are hardly any") {
     }
     CHECK(few > 50);
     CHECK(wrong == 0);
+}
+
+TEST_CASE("where no triangles meet, the first pair is looked for wherever all pairs are") {
+    triangle_pairs::generator g{11};
+    for (const std::uint32_t of_a : {9U, 300U, 3000U})
+        for (const std::uint32_t of_b : {9U, 300U, 3000U}) {
+            CAPTURE(of_a, of_b);
+            const std::array meshes{shell(g, of_a, 1), shell(g, of_b, 1.2)};
+            const model<implicit_tree> a(meshes[0], median_build());
+            const model<implicit_tree> b(meshes[1], median_build());
+            local_detection<implicit_tree, exact_triangle, work_counters> first;
+            local_detection<implicit_tree, exact_triangle, work_counters> all;
+            CHECK_FALSE(first.first_pair(a, {}, b, {}));
+            std::vector<index_pair> pairs;
+            all.all_pairs(a, {}, b, {}, pairs);
+            CHECK(pairs.empty());
+            CHECK(first.counters()[work::node_visits] == all.counters()[work::node_visits]);
+        }
 }
 
 TEST_CASE("a box of A that holds no more than the image of a vertex holds the vertex when taken back") {
