@@ -251,6 +251,12 @@ void print_json(const collide_request& request, const detection_method& method, 
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
+    if (request.first) {
+        for (const std::optional<found_pair>& found : result.first)
+            summary["first"].push_back(found ? nlohmann::ordered_json::array({found->triangles.a, found->triangles.b})
+                                             : nullptr);
+        if (!request.poses_of_b) summary["first"] = nlohmann::ordered_json(summary["first"].front());
+    }
     if (request.geometry && request.first) {
         for (const std::optional<found_pair>& found : result.first)
             summary["geometry"].push_back(found ? geometry_of(*found->common) : nlohmann::ordered_json());
@@ -277,7 +283,7 @@ void print_text(const collide_request& request, const detection_method& method, 
     if (request.first && !request.poses_of_b && result.first[0]) {
         print(text_of(*result.first[0]) + "\n");
     } else {
-        if (request.first && request.geometry && request.poses_of_b)
+        if (request.first && request.poses_of_b)
             for (std::size_t pose = 0; pose < result.first.size(); ++pose)
                 if (result.first[pose]) print(fmt::format("pose {}: {}\n", pose, text_of(*result.first[pose])));
         print(fmt::format(
@@ -386,12 +392,12 @@ void add_collide(const command_parser& program, int&) {
     command.add_option("B", request->b, "The other one").type_name("");
     command
         .add_option("--pose-a", request->poses[0],
-                    "Where A is: 12 numbers with commas between, the rows of [R t] (default: as it is)")
+                    "Where A is: 12 numbers, the rows of [R t], with commas between (default: as it is)")
         .type_name("M");
     command.add_option("--pose-b", request->poses[1], "Where B is").type_name("M");
     command
         .add_option("--poses", request->poses_of_b,
-                    "Search with B at each pose of this file, one a line; trees are built once")
+                    "Search with B at each pose of this file, one a line, as --pose-b takes it; trees are built once")
         .type_name("FILE");
     request->local.add_to(command);
     command.add_option("--engine", request->engine, "Reference system in place of build, tree and triangle test")

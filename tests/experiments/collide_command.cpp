@@ -174,6 +174,8 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
     CHECK(first.out.find(" intersect: " + json["geometry"]["kind"].get<std::string>() + " " +
                          std::to_string(json["geometry"]["corners"].size()) + " ") != std::string::npos);
     CHECK(json["geometry"]["error"].size() == 3);
+    CHECK(first.out.find("\ntriangles " + json["first"][0].dump() + " and " + json["first"][1].dump() + " intersect") !=
+          std::string::npos);
     // With poses, a line each where something intersects.
     const std::string poses = folder.write("poses.txt", "1,0,0,-9,0,1,0,0,0,0,1,0\n1,0,0,0,0,1,0,0,0,0,1,0\n");
     const std::vector<std::string> posed{"collide", a, b, "--first", "--geometry", "--poses", poses};
@@ -300,7 +302,20 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     CHECK(again["query_ms"].size() == 12);
     CHECK(bytes_of_file(folder / "again.csv") == rows);
     CHECK(all({"--count"})["pairs"] == counts);
-    CHECK(all({"--first"})["pairs"] == std::vector{1, 0, 1});
+    // Which pair comes first is any, but one of that pose; in words, too.
+    const auto first = all({"--first"});
+    CHECK(first["pairs"] == std::vector{1, 0, 1});
+    REQUIRE(first["first"].size() == 3);
+    CHECK(first["first"][1].is_null());
+    const std::string told = run_program(joined({"collide", a, b, "--poses", file, "--first"}, who)).out;
+    CHECK(told.find("\npose 1: ") == std::string::npos);
+    for (const std::size_t pose : {0, 2}) {
+        const std::string s = first["first"][pose][0].dump();
+        const std::string t = first["first"][pose][1].dump();
+        CHECK(("\n" + rows).find("\n" + std::to_string(pose) + "," + s + "," + t + "\n") != std::string::npos);
+        CHECK(told.find("\npose " + std::to_string(pose) + ": triangles " + s + " and " + t + " intersect\n") !=
+              std::string::npos);
+    }
 }
 
 TEST_CASE("a line of a file of poses that is none is told") {
