@@ -19,8 +19,9 @@ import :child_pairs;
 import :kept_leaves;
 import :leaf_front;
 import :leaf_pairs;
+import :level_steps;
 import :model;
-import :nearest_few;
+import :nearest_walk;
 import :triangle_batch;
 import :triangle_block;
 import :triangle_policy;
@@ -31,9 +32,8 @@ import :wide_tree_policy;
 export namespace aabb {
 
 /// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
-/// that no step waits for the one before, and few pairs are kept; for the first pair one at a time, the two nearest
-/// first, and after leaves that did not meet from a higher level again. Triangles are read and moved once for all the
-/// leaves that they meet one after the other, and tested in batches.
+/// that no step waits for the one before, and few pairs are kept; for the first pair by `nearest_walk`. Triangles are
+/// read and moved once for all the leaves that they meet one after the other, and tested in batches.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -41,13 +41,14 @@ public:
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
-        walk(test, a, b, to_a, extent::two_meshes, goal, emit);
+        if (goal == walk_goal::first_pair) return find(test, a, b, to_a, emit);
+        walk(test, a, b, to_a, extent::two_meshes, emit);
     }
 
     /// Those of one mesh, in either order.
     template <class Emit>
     void within(const Triangle& test, const model<Tree>& m, Emit emit) {
-        walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, walk_goal::every_pair, emit);
+        walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, emit);
     }
 
     /// Appends the pairs of leaves with triangles within a margin of each other, less what rounding takes of it
@@ -57,7 +58,7 @@ public:
                             std::size_t most, std::vector<kept_pair>& pairs) {
         leaves_.begin(a, b, to_a, false, false,
                       std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
-        return !descend(a, b, to_a, extent::two_meshes, walk_goal::every_pair, margin,
+        return !descend(a, b, to_a, extent::two_meshes, margin,
                         [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
                             leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
                                                   [&](std::size_t p, std::uint64_t which) {
@@ -85,7 +86,8 @@ public:
     [[nodiscard]] Counters& counters() noexcept { return counters_; }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = sizeof *this + bytes_of(pairs_) + bytes_of(steps_) + children_.bytes() + leaves_.bytes();
+        std::size_t all =
+            sizeof *this + bytes_of(pairs_) + steps_.bytes() + children_.bytes() + leaves_.bytes() + nearest_.bytes();
         for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
         return all;
     }
@@ -94,19 +96,10 @@ private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
-    static constexpr std::size_t least_back = 2;  // levels
     /// Whether a filter decides where rounding leaves no doubt: of exact tests alone.
     static constexpr bool is_filtered = requires { requires Triangle::filtered; };
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
-
-    /// How many levels of nodes lie below and with the nodes of a pair: 0 for leaves.
-    struct heights {
-        std::size_t a;
-        std::size_t b;
-
-        friend bool operator==(const heights&, const heights&) = default;
-    };
 
     /// Node pairs of the same levels, still to be opened.
     struct node_pairs {
@@ -124,19 +117,33 @@ private:
 
     template <class Emit>
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
-              walk_goal goal, const Emit& emit) {
-        const bool any_pair = goal == walk_goal::first_pair;
+              const Emit& emit) {
         const auto emit_pair = emitter(a, b, emit);
+        waiting_.clear();
         bool reached_leaves = false;
-        const bool stopped = descend(a, b, to_a, what, goal, 0,
-                                     [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                                         if (!reached_leaves)
-                                             leaves_.begin(a, b, to_a, what == extent::one_mesh, !is_filtered, 0);
-                                         reached_leaves = true;
-                                         return test_leaves(test, a, b, to_a, what, of_a, of_b, emit_pair) ||
-                                                (any_pair && waiting_.decide(test, true, emit_pair));
-                                     });
+        const bool stopped =
+            descend(a, b, to_a, what, 0, [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
+                if (!reached_leaves) leaves_.begin(a, b, to_a, what == extent::one_mesh, !is_filtered, 0);
+                reached_leaves = true;
+                return test_leaves(test, a, b, to_a, what, of_a, of_b, emit_pair);
+            });
         if (!stopped) static_cast<void>(waiting_.decide(test, true, emit_pair));
+    }
+
+    /// Any one pair, of which each pair of leaves is decided on before the next.
+    template <class Emit>
+    void find(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+              const Emit& emit) {
+        require_ready(a, b);
+        const auto emit_pair = emitter(a, b, emit);
+        waiting_.clear();
+        bool reached_leaves = false;
+        nearest_(a, b, to_a, counters_, [&](const std::uint32_t& of_a, const std::uint32_t& of_b) {
+            if (!reached_leaves) leaves_.begin(a, b, to_a, false, !is_filtered, 0);
+            reached_leaves = true;
+            return test_leaves(test, a, b, to_a, extent::two_meshes, {&of_a, 1}, {&of_b, 1}, emit_pair) ||
+                   waiting_.decide(test, true, emit_pair);
+        });
     }
 
     /// Opens nodes down to pairs of leaves that may meet.
@@ -144,14 +151,10 @@ private:
     /// @param at_leaves called with leaves of A and of B, as many of both; returns whether to stop
     /// @returns whether it was stopped
     template <class AtLeaves>
-    bool descend(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, walk_goal goal,
-                 double margin, const AtLeaves& at_leaves) {
-        begin(a, b, to_a, goal, margin);
-        const bool any_pair = goal == walk_goal::first_pair;
-        const std::size_t at_once = any_pair ? 1 : most_at_once;
-        std::size_t step = 0;
-        std::size_t missed = 0;  // pairs of leaves
-        for (;;) {
+    bool descend(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, double margin,
+                 const AtLeaves& at_leaves) {
+        begin(a, b, to_a, margin);
+        for (std::size_t step = 0;;) {
             if (pairs_[step].size == 0) {
                 step = steps_.size();
                 while (step > 0 && pairs_[step - 1].size == 0) --step;
@@ -160,36 +163,34 @@ private:
             }
             node_pairs& from = pairs_[step];
             const std::size_t end = from.size;
-            const std::size_t begin = end - std::min(end, at_once);
+            const std::size_t begin = end - std::min(end, most_at_once);
             from.size = begin;
             counters_.add(work::node_visits, end - begin);
             if (step + 1 < steps_.size()) {
-                open(a.tree(), b.tree(), what, any_pair, step, begin, end);
+                open(a.tree(), b.tree(), what, step, begin, end);
                 ++step;
                 continue;
             }
             if (at_leaves(std::span(from.a).subspan(begin, end - begin), std::span(from.b).subspan(begin, end - begin)))
                 return true;
-            if (!any_pair) continue;
-            // What looks near may be parallel all over. So it goes back, mostly a little, at times to the top, as often
-            // as restarts are best made so long (Luby, Sinclair, Zuckerman, "Optimal speedup of Las Vegas algorithms",
-            // 1993), and to the highest pairs from there on.
-            step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
-            while (pairs_[step].size == 0 && step + 1 < steps_.size()) ++step;
         }
     }
 
-    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, walk_goal goal, double margin) {
+    static void require_ready(const model<Tree>& a, const model<Tree>& b) {
         require_ieee_arithmetic();
         a.require_fit();
         b.require_fit();
-        set_steps({a.tree().levels(), b.tree().levels()});
+    }
+
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin) {
+        require_ready(a, b);
+        steps_.begin({a.tree().levels(), b.tree().levels()});
+        if (pairs_.size() < steps_.size()) pairs_.resize(steps_.size());
         for (node_pairs& p : pairs_) p.size = 0;
         pairs_[0].make_room();
         pairs_[0].a[0] = pairs_[0].b[0] = 0;
         pairs_[0].size = 1;
-        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), goal == walk_goal::every_pair, margin);
-        waiting_.clear();
+        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), margin);
     }
 
     template <class Emit>
@@ -200,31 +201,12 @@ private:
         };
     }
 
-    /// The higher of two nodes is opened first, until both are leaves.
-    void set_steps(heights now) {
-        if (!steps_.empty() && steps_.front() == now) return;
-        // All memory first: what is there when it runs out must be whole.
-        const std::size_t steps = std::max(now.a, now.b) + 1;
-        if (pairs_.size() < steps) pairs_.resize(steps);
-        steps_.reserve(steps);
-        steps_.assign(1, now);
-        while (now.a > 0 || now.b > 0) {
-            const std::size_t higher = std::max(now.a, now.b);
-            if (now.a == higher) --now.a;
-            if (now.b == higher) --now.b;
-            steps_.push_back(now);
-        }
-    }
-
-    /// Those pairs of children that may meet go to the next step, from which the last is taken first: the nearest
-    /// there, if those come first.
-    void open(const Tree& a, const Tree& b, extent what, bool nearest_first, std::size_t step, std::size_t begin,
-              std::size_t end) {
-        const heights at = steps_[step];
-        const wide_node* const nodes_a = a.level(at.a - 1);
-        const wide_node* const nodes_b = b.level(at.b - 1);
-        const bool opens_a = steps_[step + 1].a < at.a;
-        const bool opens_b = steps_[step + 1].b < at.b;
+    /// Those pairs of children that may meet go to the next step, from which the last is taken first.
+    void open(const Tree& a, const Tree& b, extent what, std::size_t step, std::size_t begin, std::size_t end) {
+        const wide_node* const nodes_a = a.level(steps_[step].a - 1);
+        const wide_node* const nodes_b = b.level(steps_[step].b - 1);
+        const bool opens_a = steps_.opens_a(step);
+        const bool opens_b = steps_.opens_b(step);
         const node_pairs& from = pairs_[step];
         node_pairs& to = pairs_[step + 1];
         const std::span some_a = std::span(from.a).subspan(begin, end - begin);
@@ -234,28 +216,12 @@ private:
             const std::uint32_t node_a = some_a[pair];
             const std::uint32_t node_b = some_b[pair];
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
-            std::uint64_t to_open = met;
-            if (!opens_a) to_open = any_of_columns(to_open);
-            if (!opens_b) to_open = any_of_rows(to_open);
+            const std::uint64_t to_open = folded(met, opens_a, opens_b);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
-            const auto count = static_cast<std::size_t>(std::popcount(to_open));
-            std::array<std::uint32_t, nearest_few::most> nearest{};
-            std::size_t taken = 0;
-            if (nearest_first && count > 1) {
-                simd::store_places(places.data(), met);
-                const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
-                const nearest_few found(places, static_cast<std::size_t>(std::popcount(met)), nodes_a[node_a],
-                                        children_.in_a(nodes_b[node_b]));
-                for (const std::uint32_t place : found.places()) {
-                    const std::uint64_t it = std::uint64_t{1} << (place & opened);
-                    if ((to_open & it) == 0) continue;
-                    to_open &= ~it;
-                    nearest[taken++] = place & opened;
-                }
-            }
             simd::store_places(places.data(), to_open);
+            const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::size_t p = 0;
             do {  // mostly once, which is foreseen
                 const auto place =
@@ -265,11 +231,6 @@ private:
                 p += children;
             } while (p < count);
             to.size += count;
-            std::size_t last = to.size;
-            for (const std::uint32_t place : std::span(nearest).first(taken)) {
-                to.a[--last] = first_a + (place & 7U);
-                to.b[last] = first_b + (place >> 3U);
-            }
         }
     }
 
@@ -323,27 +284,13 @@ private:
     static constexpr std::uint64_t not_twice = 0xff7f3f1f0f070301;
     static constexpr std::uint64_t not_itself = 0x7fbfdfeff7fbfdfe;
 
-    /// Bit 8 j for every row j of which a bit is set.
-    [[nodiscard]] static constexpr std::uint64_t any_of_columns(std::uint64_t met) noexcept {
-        met |= met >> 4U;
-        met |= met >> 2U;
-        met |= met >> 1U;
-        return met & 0x0101010101010101;
-    }
-    /// Bit i for every column i of which a bit is set.
-    [[nodiscard]] static constexpr std::uint64_t any_of_rows(std::uint64_t met) noexcept {
-        met |= met >> 32U;
-        met |= met >> 16U;
-        met |= met >> 8U;
-        return met & 0xff;
-    }
-
     [[no_unique_address]] Counters counters_;
-    std::vector<heights> steps_;
+    level_steps steps_;
     std::vector<node_pairs> pairs_;  // by step
     child_pairs<Tree> children_;
     leaf_pairs<Tree> leaves_;
     triangle_batch<Triangle> waiting_;
+    nearest_walk<Tree> nearest_;
 };
 
 }  // namespace aabb

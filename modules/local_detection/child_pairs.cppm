@@ -22,15 +22,13 @@ export namespace aabb {
 template <WideTreePolicy Tree>
 class child_pairs {
 public:
-    /// @param in_both whether boxes may be held against each other in both frames; in A's alone each pair costs less
     /// @param margin within which children are said to meet
-    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, bool in_both,
-               double margin) {
+    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, double margin) {
         first_a_ = a.level(0);
         first_b_ = b.level(0);
         to_a_.begin(grown(to_a.to_boxes(), margin));
         in_a_.begin(nodes(b));
-        turned_ = in_both && to_a.growth() > least_growth;
+        turned_ = to_a.growth() > least_growth;
         if (!turned_) return;
         to_b_.begin(grown(to_a.back_to_boxes(bounds_of_a), margin));
         in_b_.begin(nodes(a));
@@ -85,16 +83,16 @@ public:
         return meeting;
     }
 
-    /// The boxes of the children of B's node in A's frame.
-    [[nodiscard]] inline const eight_boxes& in_a(const wide_node& b) {
-        return in_a_.get(number(b, first_b_), [&](eight_boxes& made) { to_a_.store(b, made); });
-    }
-
     [[nodiscard]] std::size_t bytes() const noexcept { return in_a_.bytes() + in_b_.bytes(); }
 
 private:
     static constexpr std::size_t most_kept = 32;
     static constexpr double least_growth = 1.2;  // from here on, the second test saves more than it costs
+
+    /// The boxes of the children of B's node in A's frame.
+    [[nodiscard]] inline const eight_boxes& in_a(const wide_node& b) {
+        return in_a_.get(number(b, first_b_), [&](eight_boxes& made) { to_a_.store(b, made); });
+    }
 
     /// A pose is a rotation within 1e-6, so that lengths in the other frame are the same within 2^-18.
     [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {

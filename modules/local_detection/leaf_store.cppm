@@ -25,7 +25,9 @@ public:
     void begin(std::size_t numbers) {
         if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
             leaves_.resize(std::min(most_places, std::bit_floor(numbers)));
-        held_.fill(nothing);
+        if (++begun_ != 0) return;
+        held_.fill(0);
+        begun_ = 1;
     }
 
     void release_claims() noexcept { ++claim_; }
@@ -33,12 +35,13 @@ public:
     /// @returns false where another one that is claimed has the place
     [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
         const std::size_t at = place(number);
-        const bool is_missing = held_[at] != number;
+        const std::uint64_t held = std::uint64_t{begun_} << 32U | number;
+        const bool is_missing = held_[at] != held;
         // Of the two, one is mostly false and the other hard to foresee, so there is one branch for both.
         if (static_cast<unsigned>(is_missing) & static_cast<unsigned>(claims_[at] == claim_)) return false;
         missing_[missing_count_] = number;
         missing_count_ += is_missing;
-        held_[at] = number;
+        held_[at] = held;
         claims_[at] = claim_;
         return true;
     }
@@ -59,9 +62,8 @@ public:
 
 private:
     static constexpr std::size_t most_places = 256;
-    static constexpr std::uint32_t nothing = 0xffffffff;
-
-    std::array<std::uint32_t, most_places> held_{};
+    std::array<std::uint64_t, most_places> held_{};  // which leaf, and since which beginning
+    std::uint32_t begun_ = 0;                        // how often
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};

@@ -118,7 +118,7 @@ TEST_CASE("children within a margin of each other are found, however one node is
         const model<implicit_tree> a(meshes[0], built_by<median_build>());
         const model<implicit_tree> b(meshes[1], built_by<median_build>());
         child_pairs<implicit_tree> pairs;
-        pairs.begin(a.tree(), b.tree(), relative_pose({}, pose_b, b.bounds()), a.bounds(), true, margin);
+        pairs.begin(a.tree(), b.tree(), relative_pose({}, pose_b, b.bounds()), a.bounds(), margin);
         no_counters counters;
         const std::array<std::uint32_t, 1> roots{0};
         const auto found = pairs(a.tree().level(0), roots, b.tree().level(0), roots, counters);

@@ -75,6 +75,13 @@ float any_float() {
     return *rc::gen::arbitrary<bool>() ? x : static_cast<float>(uniform(-1, 1)) * x;
 }
 
+/// Some of the bits, at least one.
+std::uint64_t any_of(std::uint64_t bits) {
+    const auto some = [] { return *rc::gen::arbitrary<std::uint64_t>(); };
+    const std::uint64_t chosen = bits & *rc::gen::element(~std::uint64_t{0}, some(), some() & some() & some() & some());
+    return chosen != 0 ? chosen : std::bit_floor(bits);
+}
+
 std::vector<box> any_boxes() {
     std::vector<box> boxes(*rc::gen::inRange<std::size_t>(1, 9));
     // Half the time near 1: of other numbers, few boxes lie clearly apart.
@@ -576,7 +583,7 @@ TEST_CASE("children that meet are found, however one node is turned against the 
     CHECK(apart_in_b > 1000);
 }
 
-TEST_CASE("of pairs those are found whose centres are the least distance apart") {
+TEST_CASE("of pairs those two are found whose centres are the least distance apart") {
     CHECK(rc::check([] {
         std::vector<box> children;
         eight_boxes others{};
@@ -589,11 +596,7 @@ TEST_CASE("of pairs those are found whose centres are the least distance apart")
         }
         wide_node node{};
         node.encode(children);
-        // In any order; beyond their number, pairs that are not asked about.
-        std::array<std::uint8_t, 64> pairs{};
-        for (std::uint8_t i = 0; i < 64; ++i) pairs[i] = i;
-        for (std::size_t i = 64; i > 1; --i) std::swap(pairs[i - 1], pairs[*rc::gen::inRange<std::size_t>(0, i)]);
-        const auto count = *rc::gen::inRange<std::size_t>(1, 65);
+        const std::uint64_t asked = any_of(~std::uint64_t{0});
         const auto distance = [&](std::uint32_t p) {
             double sum = 0;
             const box child = node.child(p & 7U);
@@ -604,39 +607,33 @@ TEST_CASE("of pairs those are found whose centres are the least distance apart")
             }
             return sum;
         };
-        const nearest_few found(pairs, count, node, others);
-        RC_ASSERT(found.places().size() == std::min(count, nearest_few::most));
-        const auto asked = std::span(pairs).first(count);
-        double last = 0;
-        const auto follows = [&](double d) { return last <= d * (1 + 1e-4) + 1e-6; };
-        std::uint64_t seen = 0;
-        for (const std::uint32_t p : found.places()) {
-            RC_ASSERT(std::ranges::count(asked, p) == 1);
-            RC_ASSERT(follows(distance(p)));
-            last = distance(p);
-            seen |= std::uint64_t{1} << p;
-        }
-        RC_ASSERT(static_cast<std::size_t>(std::popcount(seen)) == found.places().size());
-        for (const std::uint32_t p : asked) RC_ASSERT((seen >> p & 1U) != 0 || follows(distance(p)));
+        const auto [first, second] = two_nearest(asked, node, others);
+        RC_ASSERT((asked >> first & 1U) != 0);
+        RC_ASSERT((asked >> second & 1U) != 0);
+        RC_ASSERT((first == second) == (std::popcount(asked) == 1));
+        const auto follows = [&](std::uint32_t p, std::uint32_t q) {
+            return distance(p) <= distance(q) * (1 + 1e-4) + 1e-6;
+        };
+        RC_ASSERT(follows(first, second));
+        for (std::uint32_t p = 0; p < 64; ++p)
+            if ((asked >> p & 1U) != 0 && p != first) RC_ASSERT(follows(second, p));
     }));
 }
 
-TEST_CASE("as many pairs are found where boxes are of any size, as far apart as floats are") {
+TEST_CASE("two pairs are found where boxes are of any size, as far apart as floats are") {
     CHECK(rc::check([] {
         const std::vector<box> children = any_boxes();
         const std::vector<box> boxes = any_boxes();
         wide_node node{};
         node.encode(children);
-        std::vector<std::uint8_t> pairs;
+        std::uint64_t pairs = 0;
         for (std::size_t j = 0; j < boxes.size(); ++j)
-            for (std::size_t i = 0; i < children.size(); ++i) pairs.push_back(static_cast<std::uint8_t>(8 * j + i));
-        const std::size_t count = pairs.size();
-        pairs.resize(64);
-        const nearest_few found(pairs, count, node, in_eight(boxes));
-        RC_ASSERT(found.places().size() == std::min(count, nearest_few::most));
-        for (const std::uint32_t p : found.places())
-            RC_ASSERT(std::ranges::count(std::span(pairs).first(count), p) == 1);
-        if (count > 1) RC_ASSERT(found.places()[0] != found.places()[1]);
+            for (std::size_t i = 0; i < children.size(); ++i) pairs |= std::uint64_t{1} << (8 * j + i);
+        const std::uint64_t asked = any_of(pairs);
+        const auto [first, second] = two_nearest(asked, node, in_eight(boxes));
+        RC_ASSERT((asked >> first & 1U) != 0);
+        RC_ASSERT((asked >> second & 1U) != 0);
+        RC_ASSERT((first == second) == (std::popcount(asked) == 1));
     }));
 }
 
@@ -796,12 +793,12 @@ TEST_CASE("pairs of nodes asked for together have the children that meet of each
         for (std::uint32_t& n : some_b) n = *rc::gen::inRange<std::uint32_t>(0, nodes(b));
         no_counters counters;
         child_pairs<implicit_tree> together;
-        together.begin(a.tree(), b.tree(), to_a, a.bounds(), true, 0);
+        together.begin(a.tree(), b.tree(), to_a, a.bounds(), 0);
         const auto found = together(of_a, some_a, of_b, some_b, counters);
         std::size_t next = 0;
         for (std::size_t p = 0; p < some_a.size(); ++p) {
             child_pairs<implicit_tree> alone;
-            alone.begin(a.tree(), b.tree(), to_a, a.bounds(), true, 0);
+            alone.begin(a.tree(), b.tree(), to_a, a.bounds(), 0);
             const auto one =
                 alone(of_a, std::span(some_a).subspan(p, 1), of_b, std::span(some_b).subspan(p, 1), counters);
             if (one.empty()) continue;

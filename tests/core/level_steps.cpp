@@ -1,0 +1,39 @@
+#include <rapidcheck.h>
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+#include <cstdint>
+
+import aabb;
+
+using namespace aabb;
+
+TEST_CASE("of two nodes the higher one is opened first, down to leaves") {
+    level_steps steps;
+    for (std::size_t a = 0; a < 12; ++a)
+        for (std::size_t b = 0; b < 12; ++b) {
+            CAPTURE(a, b);
+            steps.begin({a, b});
+            REQUIRE(steps.size() == std::max(a, b) + 1);
+            for (std::size_t step = 0; step < steps.size(); ++step) {
+                const std::size_t left = std::max(a, b) - step;
+                REQUIRE(steps[step] == heights{std::min(a, left), std::min(b, left)});
+                if (step + 1 == steps.size()) continue;
+                REQUIRE(steps.opens_a(step) == (a >= left));
+                REQUIRE(steps.opens_b(step) == (b >= left));
+            }
+        }
+}
+
+TEST_CASE("pairs of children are one pair where a node is not opened") {
+    REQUIRE(rc::check([](std::uint64_t met) {
+        for (const bool opens_a : {false, true})
+            for (const bool opens_b : {false, true}) {
+                std::uint64_t expected = 0;
+                for (unsigned place = 0; place < 64; ++place)
+                    if ((met >> place & 1U) != 0)
+                        expected |= std::uint64_t{1} << ((opens_a ? place & 7U : 0) | (opens_b ? place & 56U : 0));
+                RC_ASSERT(folded(met, opens_a, opens_b) == expected);
+            }
+    }));
+}
