@@ -1,5 +1,7 @@
 #pragma once
 
+import aabblab.processor;
+
 namespace aabblab {
 
 // The benchmarks of each stage of global search. A name is the stage, the strategy as the command line takes it, and
@@ -27,5 +29,11 @@ void add_leaf_test_benchmarks();
 
 /// Every triangle test, of leaves whose boxes overlap.
 void add_triangle_test_benchmarks();
+
+/// Every build of `implicit` by one thread; the counter `two_threads` tells how many times as fast two build it, and
+/// `two_builds` what two threads that build a tree each get done in the time of one: what the machine has to give. All
+/// three are timed in turn, and counters are medians. A name is the build and the mesh: "build/sah/torus_knot:…".
+/// @param pinned what the builds are let off for
+void add_build_benchmarks(const idlest_processor& pinned);
 
 }  // namespace aabblab

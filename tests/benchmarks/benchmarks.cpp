@@ -168,6 +168,25 @@ TEST_CASE("Benchmarks report their counters") {
     counters(3, {"real_time", "box_tests/n", "pairs/n"});
 }
 
+TEST_CASE("Every build has a benchmark, which tells what two threads gain, and what there is to gain") {
+    const program_result result = run_program(
+        {"--benchmark_filter=^build/.*/noise_sphere", "--benchmark_min_time=0.001", "--benchmark_format=json"});
+    REQUIRE(result.status == 0);
+    const auto benchmarks = nlohmann::json::parse(result.out)["benchmarks"];
+    std::vector<std::string> measured;
+    for (const auto& benchmark : benchmarks) {
+        INFO(benchmark.dump());
+        measured.push_back(strategy_of(benchmark["name"]).name);
+        CHECK(benchmark.value("real_time", 0.0) > 0);
+        CHECK(benchmark.value("two_threads", 0.0) > 0);
+        CHECK(benchmark.value("two_builds", 0.0) > 0);
+    }
+    std::vector<std::string> known = strategy_names(aabb::strategy_kind::build);
+    std::ranges::sort(measured);
+    std::ranges::sort(known);
+    CHECK(measured == known);
+}
+
 TEST_CASE("What benchmarks cannot use is refused with status 2") {
     for (const char* argument : {"--benchmark_filter=sotr/", "--benchmrk", "--benchmark_format=xml"}) {
         const program_result result = run_program({argument});

@@ -49,13 +49,20 @@ idlest_processor::idlest_processor() {
         idlest = number;
     }
     if (idlest == CPU_SETSIZE) return;
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(idlest, &one);
-    stays_ = sched_setaffinity(0, sizeof one, &one) == 0;
+    CPU_ZERO(&idlest_);
+    CPU_SET(idlest, &idlest_);
+    stays_ = sched_setaffinity(0, sizeof idlest_, &idlest_) == 0;
 }
 
 idlest_processor::~idlest_processor() {
+    leave();
+}
+
+void idlest_processor::stay() const {
+    if (stays_) sched_setaffinity(0, sizeof idlest_, &idlest_);
+}
+
+void idlest_processor::leave() const {
     if (stays_) sched_setaffinity(0, sizeof before_, &before_);
 }
 

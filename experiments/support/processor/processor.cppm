@@ -15,8 +15,20 @@ public:
     idlest_processor& operator=(const idlest_processor&) = delete;
     ~idlest_processor();
 
+    /// Calls `work` on this thread, and those that it starts, wherever they might run before.
+    template <class Work>
+    void without(Work&& work) const {
+        leave();
+        work();
+        stay();
+    }
+
 private:
+    void stay() const;
+    void leave() const;
+
     cpu_set_t before_;
+    cpu_set_t idlest_;
     bool stays_ = false;
 };
 

@@ -1,0 +1,78 @@
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "stages.hpp"
+
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.policy;
+import aabb.strategies;
+import aabb.tree.implicit;
+import aabblab.cases;
+import aabblab.processor;
+import aabblab.scenes;
+import aabblab.stopwatch;
+
+namespace aabblab {
+
+namespace {
+
+/// As large as the meshes of `experiments/configs/peers/builds.toml`.
+constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangles=75000",
+                                                          "torus_knot:triangles=870000"};
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+template <class Build>
+void time_build(benchmark::State& state, const aabb::mesh& m) {
+    Build by_one;
+    Build by_two;
+    by_two.threads = 2;
+    const auto build = [&](const Build& by) {
+        const aabb::model<aabb::implicit_tree> made(m, aabb::built_by(by));
+        benchmark::DoNotOptimize(&made);
+    };
+    build(by_two);  // starts the threads
+    std::vector<double> two_threads;
+    std::vector<double> two_builds;
+    for (auto _ : state) {
+        const double one = milliseconds_of([&] { build(by_one); });
+        two_threads.push_back(one / milliseconds_of([&] { build(by_two); }));
+        two_builds.push_back(2 * one / milliseconds_of([&] {
+                                 std::thread other([&] { build(by_one); });
+                                 build(by_one);
+                                 other.join();
+                             }));
+        state.SetIterationTime(one / 1000);
+    }
+    state.counters["two_threads"] = median_of(two_threads);
+    state.counters["two_builds"] = median_of(two_builds);
+}
+
+}  // namespace
+
+void add_build_benchmarks(const idlest_processor& pinned) {
+    for_each_strategy(aabb::builds{}, [&]<class Build>(aabb::type_list<Build>) {
+        for (const std::string_view mesh : built_meshes)
+            benchmark::RegisterBenchmark(("build/" + std::string(Build::name) + "/" + std::string(mesh)).c_str(),
+                                         [&pinned, mesh](benchmark::State& state) {
+                                             const aabb::mesh m = make_mesh(mesh).mesh;
+                                             pinned.without([&] { time_build<Build>(state, m); });
+                                         })
+                ->UseManualTime()
+                ->Unit(benchmark::kMillisecond);
+    });
+}
+
+}  // namespace aabblab
