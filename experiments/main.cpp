@@ -95,7 +95,7 @@ int main_of(int argc, char** argv) {
             "With the script aabblab at the root of the source tree also:\n"
             "  test                        Build and run every test\n"
             "  data                        Fetch the real meshes\n"
-            "  benchmark                   Time each stage and each elementary test alone\n"
+            "  benchmark                   Time each stage, elementary test and build alone\n"
             "  paper                       The report of a reproduction as a PDF\n"
             "aabblab COMMAND --help tells the options of a command.\n"
             "Exit status: 0, 1 when a check failed, 2 on bad input.");

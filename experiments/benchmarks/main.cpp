@@ -37,7 +37,6 @@ int main(int argc, char** argv) {
         return bad_input;
     }
     const aabblab::idlest_processor pinned;
-    // First: TBB counts the processors that it may use when it is first asked.
     aabblab::add_build_benchmarks(pinned);
     aabblab::add_sort_benchmarks();
     aabblab::add_partition_benchmarks();

@@ -32,8 +32,9 @@ void add_triangle_test_benchmarks();
 
 /// Every build of `implicit` by one thread; the counter `two_threads` tells how many times as fast two build it, and
 /// `two_builds` what two threads that build a tree each get done in the time of one: what the machine has to give. All
-/// three are timed in turn, and counters are medians. A name is the build and the mesh: "build/sah/torus_knot:…".
-/// @param pinned what the builds are let off for
+/// three are timed in turn, five times an iteration; counters are medians. A name is the build and the mesh:
+/// "build/sah/torus_knot:…".
+/// @param pinned keeps this thread on one processor, but not while it builds
 void add_build_benchmarks(const idlest_processor& pinned);
 
 }  // namespace aabblab

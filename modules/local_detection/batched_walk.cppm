@@ -130,7 +130,7 @@ private:
         if (!stopped) static_cast<void>(waiting_.decide(test, true, emit_pair));
     }
 
-    /// Any one pair, of which each pair of leaves is decided on before the next.
+    /// Any one pair: each pair of leaves is decided on before the next is read.
     template <class Emit>
     void find(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
               const Emit& emit) {
@@ -216,7 +216,7 @@ private:
             const std::uint32_t node_a = some_a[pair];
             const std::uint32_t node_b = some_b[pair];
             if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
-            const std::uint64_t to_open = folded(met, opens_a, opens_b);
+            const std::uint64_t to_open = steps_.opened(step, met);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};

@@ -27,11 +27,11 @@ public:
         first_a_ = a.level(0);
         first_b_ = b.level(0);
         to_a_.begin(grown(to_a.to_boxes(), margin));
-        in_a_.begin(nodes(b));
+        in_a_.begin(nodes_of(b));
         turned_ = to_a.growth() > least_growth;
         if (!turned_) return;
         to_b_.begin(grown(to_a.back_to_boxes(bounds_of_a), margin));
-        in_b_.begin(nodes(a));
+        in_b_.begin(nodes_of(a));
     }
 
     static constexpr std::size_t most_at_once = 64;
@@ -98,9 +98,6 @@ private:
     [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
         for (int k = 0; k < 3; ++k) motion.margin[k] += margin * (1 + 0x1p-16);
         return motion;
-    }
-    [[nodiscard]] static std::size_t nodes(const Tree& t) noexcept {
-        return static_cast<std::size_t>(t.level(t.levels() - 1) - t.level(0)) + 1;
     }
     [[nodiscard]] static inline std::uint64_t pairs(const wide_node& a, const wide_node& b) noexcept {
         return std::uint64_t{a.children} * b.children;

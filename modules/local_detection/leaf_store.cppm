@@ -26,6 +26,7 @@ public:
         if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
             leaves_.resize(std::min(most_places, std::bit_floor(numbers)));
         if (++begun_ != 0) return;
+        // After all numbers of 32 bits: what was held under the first ones is not to come back.
         held_.fill(0);
         begun_ = 1;
     }
@@ -62,8 +63,9 @@ public:
 
 private:
     static constexpr std::size_t most_places = 256;
-    std::array<std::uint64_t, most_places> held_{};  // which leaf, and since which beginning
-    std::uint32_t begun_ = 0;                        // how often
+
+    std::array<std::uint64_t, most_places> held_{};  // the number of the beginning, then that of the leaf
+    std::uint32_t begun_ = 0;                        // how often; 0 stands for nothing held
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};

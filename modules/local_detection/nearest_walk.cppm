@@ -1,9 +1,9 @@
 module;
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 export module aabb.local_detection:nearest_walk;
@@ -15,8 +15,8 @@ import :box_images;
 import :eight_boxes;
 import :level_steps;
 import :model;
-import :nearest_two;
 import :recently_made;
+import :two_nearest;
 import :wide_node;
 import :wide_tree_policy;
 
@@ -40,9 +40,9 @@ public:
         for (;;) {
             counters.add(work::node_visits, 1);
             if (step < leaves) {
-                const bool is_left = open(a.tree(), b.tree(), step, at, counters);
+                const bool goes_on = open(a.tree(), b.tree(), step, at, counters);
                 ++step;
-                if (is_left) continue;
+                if (goes_on) continue;
             } else {
                 if (at_leaves(at.a, at.b)) return;
                 // What looks near may be parallel all over. So it goes back, mostly a little, at times to the top, as
@@ -81,7 +81,7 @@ private:
         std::uint32_t next;   // of these the one to be opened next
     };
 
-    /// At one step, those of the last nodes last.
+    /// At one step. What the nodes that were opened last left stands last.
     struct waiting {
         std::vector<children_left> left;
         std::size_t size = 0;
@@ -91,10 +91,11 @@ private:
         steps_.begin({a.levels(), b.levels()});
         if (waiting_.size() < steps_.size()) waiting_.resize(steps_.size());
         for (waiting& w : waiting_) w.size = 0;
+        assert(steps_.size() <= 64);
         steps_waiting_ = 0;
         to_a_.begin(to_a.to_boxes());
         first_b_ = b.level(0);
-        in_a_.begin(static_cast<std::size_t>(b.level(b.levels() - 1) - first_b_) + 1);
+        in_a_.begin(nodes_of(b));
     }
 
     /// Goes on to the nearest pair of children, and leaves the others for later.
@@ -114,7 +115,7 @@ private:
         const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
         const node_pair first_children{opens_a ? children_of(at.a) : at.a, opens_b ? children_of(at.b) : at.b};
         at = pair_of(first_children, first & opened);
-        const std::uint64_t others = folded(met, opens_a, opens_b) & ~bit(first & opened);
+        const std::uint64_t others = steps_.opened(step, met) & ~bit(first & opened);
         if (others != 0) leave(step + 1, first_children, others, second & opened);
         return true;
     }

@@ -28,4 +28,9 @@ concept WideTreePolicy =
         { built.keeps_front() } -> std::same_as<bool>;
     };
 
+template <WideTreePolicy Tree>
+[[nodiscard]] std::size_t nodes_of(const Tree& t) noexcept {
+    return static_cast<std::size_t>(t.level(t.levels() - 1) - t.level(0)) + 1;
+}
+
 }  // namespace aabb

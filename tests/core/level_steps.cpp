@@ -17,7 +17,7 @@ TEST_CASE("of two nodes the higher one is opened first, down to leaves") {
             REQUIRE(steps.size() == std::max(a, b) + 1);
             for (std::size_t step = 0; step < steps.size(); ++step) {
                 const std::size_t left = std::max(a, b) - step;
-                REQUIRE(steps[step] == heights{std::min(a, left), std::min(b, left)});
+                REQUIRE(steps[step] == level_steps::heights{std::min(a, left), std::min(b, left)});
                 if (step + 1 == steps.size()) continue;
                 REQUIRE(steps.opens_a(step) == (a >= left));
                 REQUIRE(steps.opens_b(step) == (b >= left));
@@ -27,13 +27,15 @@ TEST_CASE("of two nodes the higher one is opened first, down to leaves") {
 
 TEST_CASE("pairs of children are one pair where a node is not opened") {
     REQUIRE(rc::check([](std::uint64_t met) {
-        for (const bool opens_a : {false, true})
-            for (const bool opens_b : {false, true}) {
-                std::uint64_t expected = 0;
-                for (unsigned place = 0; place < 64; ++place)
-                    if ((met >> place & 1U) != 0)
-                        expected |= std::uint64_t{1} << ((opens_a ? place & 7U : 0) | (opens_b ? place & 56U : 0));
-                RC_ASSERT(folded(met, opens_a, opens_b) == expected);
-            }
+        for (const level_steps::heights roots : {level_steps::heights{2, 2}, {2, 1}, {1, 2}}) {
+            level_steps steps;
+            steps.begin(roots);
+            std::uint64_t expected = 0;
+            for (unsigned place = 0; place < 64; ++place)
+                if ((met >> place & 1U) != 0)
+                    expected |= std::uint64_t{1}
+                                << ((steps.opens_a(0) ? place & 7U : 0) | (steps.opens_b(0) ? place & 56U : 0));
+            RC_ASSERT(steps.opened(0, met) == expected);
+        }
     }));
 }

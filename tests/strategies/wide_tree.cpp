@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "../random_poses.hpp"
@@ -663,6 +662,19 @@ TEST_CASE("the first pair is found where there are hardly any") {
     }
     CHECK(few > 50);
     CHECK(wrong == 0);
+}
+
+TEST_CASE("few nodes are opened for the first pair: the nearest first, elsewhere after leaves that did not meet") {
+    triangle_pairs::generator g{12};
+    const std::array meshes{shell(g, 20000, 1), shell(g, 20000, 1)};
+    const model<implicit_tree> a(meshes[0], median_build());
+    const model<implicit_tree> b(meshes[1], median_build());
+    local_detection<implicit_tree, exact_triangle, work_counters> detection;
+    constexpr int turns = 100;
+    for (int turn = 0; turn < turns; ++turn)
+        REQUIRE(detection.first_pair(a, {}, b, turned_by({1, 0.3 * turn, 0.1, 0.7}, {0.02 * turn, 0.1, 0})));
+    const double visits = static_cast<double>(detection.counters()[work::node_visits]) / turns;
+    CHECK(visits < 8);
 }
 
 TEST_CASE("where no triangles meet, the first pair is looked for wherever all pairs are") {

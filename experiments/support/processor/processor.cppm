@@ -15,7 +15,7 @@ public:
     idlest_processor& operator=(const idlest_processor&) = delete;
     ~idlest_processor();
 
-    /// Calls `work` on this thread, and those that it starts, wherever they might run before.
+    /// Calls `work` while this thread, and threads that it starts, may run wherever this one might before.
     template <class Work>
     void without(Work&& work) const {
         leave();

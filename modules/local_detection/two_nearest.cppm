@@ -3,7 +3,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 
-export module aabb.local_detection:nearest_two;
+export module aabb.local_detection:two_nearest;
 
 import aabb.simd;
 import :box_codes;
@@ -13,15 +13,16 @@ import :wide_node;
 export namespace aabb {
 
 /// Pairs, 8 j + i for child i of a node and box j, whose centres are the least distance apart.
-struct nearest_two {
+struct nearest_places {
     std::uint32_t first;
     std::uint32_t second;  ///< the first again where there is no other
 };
 
 /// Of the pairs in `met`, bit 8 j + i for child i and box j; not all may be 0. All sixty-four distances are taken, so
 /// that they need not wait for what met.
-[[nodiscard]] inline nearest_two two_nearest(std::uint64_t met, const wide_node& node,
-                                             const eight_boxes& boxes) noexcept {
+[[nodiscard]] inline nearest_places two_nearest(std::uint64_t met, const wide_node& node,
+                                                const eight_boxes& boxes) noexcept {
+    // Which of two as near comes first may hang on how distances are rounded; no answer does.
 #pragma clang fp contract(fast)
     std::array<simd::eight_floats, 3> of_node;
     std::array<eight_boxes::row, 3> of_boxes;
