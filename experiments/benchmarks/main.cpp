@@ -24,7 +24,7 @@ void refuse_value() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    // Short by default, so that all of them take no longer than a minute; the caller's own time comes later and wins.
+    // Short by default, so that all of them take some 90 s; the caller's own time comes later and wins.
     char min_time[] = "--benchmark_min_time=" AABBLAB_MIN_TIME;
     std::vector<char*> arguments(argv, argv + argc);
     arguments.insert(arguments.begin() + 1, min_time);
