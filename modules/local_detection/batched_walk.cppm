@@ -32,8 +32,9 @@ import :wide_tree_policy;
 export namespace aabb {
 
 /// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
-/// that no step waits for the one before, and few pairs are kept; for the first pair by `nearest_walk`. Triangles are
-/// read and moved once for all the leaves that they meet one after the other, and tested in batches.
+/// that no step waits for the one before, and few pairs are kept; all pairs of leaves that there are go on together;
+/// for the first pair by `nearest_walk`. Triangles are read and moved once for all the leaves that they meet one after
+/// the other, and tested in batches.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -163,10 +164,11 @@ private:
             }
             node_pairs& from = pairs_[step];
             const std::size_t end = from.size;
-            const std::size_t begin = end - std::min(end, most_at_once);
+            const bool is_last = step + 1 == steps_.size();
+            const std::size_t begin = is_last ? 0 : end - std::min(end, most_at_once);
             from.size = begin;
             counters_.add(work::node_visits, end - begin);
-            if (step + 1 < steps_.size()) {
+            if (!is_last) {
                 open(a.tree(), b.tree(), what, step, begin, end);
                 ++step;
                 continue;

@@ -2,6 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 export module aabb.local_detection:kept_leaves;
 
@@ -27,21 +28,24 @@ public:
                                   std::span<const kept_pair> pairs, leaf_reader<Tree>& read, const Take& take) {
         of_a_.begin(leaves_of(a));
         of_b_.begin(leaves_of(b));
-        for (std::size_t begin = 0; begin < pairs.size();) {
-            std::size_t end = begin;
-            of_a_.release_claims();
-            of_b_.release_claims();
-            while (end < pairs.size() && end - begin < most_claims && of_a_.claim(pairs[end].leaf_a) &&
-                   of_b_.claim(pairs[end].leaf_b))
-                ++end;
-            read(a, of_a_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+        const auto claim = [&](std::size_t begin) {
+            return read.claim(a, of_a_, b, of_b_, begin, pairs.size(),
+                              [&](std::size_t i) { return std::pair(pairs[i].leaf_a, pairs[i].leaf_b); });
+        };
+        std::size_t begin = 0;
+        std::size_t end = claim(begin);
+        while (begin < end) {
+            read.make_a(a, of_a_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
                 leaf.load(a.triangles(), a.tree(), number, vertices);
             });
-            read(b, of_b_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+            read.make_b(b, of_b_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
                 leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
             });
-            for (; begin < end; ++begin)
-                if (take(pairs[begin], of_a_[pairs[begin].leaf_a], of_b_[pairs[begin].leaf_b])) return true;
+            const std::size_t next = claim(end);
+            for (const kept_pair& p : pairs.subspan(begin, end - begin))
+                if (take(p, of_a_[p.leaf_a], of_b_[p.leaf_b])) return true;
+            begin = end;
+            end = next;
         }
         return false;
     }

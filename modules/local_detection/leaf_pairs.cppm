@@ -5,6 +5,7 @@ module;
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 export module aabb.local_detection:leaf_pairs;
@@ -67,20 +68,19 @@ public:
     [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                   std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                                   Counters& counters, const Take& take) {
-        for (std::size_t begin = 0; begin < leaves_a.size();) {
-            const group meeting = meet(a, b, to_a, leaves_a, leaves_b, begin, counters);
-            begin = meeting.end;
-            std::size_t left = 0;
-            for (const found& f : meeting.pairs) {
-                const std::uint64_t which =
-                    f.which & rows(of_a_[leaves_a[f.pair]].slab.reached_by(of_b_[leaves_b[f.pair]].block));
-                left_[left] = {f.pair, which};
-                left += which != 0;
-            }
-            for (const found& f : std::span(left_).first(left))
-                if (take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which)) return true;
-        }
-        return false;
+        return each_group(
+            a, b, to_a, leaves_a, leaves_b, counters,
+            [&](std::span<const found> meeting) {
+                std::size_t left = 0;
+                for (const found& f : meeting) {
+                    const std::uint64_t which =
+                        f.which & rows(of_a_[leaves_a[f.pair]].slab.reached_by(of_b_[leaves_b[f.pair]].block));
+                    left_[left] = {f.pair, which};
+                    left += which != 0;
+                }
+                return std::span<const found>(left_).first(left);
+            },
+            [&](const found& f) { return take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which); });
     }
 
     /// Hands over in the same way those pairs of triangles that may come within the margin.
@@ -88,10 +88,9 @@ public:
     void within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                        std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                        Counters& counters, const Take& take) {
-        for (std::size_t begin = 0; begin < leaves_a.size();) {
-            const group meeting = meet(a, b, to_a, leaves_a, leaves_b, begin, counters);
-            begin = meeting.end;
-            for (const found& f : meeting.pairs) {
+        static_cast<void>(each_group(
+            a, b, to_a, leaves_a, leaves_b, counters, [&](std::span<const found> meeting) { return meeting; },
+            [&](const found& f) {
                 const leaf_of_a& of_a = of_a_[leaves_a[f.pair]];
                 const read_leaf& of_b = of_b_[leaves_b[f.pair]];
                 leaf_slab slab_of_b;
@@ -99,8 +98,8 @@ public:
                 const std::uint64_t which = f.which & rows(of_a.slab.reached_by(of_b.block, margin_)) &
                                             columns(slab_of_b.reached_by(of_a.block, margin_));
                 if (which != 0) take(f.pair, which);
-            }
-        }
+                return false;
+            }));
     }
 
     /// Of one mesh: where triangle i of A's leaf and j of B's have a corner in common, bit 8 j + i.
@@ -117,22 +116,24 @@ private:
     static constexpr std::size_t most_at_once = most_claims;
     static constexpr int many = 32;  // of 64 pairs whose boxes overlap: more are rare
 
+    /// What follows once the vertices of a leaf are there.
     /// @param frame of B
     template <class Leaf, class... Frame>
-    inline void read(const model<Tree>& m, leaf_store<Leaf>& store, std::vector<corner_numbers>& corners,
-                     const Frame&... frame) {
-        reader_(
-            m, store,
-            [&](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
-                leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
-            },
-            [&](Leaf& leaf, std::uint32_t number, const vertex_list&) {
-                auto bounds = leaf.block.bounds();
-                if (sizeof...(frame) > 0 && margin_ > 0) grow(bounds);
-                leaf.boxes.take(grid_, bounds, leaf.block.triangles);
-                if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, grid_.edges());
-                if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
-            });
+    [[nodiscard]] inline auto block_maker(const model<Tree>& m, const Frame&... frame) const {
+        return [&m, &frame...](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
+            leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
+        };
+    }
+    template <bool Moved, class Leaf>
+    [[nodiscard]] inline auto box_maker(const model<Tree>& m, const leaf_store<Leaf>& store,
+                                        std::vector<corner_numbers>& corners) const {
+        return [this, &m, &store, &corners](Leaf& leaf, std::uint32_t number, const vertex_list&) {
+            auto bounds = leaf.block.bounds();
+            if (Moved && margin_ > 0) grow(bounds);
+            leaf.boxes.take(grid_, bounds, leaf.block.triangles);
+            if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, grid_.edges());
+            if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
+        };
     }
 
     /// Floats that lie outside by no more than the margin are in the boxes then, which end where floats do.
@@ -150,24 +151,37 @@ private:
         std::size_t pair;
         std::uint64_t which;
     };
-    struct group {
-        std::span<const found> pairs;
-        std::size_t end;
-    };
 
-    /// Of as many pairs from `begin` on as there are places for, those whose triangles have boxes that meet.
+    /// Makes the leaves of a group of pairs, then sifts those whose triangles have boxes that meet, and hands over what
+    /// is left. What the next group needs is on its way meanwhile.
+    template <class Counters, class Sift, class Take>
+    [[nodiscard]] inline bool each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                         std::span<const std::uint32_t> leaves_a,
+                                         std::span<const std::uint32_t> leaves_b, Counters& counters, const Sift& sift,
+                                         const Take& take) {
+        const auto claim = [&](std::size_t begin) {
+            return reader_.claim(a, of_a_, b, of_b_, begin, leaves_a.size(),
+                                 [&](std::size_t i) { return std::pair(leaves_a[i], leaves_b[i]); });
+        };
+        std::size_t begin = 0;
+        std::size_t end = claim(begin);
+        while (begin < end) {
+            reader_.make_a(a, of_a_, block_maker<leaf_of_a>(a), box_maker<false>(a, of_a_, corners_of_a_));
+            reader_.make_b(b, of_b_, block_maker<read_leaf>(b, to_a), box_maker<true>(b, of_b_, corners_of_b_));
+            const std::size_t next = claim(end);
+            for (const found& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
+                if (take(f)) return true;
+            begin = end;
+            end = next;
+        }
+        return false;
+    }
+
+    /// Those of the pairs whose triangles have boxes that meet.
     template <class Counters>
-    [[nodiscard]] inline group meet(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                    std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
-                                    std::size_t begin, Counters& counters) {
-        std::size_t end = begin;
-        of_a_.release_claims();
-        of_b_.release_claims();
-        while (end < leaves_a.size() && end - begin < most_at_once && of_a_.claim(leaves_a[end]) &&
-               of_b_.claim(leaves_b[end]))
-            ++end;
-        read(a, of_a_, corners_of_a_);
-        read(b, of_b_, corners_of_b_, to_a);
+    [[nodiscard]] inline std::span<const found> meet(std::span<const std::uint32_t> leaves_a,
+                                                     std::span<const std::uint32_t> leaves_b, std::size_t begin,
+                                                     std::size_t end, Counters& counters) {
         std::size_t meeting = 0;
         for (; begin < end; ++begin) {
             const leaf_of_a& of_a = of_a_[leaves_a[begin]];
@@ -178,7 +192,7 @@ private:
             meeting_[meeting] = {begin, which};
             meeting += which != 0;
         }
-        return {std::span(meeting_).first(meeting), end};
+        return std::span(meeting_).first(meeting);
     }
 
     /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where

@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,28 +21,71 @@ template <WideTreePolicy Tree>
     return (m.triangles().triangles.size() + triangle_block::width - 1) / triangle_block::width;
 }
 
-/// Reads those leaves that a store has claimed and lacks. Memory is told of all of them first, so that it is waited for
-/// once.
+/// Reads the leaves of pairs, group by group: of as many pairs at a time as two stores have places for. Memory is told
+/// of lists of vertices a group ahead, and of vertices some leaves ahead: of more than some twenty lines at a time a
+/// processor forgets what it is told.
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:
+    /// Claims the leaves of pairs for the next group, once those of the group before are made.
+    /// @param begin of the group; it ends at `end` or before
+    /// @param pair_at the leaves of pair i, of A's tree and of B's
+    /// @returns the end of the group
+    template <class LeafOfA, class LeafOfB, class PairAt>
+    [[nodiscard]] inline std::size_t claim(const model<Tree>& a, leaf_store<LeafOfA>& of_a, const model<Tree>& b,
+                                           leaf_store<LeafOfB>& of_b, std::size_t begin, std::size_t end,
+                                           const PairAt& pair_at) {
+        end = std::min(end, begin + most_claims);
+        of_a.release_claims();
+        of_b.release_claims();
+        for (; begin < end; ++begin) {
+            const auto [leaf_a, leaf_b] = pair_at(begin);
+            if (!of_a.claim(leaf_a) || !of_b.claim(leaf_b)) break;
+        }
+        missing_a_ = of_a.take_missing();
+        missing_b_ = of_b.take_missing();
+        for (const std::uint32_t number : missing_a_) a.tree().fetch_vertices(number);
+        for (const std::uint32_t number : missing_b_) b.tree().fetch_vertices(number);
+        return begin;
+    }
+
+    /// Makes those leaves of the group that are missing in A's store.
     /// @param steps each called for all of them before the next, as `step(leaf, number, its vertices)`, so that none
     /// waits for what was made just before
     template <class Leaf, class... Steps>
-    inline void operator()(const model<Tree>& m, leaf_store<Leaf>& store, const Steps&... steps) {
-        const std::span<const std::uint32_t> missing = store.take_missing();
-        for (const std::uint32_t number : missing) m.tree().fetch_vertices(number);
-        for (std::size_t i = 0; i < missing.size(); ++i) {
-            m.tree().read_vertices(missing[i], lists_[i]);
-            lists_[i].fetch(m.triangles());
-        }
-        const auto do_all = [&](const auto& step) {
-            for (std::size_t i = 0; i < missing.size(); ++i) step(store[missing[i]], missing[i], lists_[i]);
-        };
-        (do_all(steps), ...);
+    inline void make_a(const model<Tree>& a, leaf_store<Leaf>& store, const Steps&... steps) {
+        make(a, missing_a_, store, steps...);
+    }
+    /// The same of B's.
+    template <class Leaf, class... Steps>
+    inline void make_b(const model<Tree>& b, leaf_store<Leaf>& store, const Steps&... steps) {
+        make(b, missing_b_, store, steps...);
     }
 
 private:
+    static constexpr std::size_t ahead = 10;  // leaves
+
+    template <class Leaf, class First, class... Others>
+    inline void make(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_store<Leaf>& store,
+                     const First& first, const Others&... others) {
+        const auto fetch = [&](std::size_t i) {
+            m.tree().read_vertices(missing[i], lists_[i]);
+            lists_[i].fetch(m.triangles());
+        };
+        const auto do_step = [&](std::size_t i, const auto& step) { step(store[missing[i]], missing[i], lists_[i]); };
+        for (std::size_t i = 0; i < std::min(ahead, missing.size()); ++i) fetch(i);
+        for (std::size_t i = 0; i < missing.size(); ++i) {
+            if (i + ahead < missing.size()) fetch(i + ahead);
+            do_step(i, first);
+        }
+        const auto do_all = [&](const auto& step) {
+            for (std::size_t i = 0; i < missing.size(); ++i) do_step(i, step);
+        };
+        (do_all(others), ...);
+    }
+
+    std::span<const std::uint32_t> missing_a_;
+    std::span<const std::uint32_t> missing_b_;
     std::array<vertex_list, most_claims + 1> lists_{};
 };
 

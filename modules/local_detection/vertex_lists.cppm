@@ -21,14 +21,14 @@ export namespace aabb {
 struct vertex_list {
     static constexpr std::size_t most = 16;
 
-    alignas(64) std::array<std::uint32_t, most> vertices;  ///< the first one fills the rest
+    alignas(64) std::array<std::uint32_t, most> vertices;  ///< ascending; the first one fills the rest
     std::array<std::uint32_t, 3> places;  ///< by corner: 4 bits a triangle; the last one fills the rest
     std::uint32_t count;                  ///< 0 where they have to be found in the mesh
 
-    /// Tells memory that they will be read: of every fourth, since neighbours mostly share a line of it.
+    /// Tells memory that they will be read: of every second, since neighbours mostly share a line of it.
     inline void fetch(const mesh& m) const noexcept {
         if (count == 0) return;
-        for (std::size_t i = 0; i < most; i += 4) __builtin_prefetch(&m.vertices[vertices[i]]);
+        for (std::size_t i = 0; i < most; i += 2) __builtin_prefetch(&m.vertices[vertices[i]]);
     }
 };
 
@@ -36,8 +36,9 @@ struct vertex_list {
 /// read in place of twenty-four, sixteen moved, and the mesh's triangles not read at all.
 ///
 /// A list is a byte, how many vertices there are; for each corner, eight triangles' places in the list in 4 bits each;
-/// and the vertices' indices, in as many bytes as the largest one has. Few leaves, of triangles that lie apart, have
-/// more than sixteen vertices: they have a list of none, and are read from the mesh.
+/// and the vertices' indices, each in as many bytes as the largest one has, ascending, so that those side by side in
+/// memory follow each other. Few leaves, of triangles that lie apart, have more than sixteen vertices: they have a list
+/// of none, and are read from the mesh.
 class vertex_lists {
 public:
     static constexpr std::size_t triangles = balanced_order::leaf_triangles;
@@ -121,32 +122,35 @@ private:
         alignas(32) std::array<std::uint32_t, corners> all;
         for (std::size_t i = 0; i < triangles; ++i)
             std::ranges::copy(m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]], &all[3 * i]);
+        // Bit by bit, those that are so to `one`.
+        const auto bits_where = [&](const auto& is, std::uint32_t one) {
+            std::uint32_t bits = 0;
+            for (std::size_t eight = 0; eight < corners; eight += 8)
+                bits |= simd::bits_of_eight(is(simd::load_eight<simd::eight_words>(&all[eight]), one)) << eight;
+            return bits;
+        };
         // Where each stands first, of all before any has a place, so that none waits for the one before.
         std::array<std::uint8_t, corners> first;
         std::uint32_t is_new = 0;
         for (std::size_t at = 0; at < corners; ++at) {
-            std::uint32_t same = 0;
-            for (std::size_t eight = 0; eight < corners; eight += 8)
-                same |= simd::bits_of_eight(simd::load_eight<simd::eight_words>(&all[eight]) == all[at]) << eight;
+            const std::uint32_t same = bits_where([](auto some, std::uint32_t one) { return some == one; }, all[at]);
             first[at] = static_cast<std::uint8_t>(std::countr_zero(same));
             is_new |= same & -same;
         }
         const auto count = static_cast<std::size_t>(std::popcount(is_new));
         *to = static_cast<std::byte>(count > vertex_list::most ? 0 : count);
         if (count > vertex_list::most) return to + 1;
-        std::byte* next = to + header;
-        std::array<std::uint32_t, 3> places{};
-        std::array<std::uint32_t, corners> place;
-        std::uint32_t known = 0;
-        for (std::size_t at = 0; at < corners; ++at) {
-            place[at] = known;
-            known += is_new >> at & 1U;
-            places[at % 3] |= place[first[at]] << 4 * (at / 3);
+        std::array<std::uint32_t, corners> place;  // of those that are new
+        for (std::uint32_t left = is_new; left != 0; left &= left - 1) {
+            const auto at = static_cast<std::size_t>(std::countr_zero(left));
+            const std::uint32_t less = bits_where([](auto some, std::uint32_t one) { return some < one; }, all[at]);
+            place[at] = static_cast<std::uint32_t>(std::popcount(less & is_new));
+            std::memcpy(to + header + width_ * place[at], &all[at], width_);
         }
+        std::array<std::uint32_t, 3> places{};
+        for (std::size_t at = 0; at < corners; ++at) places[at % 3] |= place[first[at]] << 4 * (at / 3);
         std::memcpy(to + 1, places.data(), sizeof places);
-        for (; is_new != 0; is_new &= is_new - 1, next += width_)
-            std::memcpy(next, &all[static_cast<std::size_t>(std::countr_zero(is_new))], width_);
-        return next;
+        return to + header + width_ * count;
     }
 
     large_vector<std::uint32_t> begins_;  // by leaf

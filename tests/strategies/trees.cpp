@@ -402,6 +402,7 @@ TEST_CASE("an implicit tree is packed alike by any number of threads, and anew")
             alone.read_vertices(leaf, expected);
             REQUIRE(parts_of(list) == parts_of(expected));
             REQUIRE(list.count > 0);
+            for (std::size_t i = 1; i < list.count; ++i) REQUIRE(list.vertices[i - 1] < list.vertices[i]);
             for (std::uint32_t i = 0; i < std::min(8U, m.triangle_count() - 8 * leaf); ++i)
                 for (std::size_t c = 0; c < 3; ++c)
                     REQUIRE(list.vertices[list.places[c] >> 4 * i & 15U] ==
