@@ -61,11 +61,11 @@ public:
                       std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
         return !descend(a, b, to_a, extent::two_meshes, margin,
                         [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                            leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
-                                                  [&](std::size_t p, std::uint64_t which) {
-                                                      pairs.push_back({of_a[p], of_b[p], which});
-                                                  });
-                            return pairs.size() > most;
+                            return leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
+                                                         [&](std::size_t p, std::uint64_t which) {
+                                                             pairs.push_back({of_a[p], of_b[p], which});
+                                                             return pairs.size() > most;
+                                                         });
                         });
     }
 
@@ -203,7 +203,8 @@ private:
         };
     }
 
-    /// Those pairs of children that may meet go to the next step, from which the last is taken first.
+    /// Those pairs of children that may meet go to the next step, from which the last ones are taken first, or all
+    /// where they are leaves.
     void open(const Tree& a, const Tree& b, extent what, std::size_t step, std::size_t begin, std::size_t end) {
         const wide_node* const nodes_a = a.level(steps_[step].a - 1);
         const wide_node* const nodes_b = b.level(steps_[step].b - 1);

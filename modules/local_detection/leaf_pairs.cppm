@@ -85,10 +85,10 @@ public:
 
     /// Hands over in the same way those pairs of triangles that may come within the margin.
     template <class Counters, class Take>
-    void within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                       std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
-                       Counters& counters, const Take& take) {
-        static_cast<void>(each_group(
+    [[nodiscard]] bool within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                     std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
+                                     Counters& counters, const Take& take) {
+        return each_group(
             a, b, to_a, leaves_a, leaves_b, counters, [&](std::span<const found> meeting) { return meeting; },
             [&](const found& f) {
                 const leaf_of_a& of_a = of_a_[leaves_a[f.pair]];
@@ -97,9 +97,8 @@ public:
                 slab_of_b.fit(of_b.block, grid_.edges());
                 const std::uint64_t which = f.which & rows(of_a.slab.reached_by(of_b.block, margin_)) &
                                             columns(slab_of_b.reached_by(of_a.block, margin_));
-                if (which != 0) take(f.pair, which);
-                return false;
-            }));
+                return which != 0 && take(f.pair, which);
+            });
     }
 
     /// Of one mesh: where triangle i of A's leaf and j of B's have a corner in common, bit 8 j + i.
@@ -113,23 +112,24 @@ public:
     }
 
 private:
-    static constexpr std::size_t most_at_once = most_claims;
     static constexpr int many = 32;  // of 64 pairs whose boxes overlap: more are rare
 
-    /// What follows once the vertices of a leaf are there.
-    /// @param frame of B
+    /// Reads a leaf's triangles.
+    /// @param frame A's, where the leaf is one of B's
     template <class Leaf, class... Frame>
-    [[nodiscard]] inline auto block_maker(const model<Tree>& m, const Frame&... frame) const {
+    [[nodiscard]] static inline auto block_maker(const model<Tree>& m, const Frame&... frame) {
         return [&m, &frame...](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
             leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
         };
     }
-    template <bool Moved, class Leaf>
+    /// Makes their boxes, slab and corners.
+    /// @tparam OfB whether it is the leaf whose boxes the margin widens
+    template <bool OfB, class Leaf>
     [[nodiscard]] inline auto box_maker(const model<Tree>& m, const leaf_store<Leaf>& store,
                                         std::vector<corner_numbers>& corners) const {
         return [this, &m, &store, &corners](Leaf& leaf, std::uint32_t number, const vertex_list&) {
             auto bounds = leaf.block.bounds();
-            if (Moved && margin_ > 0) grow(bounds);
+            if (OfB && margin_ > 0) grow(bounds);
             leaf.boxes.take(grid_, bounds, leaf.block.triangles);
             if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, grid_.edges());
             if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
@@ -153,7 +153,8 @@ private:
     };
 
     /// Makes the leaves of a group of pairs, then sifts those whose triangles have boxes that meet, and hands over what
-    /// is left. What the next group needs is on its way meanwhile.
+    /// is left. Memory is told of the next group's lists of vertices meanwhile.
+    /// @returns whether `take` stopped it
     template <class Counters, class Sift, class Take>
     [[nodiscard]] inline bool each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                          std::span<const std::uint32_t> leaves_a,
@@ -230,8 +231,8 @@ private:
     leaf_store<read_leaf> of_b_;
     std::vector<corner_numbers> corners_of_a_;  // of one mesh only, at the places of the leaves
     std::vector<corner_numbers> corners_of_b_;
-    std::array<found, most_at_once + 1> meeting_{};
-    std::array<found, most_at_once + 1> left_{};
+    std::array<found, most_claims + 1> meeting_{};
+    std::array<found, most_claims + 1> left_{};
     leaf_reader<Tree> reader_;
 };
 

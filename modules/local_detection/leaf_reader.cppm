@@ -22,13 +22,15 @@ template <WideTreePolicy Tree>
 }
 
 /// Reads the leaves of pairs, group by group: of as many pairs at a time as two stores have places for. Memory is told
-/// of lists of vertices a group ahead, and of vertices some leaves ahead: of more than some twenty lines at a time a
-/// processor forgets what it is told.
+/// of a group's lists of vertices while the group before is tested, and of vertices some leaves before they are read.
+/// Not of all at once: a processor drops requests beyond some twenty that are under way.
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:
-    /// Claims the leaves of pairs for the next group, once those of the group before are made.
-    /// @param begin of the group; it ends at `end` or before
+    /// Claims the leaves of pairs for the next group, once those of the group before are made, which can be read until
+    /// the next ones are. Memory is told of the lists of those that are missing.
+    /// @param begin of the group
+    /// @param end of all pairs
     /// @param pair_at the leaves of pair i, of A's tree and of B's
     /// @returns the end of the group
     template <class LeafOfA, class LeafOfB, class PairAt>
@@ -63,7 +65,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t ahead = 10;  // leaves
+    static constexpr std::size_t ahead = 10;  // leaves, of which most vertices are in the caches already
 
     template <class Leaf, class First, class... Others>
     inline void make(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_store<Leaf>& store,

@@ -18,6 +18,7 @@ inline constexpr std::size_t most_claims = 64;  ///< at once
 
 /// Leaves that were read lately, found again by their number: each has one place, which it shares with others. First
 /// all that are needed at a time are claimed, then those that are missing are read, so that none waits for another.
+/// What a place holds can be read, by its own number, until another leaf is read into it.
 template <class Leaf>
 class leaf_store {
 public:
@@ -47,7 +48,7 @@ public:
         return true;
     }
 
-    /// What was claimed and is not there, to be read before the next claim.
+    /// What was claimed and is not there, to be read before the next claim, or never before the next `begin`.
     [[nodiscard]] inline std::span<const std::uint32_t> take_missing() noexcept {
         return std::span(missing_).first(std::exchange(missing_count_, 0));
     }
