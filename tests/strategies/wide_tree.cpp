@@ -695,6 +695,27 @@ TEST_CASE("where no triangles meet, the first pair is looked for wherever all pa
         }
 }
 
+TEST_CASE("pairs of leaves within a margin are given up at the first one too many") {
+    triangle_pairs::generator g{12};
+    const std::array meshes{shell(g, 3000, 1), shell(g, 3000, 1)};
+    const model<implicit_tree> a(meshes[0], median_build());
+    const model<implicit_tree> b(meshes[1], median_build());
+    const relative_pose to_a({}, {}, b.bounds());
+    batched_walk<implicit_tree, exact_triangle, no_counters> walk;
+    std::vector<kept_pair> all;
+    REQUIRE(walk.near(a, b, to_a, 0.1, std::numeric_limits<std::size_t>::max(), all));
+    REQUIRE(all.size() > 1000);
+    for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{64}, all.size() - 1}) {
+        CAPTURE(most);
+        std::vector<kept_pair> pairs;
+        CHECK_FALSE(walk.near(a, b, to_a, 0.1, most, pairs));
+        CHECK(pairs.size() == most + 1);
+    }
+    std::vector<kept_pair> again;
+    CHECK(walk.near(a, b, to_a, 0.1, all.size(), again));
+    CHECK(again.size() == all.size());
+}
+
 TEST_CASE("a box of A that holds no more than the image of a vertex holds the vertex when taken back") {
     triangle_pairs::generator g{9};
     std::uniform_real_distribution<double> unit(-1, 1);
