@@ -1,8 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -18,6 +16,7 @@ import aabb.tree.implicit;
 import aabblab.cases;
 import aabblab.processor;
 import aabblab.scenes;
+import aabblab.statistics;
 import aabblab.stopwatch;
 
 namespace aabblab {
@@ -27,12 +26,6 @@ namespace {
 /// As large as the meshes of `experiments/configs/peers/builds.toml`.
 constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangles=75000",
                                                           "torus_knot:triangles=870000"};
-
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
 
 constexpr int turns = 5;
 
@@ -63,8 +56,8 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
         }
         state.SetIterationTime(all / turns / 1000);
     }
-    state.counters["two_threads"] = median_of(two_threads);
-    state.counters["two_builds"] = median_of(two_builds);
+    state.counters["two_threads"] = quartiles_of(two_threads).median;
+    state.counters["two_builds"] = quartiles_of(two_builds).median;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -200,9 +201,10 @@ std::uint64_t take_pairs(const collide_request& request, detection_method& metho
 
 /// Every two objects are candidates, since boxes in the world say nothing of meshes that were moved together, however
 /// far. What is found again in a repeat is not told again.
+/// @param lines those of the file of poses, by pose
 /// @param table takes the pairs; null where they are not wanted.
 detection_result detect(const collide_request& request, detection_method& method, scene_play& scene,
-                        number_table* table) {
+                        std::span<const std::size_t> lines, number_table* table) {
     detection_result result;
     std::optional<player> who;
     result.build_ms = milliseconds_of([&] { who.emplace(stages{nullptr, std::move(method.stage)}, scene); });
@@ -218,8 +220,9 @@ detection_result detect(const collide_request& request, detection_method& method
             who->search();
             result.query_ms.push_back(milliseconds_of([&] { count = query(*who, request, pairs); }));
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(fmt::format("{} against {}{}: {}", request.a, request.b.value_or("itself"),
-                                                pose ? fmt::format(" at pose {}", frame % poses) : "", error.what()));
+            throw aabb::input_error(fmt::format(
+                "{}{} against {}: {}", pose ? fmt::format("{}:{}: ", *request.poses_of_b, lines[frame % poses]) : "",
+                request.a, request.b.value_or("itself"), error.what()));
         }
         if (frame >= poses) continue;
         result.pairs = std::move(pairs);
@@ -350,7 +353,7 @@ void collide(const collide_request& request) {
     // What makes no sense is refused before anything is read.
     static_cast<void>(method_of(request, {}));
     const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
-    std::vector<aabb::pose> of_b{pose_of(request.poses[1], "--pose-b")};
+    poses_of_file of_b{{pose_of(request.poses[1], "--pose-b")}, {}};
     if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);
     std::vector<std::string> names{request.a};
     if (request.b) names.push_back(*request.b);
@@ -364,11 +367,11 @@ void collide(const collide_request& request) {
         if (request.geometry) columns += "," + std::string(intersection_columns);
         table.emplace(*request.out, columns);
     }
-    scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), of_a, std::move(of_b), request.repeats));
+    scene_play scene(std::make_unique<posed_meshes>(read_meshes(names), of_a, std::move(of_b.poses), request.repeats));
     aabb::scene_outlook outlook = outlook_of(scene);
     outlook.frames = 1;  // each query is timed for itself: none leaves anything to the next
     detection_method method = method_of(request, outlook);
-    const detection_result result = detect(request, method, scene, table ? &*table : nullptr);
+    const detection_result result = detect(request, method, scene, of_b.lines, table ? &*table : nullptr);
     if (table) table->commit();
     if (request.json)
         print_json(request, method, result);

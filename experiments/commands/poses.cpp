@@ -52,9 +52,9 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
     }
 }
 
-std::vector<aabb::pose> read_poses(const std::string& file) {
+poses_of_file read_poses(const std::string& file) {
     const std::string text = bytes_of_file(file);
-    std::vector<aabb::pose> poses;
+    poses_of_file found;
     std::size_t number = 0;
     for (std::string_view rest = text; !rest.empty();) {
         const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -64,13 +64,14 @@ std::vector<aabb::pose> read_poses(const std::string& file) {
         line = line.substr(0, line.find('#'));
         if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
         try {
-            poses.push_back(parse_pose(line));
+            found.poses.push_back(parse_pose(line));
+            found.lines.push_back(number);
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(fmt::format("{}:{}: {}", file, number, error.what()));
         }
     }
-    if (poses.empty()) throw aabb::input_error(file + ": has no poses");
-    return poses;
+    if (found.poses.empty()) throw aabb::input_error(file + ": has no poses");
+    return found;
 }
 
 }  // namespace aabblab

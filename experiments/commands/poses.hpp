@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,8 +13,12 @@ namespace aabblab {
 /// @throws aabb::input_error that names the option, on anything else or a pose that is not rigid.
 [[nodiscard]] aabb::pose pose_of(const std::optional<std::string>& text, const char* option);
 
-/// Poses of a file, one a line, with commas or blanks between numbers; `#` begins a comment.
+struct poses_of_file {
+    std::vector<aabb::pose> poses;
+    std::vector<std::size_t> lines;  ///< on which each stands, from 1
+};
+/// One a line, with commas or blanks between numbers; `#` begins a comment.
 /// @throws aabb::input_error with file and line, as `pose_of`, and on a file without poses.
-[[nodiscard]] std::vector<aabb::pose> read_poses(const std::string& file);
+[[nodiscard]] poses_of_file read_poses(const std::string& file);
 
 }  // namespace aabblab

@@ -327,7 +327,8 @@ TEST_CASE("a line of a file of poses that is none is told") {
          "poses.txt:3: number 4 of 12: 'x' is not a number"},
         {"0 0 1 0 0\n", "poses.txt:1: a pose is 12 numbers, the rows of [R t] with commas between, not 5"},
         {"2,0,0,0,0,1,0,0,0,0,1,0", "poses.txt:1: the pose is not rigid"},
-        {"1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,1e39,0,1,0,0,0,0,1,0", "a.off at pose 1: seen from one mesh, the other lies"},
+        {"1,0,0,0,0,1,0,0,0,0,1,0\n\n1,0,0,1e39,0,1,0,0,0,0,1,0", "poses.txt:3: "},
+        {"1,0,0,1e39,0,1,0,0,0,0,1,0", "a.off: seen from one mesh, the other lies beyond the range of float"},
     }));
     const program_result result =
         run_program({"collide", a, a, "--poses", folder.write("poses.txt", text), "--out", folder / "pairs.csv"});

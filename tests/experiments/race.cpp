@@ -235,7 +235,7 @@ racer finished(const std::string& name, double build_ms, double frame_ms, bool s
     for (const double noise : {1.0, 1.02, 0.99, 1.01, 0.98, 1.0, 1.01}) {
         slow = !slow;
         const double ms = slow_and_fast ? frame_ms * (slow ? 1.1 : 0.9) : frame_ms;
-        r.times.push_back({build_ms * noise, ms * noise, 99 * ms * noise, 100, 0, "answer"});
+        r.times.push_back({build_ms * noise, ms * noise, 99 * ms * noise, 100, 0, "answer", {}});
     }
     return r;
 }
@@ -246,10 +246,6 @@ aabblab::race_result ended(std::vector<racer> finalists, std::size_t frames = 10
     rank(finalists);
     race.finalists = std::move(finalists);
     return race;
-}
-
-bool holds(const std::vector<std::string>& sentences, const std::string& one) {
-    return std::ranges::find(sentences, one) != sentences.end();
 }
 
 }  // namespace
