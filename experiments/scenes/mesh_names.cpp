@@ -22,6 +22,7 @@ import aabblab.files;
 import :icosphere;
 import :kind;
 import :noise_sphere;
+import :slivers;
 import :square;
 import :torus_knot;
 
@@ -29,7 +30,7 @@ namespace aabblab {
 
 namespace {
 
-using shape_types = aabb::type_list<icosphere, torus_knot, noise_sphere, square>;
+using shape_types = aabb::type_list<icosphere, torus_knot, noise_sphere, square, slivers>;
 
 template <class... Shapes>
 std::vector<shape_info> infos_of(aabb::type_list<Shapes...>) {
@@ -110,7 +111,7 @@ loaded_mesh make_mesh_as_it_stands(std::string_view name, const std::filesystem:
         return read_mesh(name);  // says what it is instead of a file
     throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here" +
                             (folder.empty() ? "" : ", in " + folder.string()) + " or in " + data_folder().string() +
-                            ", or a shape)");
+                            ", where ./aabblab data puts some, or a shape)");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ export namespace aabblab {
 
 /// A generated mesh as `aabblab list` shows it.
 struct shape_info {
-    std::string name;  ///< "icosphere", "torus_knot", "noise_sphere", "square"
+    std::string name;  ///< "icosphere", "torus_knot", "noise_sphere", "square", "slivers"
     std::string summary;
     std::vector<aabb::parameter_info> parameters;
 };

@@ -16,6 +16,7 @@
 #include "temporary_folder.hpp"
 
 import aabb;
+import aabb.triangle.exact;
 import aabblab.files;
 import aabblab.scenes;
 
@@ -65,14 +66,17 @@ public:
 
 }  // namespace
 
-TEST_CASE("shapes but the floor are closed, face outwards, have no triangle of zero area, and as many as wanted") {
+TEST_CASE(
+    "shapes but the floor and slivers are closed, face outwards, have no triangle of zero area, and as many as "
+    "wanted") {
     const temporary_folder folder;
     for (const auto& [shape, summary, parameters] : aabblab::shapes())
         for (const std::uint32_t wanted : {100U, 1000U, 1234U, 5000U, 20000U, 100000U}) {
             CAPTURE(shape, wanted);
             const aabb::mesh m = aabblab::make_mesh(shape + ":triangles=" + std::to_string(wanted)).mesh;
-            REQUIRE(is_closed(m) == (shape != "square"));
-            REQUIRE((volume(m) > 0) == (shape != "square"));
+            const bool closed = shape != "square" && shape != "slivers";
+            REQUIRE(is_closed(m) == closed);
+            if (closed) REQUIRE(volume(m) > 0);
             REQUIRE_NOTHROW(aabb::require_valid(m));
             aabblab::write_off(m, folder / "m.off");
             REQUIRE(aabblab::read_mesh(folder / "m.off").report.zero_area == 0);
@@ -87,6 +91,28 @@ TEST_CASE("shapes but the floor are closed, face outwards, have no triangle of z
     REQUIRE(aabblab::make_mesh("torus_knot:triangles=20000").mesh.triangle_count() == 20000);
 }
 
+TEST_CASE("boxes of slivers all overlap, and nothing touches, with a second row in the gaps of the first") {
+    constexpr std::uint32_t n = 300;
+    const aabb::mesh m = aabblab::make_mesh("slivers:triangles=" + std::to_string(n)).mesh;
+    const double gap = 10 * std::sqrt(0.5) / n;
+    for (const double aside : {0.0, gap / 2}) {
+        std::uint64_t boxes = 0;
+        std::uint64_t hits = 0;
+        for (std::uint32_t i = 0; i < n; ++i)
+            for (std::uint32_t j = 0; j < n; ++j) {
+                aabb::triangle3f other = m.triangle(j);
+                for (int c = 0; c < 3; ++c) {
+                    other[c][0] += static_cast<float>(aside);
+                    other[c][1] -= static_cast<float>(aside);
+                }
+                boxes += aabb::overlaps(aabb::bounds_of(m.triangle(i)), aabb::bounds_of(other));
+                hits += aabb::exact_triangle::intersects(m.triangle(i), other);
+            }
+        CHECK(boxes == std::uint64_t{n} * n);
+        CHECK(hits == (aside == 0 ? n : 0));
+    }
+}
+
 TEST_CASE("shapes are the same everywhere, in any order") {
     const auto digest_of = [](const std::string& name) {
         const aabb::mesh m = aabblab::make_mesh(name).mesh;
@@ -98,6 +124,7 @@ TEST_CASE("shapes are the same everywhere, in any order") {
     CHECK(digest_of("icosphere:triangles=1000") == "d755fdaa678cfdc0");
     CHECK(digest_of("noise_sphere:triangles=1000") == "dcf74046466fc0c4");
     CHECK(digest_of("torus_knot:triangles=1000") == "ffebf8a1a850ed68");
+    CHECK(digest_of("slivers:triangles=1000") == "c9b2b687bdd3937c");
     CHECK(digest_of("torus_knot:triangles=20000,order=sah") == "6c5d77a09de53bdd");
     CHECK(digest_of("torus_knot:triangles=20000,order=median") == "e02228f01ba3f345");
 }
@@ -131,7 +158,8 @@ TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
     folder.write("elephant.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 0\n");
     REQUIRE(aabblab::make_mesh("elephant.off").report.polygons == 1);
     REQUIRE(aabblab::make_mesh((folder / "elephant.off").string()).mesh.triangle_count() == 2);
-    const std::string where = " (a mesh is a file, here or in " + folder.path().string() + ", or a shape)";
+    const std::string where =
+        " (a mesh is a file, here or in " + folder.path().string() + ", where ./aabblab data puts some, or a shape)";
     REQUIRE(error_of("elefant.off") == "unknown mesh 'elefant.off'; did you mean 'elephant.off'?" + where);
     REQUIRE(error_of("ikosphere") == "unknown mesh 'ikosphere'; did you mean 'icosphere'?" + where);
     REQUIRE(error_of("").starts_with("unknown mesh ''"));

@@ -1,0 +1,46 @@
+module;
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+
+module aabblab.scenes:slivers;
+
+import aabb.geometry;
+import aabb.policy;
+
+namespace aabblab {
+
+/// Triangles a hundred long along (1, 1, 1) and 0.001 wide, in a row of width 10 across it: the box of each overlaps
+/// that of every other one, and none comes near its neighbours. A second row moved by half a gap, 5 √½ / n along (1,
+/// -1, 0), stands in the gaps of the first one and touches nothing.
+struct slivers {
+    static constexpr std::string_view name = "slivers";
+    static constexpr std::string_view summary = "thin triangles in a row along a diagonal, whose boxes all overlap";
+
+    struct config {
+        std::uint32_t triangles = 3000;
+    };
+    static constexpr std::tuple parameters{
+        aabb::integer_parameter{"triangles", &config::triangles, 2U, 100'000'000U, "how many"}};
+
+    [[nodiscard]] static aabb::mesh make(const config& c) {
+        constexpr double half_length = 28.867513459481287;  // 50 √⅓ along each axis
+        constexpr double across = 7.0710678118654755;       // 10 √½ along x, and back along y
+        constexpr double width = 0.0004082482904638631;     // 0.001 √⅙ along x and y, and twice back along z
+        aabb::mesh m;
+        const auto add = [&](double along, double aside, double up) {
+            m.vertices.push_back({static_cast<float>(along + aside + up), static_cast<float>(along - aside + up),
+                                  static_cast<float>(along - 2 * up)});
+        };
+        for (std::uint32_t i = 0; i < c.triangles; ++i) {
+            const double aside = across * (static_cast<double>(i) / c.triangles - 0.5);
+            add(-half_length, aside, 0);
+            add(-half_length, aside, width);
+            add(half_length, aside, 0);
+            m.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        return m;
+    }
+};
+
+}  // namespace aabblab
