@@ -46,45 +46,44 @@ std::vector<recording> recordings() {
     return {general, lattice, flat};
 }
 
+/// Pairs, frame by frame, while some leave and come back and others stay away.
+std::vector<std::vector<index_pair>> answers_of(global_stage& stage, const recording& r) {
+    const auto size = static_cast<std::uint32_t>(r.frames[0].size());
+    for (std::uint32_t id = 0; id < size; ++id) stage.insert(id);
+    std::vector<std::vector<index_pair>> answers;
+    for (std::size_t frame = 0; frame < r.frames.size(); ++frame) {
+        for (std::uint32_t id = 0; frame > 0 && id < size; id += 3)
+            frame % 2 == 1 ? stage.remove(id) : stage.insert(id);
+        answers.push_back(pairs_of(stage, r.frames[frame]));
+    }
+    return answers;
+}
+
 }  // namespace
 
 TEST_CASE("every composed global search equals brute force, frame by frame") {
     REQUIRE(!all_global_compositions().empty());
-    for (const recording& r : recordings())
+    for (const recording& r : recordings()) {
+        const std::vector<std::vector<index_pair>> expected = answers_of(*make_box_engine("brute_force"), r);
+        for (const std::vector<index_pair>& pairs : expected) REQUIRE(!pairs.empty());
         for (const aabb::composition& composition : all_global_compositions()) {
-            const auto stage = global_of(composition, instrumentation::none);
-            const auto truth = make_box_engine("brute_force");
-            const auto size = static_cast<std::uint32_t>(r.frames[0].size());
-            for (std::uint32_t id = 0; id < size; ++id) {
-                stage->insert(id);
-                truth->insert(id);
-            }
-            for (std::size_t frame = 0; frame < r.frames.size(); ++frame) {
+            const auto found = answers_of(*global_of(composition, instrumentation::none), r);
+            for (std::size_t frame = 0; frame < found.size(); ++frame) {
                 INFO(text_of_global(composition) << ", " << r.name << ", frame " << frame);
-                // Some leave and come back, others stay away.
-                for (std::uint32_t id = 0; id < size; id += 3)
-                    if (frame % 2 == 1) {
-                        stage->remove(id);
-                        truth->remove(id);
-                    } else if (frame > 0) {
-                        stage->insert(id);
-                        truth->insert(id);
-                    }
-                const std::vector<index_pair> pairs = pairs_of(*truth, r.frames[frame]);
-                REQUIRE(!pairs.empty());
-                REQUIRE(pairs_of(*stage, r.frames[frame]) == pairs);
+                REQUIRE(found[frame] == expected[frame]);
             }
         }
+    }
 }
 
 TEST_CASE("every composed local detection with an exact triangle test equals CGAL") {
-    for (const aabb::composition& composition : all_local_compositions()) {
-        if (!is_exact_locally(composition)) continue;
-        for (const mesh_case& c : mesh_cases()) {
+    for (const mesh_case& c : mesh_cases()) {
+        const std::vector<index_pair> pairs = pairs_of(*make_mesh_engine("cgal"), c.a, c.pose_a, c.b, c.pose_b);
+        for (const aabb::composition& composition : all_local_compositions()) {
+            if (!is_exact_locally(composition)) continue;
             INFO(text_of_local(composition) << ", " << c.name);
             const auto stage = local_of(composition, instrumentation::none);
-            REQUIRE(pairs_of(*stage, c.a, c.pose_a, c.b, c.pose_b) ==
-                    pairs_of(*make_mesh_engine("cgal"), c.a, c.pose_a, c.b, c.pose_b));
+            REQUIRE(pairs_of(*stage, c.a, c.pose_a, c.b, c.pose_b) == pairs);
         }
     }
 }
