@@ -132,7 +132,7 @@ public:
     }
 
     /// False where every image is known to be the vertex itself.
-    [[nodiscard]] bool moves() const noexcept { return moves_; }
+    [[nodiscard]] inline bool moves() const noexcept { return moves_; }
 
     /// Image of a vertex of B, as defined above.
     [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {

@@ -39,8 +39,10 @@ public:
         const std::size_t at = place(number);
         const std::uint64_t held = std::uint64_t{begun_} << 32U | number;
         const bool is_missing = held_[at] != held;
-        // Of the two, one is mostly false and the other hard to foresee, so there is one branch for both.
-        if (static_cast<unsigned>(is_missing) & static_cast<unsigned>(claims_[at] == claim_)) return false;
+        // Of the two, one is mostly false and the other hard to foresee. What is told to be unforeseeable as a whole
+        // stays one branch, where a compiler would make two of it.
+        if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claims_[at] == claim_)))
+            return false;
         missing_[missing_count_] = number;
         missing_count_ += is_missing;
         held_[at] = held;

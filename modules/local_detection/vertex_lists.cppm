@@ -83,7 +83,7 @@ public:
         });
     }
 
-    [[nodiscard]] bool empty() const noexcept { return begins_.empty(); }
+    [[nodiscard]] inline bool empty() const noexcept { return begins_.empty(); }
 
     inline void fetch(std::uint32_t leaf) const noexcept { __builtin_prefetch(&lists_[begins_[leaf]]); }
     inline void read(std::uint32_t leaf, vertex_list& to) const noexcept {
