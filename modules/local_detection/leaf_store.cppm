@@ -14,7 +14,7 @@ import aabb.base;
 
 export namespace aabb {
 
-inline constexpr std::size_t most_claims = 64;  ///< at once
+inline constexpr std::size_t most_claims = 128;  ///< at once
 
 /// Leaves that were read lately, found again by their number: each has one place, which it shares with others. First
 /// all that are needed at a time are claimed, then those that are missing are read, so that none waits for another.
