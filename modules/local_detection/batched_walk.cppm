@@ -38,7 +38,7 @@ export namespace aabb {
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
-    /// Hands each pair of intersecting triangles (a of A, b of B) to `emit`, until that returns true.
+    /// Hands intersecting pairs of triangles (a of A, b of B) to `emit`, some at a time, until that returns true.
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
@@ -74,14 +74,14 @@ public:
     void among(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                std::span<const kept_pair> pairs, kept_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
         const bool any_pair = goal == walk_goal::first_pair;
-        const auto emit_pair = emitter(a, b, emit);
+        const auto triangles_at = naming(a, b);
         waiting_.clear();
         const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
             make_wait(a.tree(), b.tree(), p, of_a, of_b);
-            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, emit_pair);
+            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, triangles_at, emit);
         };
         if (!leaves(a, b, to_a, pairs, leaves_.reader(), test_pair))
-            static_cast<void>(waiting_.decide(test, true, emit_pair));
+            static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
     }
 
     [[nodiscard]] Counters& counters() noexcept { return counters_; }
@@ -119,16 +119,16 @@ private:
     template <class Emit>
     void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
               const Emit& emit) {
-        const auto emit_pair = emitter(a, b, emit);
+        const auto triangles_at = naming(a, b);
         waiting_.clear();
         bool reached_leaves = false;
         const bool stopped =
             descend(a, b, to_a, what, 0, [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
                 if (!reached_leaves) leaves_.begin(a, b, to_a, what == extent::one_mesh, !is_filtered, 0);
                 reached_leaves = true;
-                return test_leaves(test, a, b, to_a, what, of_a, of_b, emit_pair);
+                return test_leaves(test, a, b, to_a, what, of_a, of_b, triangles_at, emit);
             });
-        if (!stopped) static_cast<void>(waiting_.decide(test, true, emit_pair));
+        if (!stopped) static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
     }
 
     /// Any one pair: each pair of leaves is decided on before the next is read.
@@ -136,14 +136,14 @@ private:
     void find(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
               const Emit& emit) {
         require_ready(a, b);
-        const auto emit_pair = emitter(a, b, emit);
+        const auto triangles_at = naming(a, b);
         waiting_.clear();
         bool reached_leaves = false;
         nearest_(a, b, to_a, counters_, [&](const std::uint32_t& of_a, const std::uint32_t& of_b) {
             if (!reached_leaves) leaves_.begin(a, b, to_a, false, !is_filtered, 0);
             reached_leaves = true;
-            return test_leaves(test, a, b, to_a, extent::two_meshes, {&of_a, 1}, {&of_b, 1}, emit_pair) ||
-                   waiting_.decide(test, true, emit_pair);
+            return test_leaves(test, a, b, to_a, extent::two_meshes, {&of_a, 1}, {&of_b, 1}, triangles_at, emit) ||
+                   waiting_.decide(test, true, triangles_at, emit);
         });
     }
 
@@ -195,11 +195,10 @@ private:
         children_.begin(a.tree(), b.tree(), to_a, a.bounds(), margin);
     }
 
-    template <class Emit>
-    [[nodiscard]] static auto emitter(const model<Tree>& a, const model<Tree>& b, const Emit& emit) {
+    /// Triangles of the meshes, by their leaves and their places there.
+    [[nodiscard]] static auto naming(const model<Tree>& a, const model<Tree>& b) {
         return [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
-            return emit(
-                index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)});
+            return index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)};
         };
     }
 
@@ -239,20 +238,21 @@ private:
 
     /// Pairs of leaves: those of their triangles that may meet wait for the test.
     /// @returns whether to stop
-    template <class Emit>
+    template <class TrianglesAt, class Emit>
     [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                                    const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
-                                   std::span<const std::uint32_t> leaves_b, const Emit& emit) {
+                                   std::span<const std::uint32_t> leaves_b, const TrianglesAt& triangles_at,
+                                   const Emit& emit) {
         // Called in one place, where a call would cost as much as a tenth of what it does.
         const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b,
                               std::uint64_t met) __attribute__((always_inline)) {
             if (what == extent::one_mesh) {
                 if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
-                if (emit_neighbours(met, leaves_a[p], leaves_b[p], emit)) return true;
+                if (emit_neighbours(met, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
                 if (met == 0) return false;
             }
             make_wait(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], met}, of_a.block, of_b.block);
-            return waiting_.is_full() && waiting_.decide(test, false, emit);
+            return waiting_.is_full() && waiting_.decide(test, false, triangles_at, emit);
         };
         return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
     }
@@ -269,16 +269,19 @@ private:
     /// An exact test would find that triangles with a corner in common meet there.
     /// @param met loses those that are handed over
     /// @returns whether to stop
-    template <class Emit>
+    template <class TrianglesAt, class Emit>
     [[nodiscard]] bool emit_neighbours(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
-                                       const Emit& emit) const {
+                                       const TrianglesAt& triangles_at, const Emit& emit) const {
         if constexpr (is_filtered) {
             const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
+            std::array<index_pair, most_children_of_pair> neighbours;
+            std::size_t count = 0;
             for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
                 const auto place = static_cast<std::uint32_t>(std::countr_zero(found));
-                if (emit(leaf_a, place & 7U, leaf_b, place >> 3U)) return true;
+                neighbours[count++] = triangles_at(leaf_a, place & 7U, leaf_b, place >> 3U);
             }
             met &= ~shared;
+            return count != 0 && emit(std::span<const index_pair>(neighbours).first(count));
         }
         return false;
     }

@@ -3,6 +3,7 @@ module;
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 export module aabb.local_detection:depth_first_walk;
@@ -22,7 +23,7 @@ export namespace aabb {
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class depth_first_walk {
 public:
-    /// Hands each pair of intersecting triangles (a of A, b of B) to `emit`, until that returns true.
+    /// Hands each pair of intersecting triangles (a of A, b of B) to `emit`, as a list of one, until that returns true.
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal /*goal*/, Emit emit) {
@@ -90,7 +91,9 @@ private:
             const bool a_is_leaf = tree_a.is_leaf(at.a);
             const bool b_is_leaf = tree_b.is_leaf(at.b);
             if (a_is_leaf && b_is_leaf) {
-                if (intersect(test, a, b, to_a, at) && emit({tree_a.triangle(at.a), tree_b.triangle(at.b)})) return;
+                if (!intersect(test, a, b, to_a, at)) continue;
+                const index_pair found{tree_a.triangle(at.a), tree_b.triangle(at.b)};
+                if (emit(std::span<const index_pair>(&found, 1))) return;
             } else if (b_is_leaf || (!a_is_leaf && length(tree_a.bounds(at.a)) >= length(at.b_bounds))) {
                 const auto [left, right] = tree_a.children(at.a, a.triangles());
                 push_if_near(a, b, to_a, {right, at.b, at.b_bounds}, side::a);

@@ -4,6 +4,7 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 export module aabb.local_detection:front_walk;
@@ -28,7 +29,7 @@ export namespace aabb {
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class front_walk {
 public:
-    /// Hands each pair of intersecting triangles (a of A, b of B) to `emit`, until that returns true.
+    /// Hands intersecting pairs of triangles (a of A, b of B) to `emit`, some at a time, until that returns true.
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
@@ -86,13 +87,13 @@ private:
         if (front.hit) {
             walk_.counters().add(work::triangle_tests);
             if (test.intersects(a.triangles().triangle(front.hit->a), to_a(b.triangles().triangle(front.hit->b)))) {
-                emit(*front.hit);
+                emit(std::span<const index_pair>(&*front.hit, 1));
                 return;
             }
             front.hit.reset();
         }
-        const auto emit_and_keep = [&](index_pair found) {
-            front.hit = found;
+        const auto emit_and_keep = [&](std::span<const index_pair> found) {
+            front.hit = found.front();
             return emit(found);
         };
         if (outlook.holds) return serve(test, a, b, to_a, front, goal, emit_and_keep);

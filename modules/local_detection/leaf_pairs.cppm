@@ -33,8 +33,9 @@ struct read_leaf {
     triangle_block block;
 };
 
-struct leaf_of_a : read_leaf {
+struct leaf_of_b : read_leaf {
     leaf_slab slab;
+    bool has_slab;
 };
 
 /// Reads the leaves of two trees, those of B in A's frame. A leaf meets many, so that it is kept.
@@ -59,8 +60,8 @@ public:
         one_mesh_ = one_mesh;
     }
 
-    /// Hands over, in order, those pairs of leaves whose triangles may meet: their boxes do, and those of B reach into
-    /// the slab of A's leaf. One test is made of many pairs before the next, so that the processor need not guess,
+    /// Hands over, in order, those pairs of leaves whose triangles may meet: their boxes do, and those of A reach into
+    /// the slab of B's leaf. One test is made of many pairs before the next, so that the processor need not guess,
     /// and writes a list of its own, so that nothing read waits for what was just written.
     /// @param take called with the place of a pair, its leaves and, bit 8 j + i for triangle i of A's leaf and j of
     /// B's, the pairs of triangles; returns whether to stop
@@ -71,10 +72,11 @@ public:
         return each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
             [&](std::span<const found> meeting) {
+                fit_slabs(leaves_b, meeting);
                 std::size_t left = 0;
                 for (const found& f : meeting) {
                     const std::uint64_t which =
-                        f.which & rows(of_a_[leaves_a[f.pair]].slab.reached_by(of_b_[leaves_b[f.pair]].block));
+                        f.which & columns(of_b_[leaves_b[f.pair]].slab.reached_by(of_a_[leaves_a[f.pair]].block));
                     left_[left] = {f.pair, which};
                     left += which != 0;
                 }
@@ -89,14 +91,18 @@ public:
                                      std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                                      Counters& counters, const Take& take) {
         return each_group(
-            a, b, to_a, leaves_a, leaves_b, counters, [&](std::span<const found> meeting) { return meeting; },
+            a, b, to_a, leaves_a, leaves_b, counters,
+            [&](std::span<const found> meeting) {
+                fit_slabs(leaves_b, meeting);
+                return meeting;
+            },
             [&](const found& f) {
-                const leaf_of_a& of_a = of_a_[leaves_a[f.pair]];
-                const read_leaf& of_b = of_b_[leaves_b[f.pair]];
-                leaf_slab slab_of_b;
-                slab_of_b.fit(of_b.block, grid_.edges());
-                const std::uint64_t which = f.which & rows(of_a.slab.reached_by(of_b.block, margin_)) &
-                                            columns(slab_of_b.reached_by(of_a.block, margin_));
+                const read_leaf& of_a = of_a_[leaves_a[f.pair]];
+                const leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+                leaf_slab slab_of_a;
+                slab_of_a.fit(of_a.block, grid_.edges());
+                const std::uint64_t which = f.which & rows(slab_of_a.reached_by(of_b.block, margin_)) &
+                                            columns(of_b.slab.reached_by(of_a.block, margin_));
                 return which != 0 && take(f.pair, which);
             });
     }
@@ -122,7 +128,7 @@ private:
             leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
         };
     }
-    /// Makes their boxes, slab and corners.
+    /// Makes their boxes and corners.
     /// @tparam OfB whether it is the leaf whose boxes the margin widens
     template <bool OfB, class Leaf>
     [[nodiscard]] inline auto box_maker(const model<Tree>& m, const leaf_store<Leaf>& store,
@@ -131,7 +137,7 @@ private:
             auto bounds = leaf.block.bounds();
             if (OfB && margin_ > 0) grow(bounds);
             leaf.boxes.take(grid_, bounds, leaf.block.triangles);
-            if constexpr (requires { leaf.slab; }) leaf.slab.fit(leaf.block, grid_.edges());
+            if constexpr (requires { leaf.slab; }) leaf.has_slab = false;
             if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
         };
     }
@@ -167,8 +173,8 @@ private:
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            reader_.make_a(a, of_a_, block_maker<leaf_of_a>(a), box_maker<false>(a, of_a_, corners_of_a_));
-            reader_.make_b(b, of_b_, block_maker<read_leaf>(b, to_a), box_maker<true>(b, of_b_, corners_of_b_));
+            reader_.make_a(a, of_a_, block_maker<read_leaf>(a), box_maker<false>(a, of_a_, corners_of_a_));
+            reader_.make_b(b, of_b_, block_maker<leaf_of_b>(b, to_a), box_maker<true>(b, of_b_, corners_of_b_));
             const std::size_t next = claim(end);
             for (const found& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
                 if (take(f)) return true;
@@ -185,7 +191,7 @@ private:
                                                      std::size_t end, Counters& counters) {
         std::size_t meeting = 0;
         for (; begin < end; ++begin) {
-            const leaf_of_a& of_a = of_a_[leaves_a[begin]];
+            const read_leaf& of_a = of_a_[leaves_a[begin]];
             const read_leaf& of_b = of_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
             std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
@@ -194,6 +200,21 @@ private:
             meeting += which != 0;
         }
         return std::span(meeting_).first(meeting);
+    }
+
+    /// Makes the slabs that are missing of B's leaves in these pairs: many leaves are read and in none, so that slabs
+    /// wait until boxes have been found to meet. Of B's, since leaves of B are read less often: a node of B is opened
+    /// with many of A, one after the other.
+    inline void fit_slabs(std::span<const std::uint32_t> leaves_b, std::span<const found> meeting) noexcept {
+        std::size_t missing = 0;
+        for (const found& f : meeting) {
+            leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+            without_slab_[missing] = &of_b;
+            missing += !of_b.has_slab;
+            of_b.has_slab = true;
+        }
+        for (leaf_of_b* const of_b : std::span(without_slab_).first(missing))
+            of_b->slab.fit(of_b->block, grid_.edges());
     }
 
     /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where
@@ -227,11 +248,12 @@ private:
     bool one_mesh_ = false;
     bool only_boxes_that_meet_ = false;
     float margin_ = 0;
-    leaf_store<leaf_of_a> of_a_;
-    leaf_store<read_leaf> of_b_;
+    leaf_store<read_leaf> of_a_;
+    leaf_store<leaf_of_b> of_b_;
     std::vector<corner_numbers> corners_of_a_;  // of one mesh only, at the places of the leaves
     std::vector<corner_numbers> corners_of_b_;
     std::array<found, most_claims + 1> meeting_{};
+    std::array<leaf_of_b*, most_claims + 1> without_slab_{};
     std::array<found, most_claims + 1> left_{};
     leaf_reader<Tree> reader_;
 };

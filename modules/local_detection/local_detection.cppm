@@ -3,6 +3,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -84,8 +85,8 @@ public:
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_whole(pairs, [&] {
-            between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](index_pair found) {
-                pairs.push_back(found);
+            between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> found) {
+                pairs.insert(pairs.end(), found.begin(), found.end());
                 return false;
             });
         });
@@ -95,8 +96,8 @@ public:
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
-        between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](index_pair) {
-            ++count;
+        between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> found) {
+            count += found.size();
             return false;
         });
         return count;
@@ -106,8 +107,8 @@ public:
     [[nodiscard]] std::optional<index_pair> first_pair(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                                        const pose& pose_b) {
         std::optional<index_pair> first;
-        between(a, pose_a, b, pose_b, walk_goal::first_pair, [&](index_pair found) {
-            first = found;
+        between(a, pose_a, b, pose_b, walk_goal::first_pair, [&](std::span<const index_pair> found) {
+            first = found.front();
             return true;
         });
         return first;
@@ -116,8 +117,8 @@ public:
     /// Appends every pair of intersecting triangles a < b of one mesh, neighbours that share a vertex included.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
         append_whole(pairs, [&] {
-            walk_.within(triangle_, m, [&](index_pair found) {
-                pairs.push_back(ordered_pair(found.a, found.b));
+            walk_.within(triangle_, m, [&](std::span<const index_pair> found) {
+                for (const index_pair p : found) pairs.push_back(ordered_pair(p.a, p.b));
                 return false;
             });
         });

@@ -48,10 +48,12 @@ public:
         pairs_ += count;
     }
 
-    /// Hands every pair that intersects to `emit(leaf_a, i, leaf_b, j)`, until that returns true.
+    /// Hands the pairs that intersect to `emit`, all at once.
     /// @param all or only as many as whole vectors hold
-    template <class Emit>
-    [[nodiscard]] bool decide(const Triangle& test, bool all, Emit emit) {
+    /// @param triangles_at which triangles of the meshes stand at places of two leaves, as `(leaf_a, i, leaf_b, j)`
+    /// @returns what `emit` returned: whether to stop
+    template <class TrianglesAt, class Emit>
+    [[nodiscard]] bool decide(const Triangle& test, bool all, const TrianglesAt& triangles_at, const Emit& emit) {
         std::size_t done = 0;
         std::size_t found = 0;
         for (; done + simd::width <= pairs_ || (all && done < pairs_); done += simd::width) {
@@ -64,12 +66,13 @@ public:
             }
             found += simd::store_where(&found_[found], simd::load(&origin_[done]), hits);
         }
-        for (const std::uint32_t origin : std::span(found_).first(found)) {
+        for (std::size_t i = 0; i < found; ++i) {
+            const std::uint32_t origin = found_[i];
             const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
-            if (emit(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U)) return true;
+            named_[i] = triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
         }
         keep_from(std::min(done, pairs_));
-        return false;
+        return found != 0 && emit(std::span<const index_pair>(named_).first(found));
     }
 
 private:
@@ -114,6 +117,7 @@ private:
     std::array<std::uint32_t, capacity + triangle_block::width> origin_{};  // place among leaf pairs, then 8 j + i
     std::array<std::array<std::uint32_t, 2>, capacity> leaves_{};
     std::array<std::uint32_t, capacity + simd::width> found_{};  // origins of those that intersect
+    std::array<index_pair, capacity> named_{};                   // the same, as triangles of the meshes
 };
 
 }  // namespace aabb

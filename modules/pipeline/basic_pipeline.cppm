@@ -115,7 +115,8 @@ public:
                 const std::size_t before = contacts_.size();
                 contacts_.resize(before + triangle_pairs_.size());
                 contact* to = contacts_.data() + before;
-                for (const index_pair found : triangle_pairs_) *to++ = contact_of(i, found);
+                const index_pair objects = candidates_[i];
+                for (const index_pair found : triangle_pairs_) *to++ = contact_of(objects, a, b, found);
             }
         });
     }
@@ -127,7 +128,7 @@ public:
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             const auto [a, b] = models_of(i);
             if (const auto found = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b]))
-                return contact_of(i, *found);
+                return contact_of(candidates_[i], a, b, *found);
         }
         return std::nullopt;
     }
@@ -276,15 +277,12 @@ private:
         return {scene_.mesh_of[candidates_[candidate].a], scene_.mesh_of[candidates_[candidate].b]};
     }
     /// @param triangles of the two models
-    [[nodiscard]] contact contact_of(std::size_t candidate, index_pair triangles) const noexcept {
-        const auto [a, b] = candidates_[candidate];
+    [[nodiscard]] inline contact contact_of(index_pair objects, std::uint32_t model_a, std::uint32_t model_b,
+                                            index_pair triangles) const noexcept {
         if constexpr (may_divide)
-            if (divided_) {
-                const model_pair models = models_of(candidate);
-                return {a, b, divided_->triangle_of(models.a, triangles.a),
-                        divided_->triangle_of(models.b, triangles.b)};
-            }
-        return {a, b, triangles.a, triangles.b};
+            if (divided_)
+                triangles = {divided_->triangle_of(model_a, triangles.a), divided_->triangle_of(model_b, triangles.b)};
+        return {objects.a, objects.b, triangles.a, triangles.b};
     }
 
     const mesh_scene& scene_;
@@ -298,7 +296,7 @@ private:
     // By candidate, where meshes are divided.
     [[no_unique_address]] std::conditional_t<may_divide, std::vector<index_pair>, detail::no_pieces> pieces_;
     std::vector<index_pair> triangle_pairs_;
-    std::vector<contact> contacts_;
+    large_vector<contact> contacts_;
     frame_state frame_;
     bool searched_ = false;
 };
