@@ -78,6 +78,7 @@ player::player(const contender& who, const scene_play& scene, aabb::instrumentat
     : player(stages{who.make_global(counted), scene.meshes() ? who.make_local(counted) : nullptr}, scene) {}
 
 player::player(stages made, const scene_play& scene) : scene_(scene), made_(std::move(made)) {
+    if (made_.global) made_.global->expect(scene.frames());
     if (!scene.meshes()) return;
     if (made_.global)
         pipeline_.emplace(*scene.meshes(), *made_.global, *made_.local);

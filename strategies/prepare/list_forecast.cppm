@@ -21,8 +21,9 @@ export namespace aabb {
 /// How many pairs a list of neighbours will hold, as far as a few boxes tell, and what earlier lists held.
 class list_forecast {
 public:
-    [[nodiscard]] list_outlook outlook(std::span<const double> motion, std::size_t boxes, std::size_t pairs) const {
-        return {motion, boxes, pairs, growth_, correction_};
+    [[nodiscard]] list_outlook outlook(std::span<const double> motion, std::size_t boxes, std::size_t pairs,
+                                       const list_horizon& horizon) const {
+        return {motion, boxes, pairs, growth_, correction_, horizon};
     }
 
     void look_anew(std::span<const box> boxes, const membership& objects) {

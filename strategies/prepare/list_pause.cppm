@@ -26,6 +26,8 @@ public:
         left_ = std::max(next_, rest(boxes)) + glimpse::longest;
         next_ = std::min(2 * next_, longest);
     }
+    /// A few boxes are looked at from this frame on.
+    void begin_with_look() noexcept { left_ = glimpse::longest + 1; }
     /// A list is kept: the next pause is short again.
     void shorten() noexcept { next_ = shortest; }
 
@@ -34,12 +36,13 @@ public:
     /// @param worth what a list must cost less than, over a search in every frame, to end the pause
     /// @returns whether all eight were in vain; others are looked at next
     bool pass(std::span<const box> boxes, const membership& objects, std::size_t found, list_forecast& forecast,
-              double worth) {
+              const list_horizon& horizon, double worth) {
         --left_;
         const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
-            const list_plan plan = plan_list(
-                forecast.outlook(glimpse_.least_motion(boxes, objects, age), objects.size(), found), worth, worth);
+            const list_plan plan =
+                plan_list(forecast.outlook(glimpse_.least_motion(boxes, objects, age), objects.size(), found, horizon),
+                          worth, worth);
             if (plan.frames > 1) {
                 left_ = 0;
                 return false;

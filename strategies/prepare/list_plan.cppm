@@ -58,6 +58,13 @@ private:
     double longest_margin_ = 0;
 };
 
+/// What limits the next list, whatever the boxes do.
+struct list_horizon {
+    /// That are expected, the list's own included: it serves no longer.
+    std::size_t frames_left = std::numeric_limits<std::size_t>::max();
+    bool in_new_memory = false;  ///< no list was made before, or its memory was released
+};
+
 /// What is known of a scene when the next list of neighbours is planned.
 struct list_outlook {
     /// By how much boxes moved relative to each other since they were kept, at most until that frame, frame by frame;
@@ -67,6 +74,7 @@ struct list_outlook {
     std::size_t pairs = 0;  ///< that overlap
     growth_of_pairs growth;
     double correction = 1;  ///< pairs that the last list held beside those that overlapped, over what was reckoned
+    list_horizon horizon;
 };
 
 /// The cheapest list: for how many frames it is to serve, its own included, and the margin by which boxes are grown for
@@ -128,10 +136,21 @@ inline constexpr double worth_another_list = 0.95;
 [[nodiscard]] inline double cost_of_service(double boxes, double listed, const cost_model& cost) {
     return boxes * cost.watch_box + listed * cost.test_pair;
 }
+/// What it costs to make a list.
+[[nodiscard]] inline double cost_of_making(double boxes, double listed, const cost_model& cost) {
+    return boxes * cost.keep_box + cost_of_search(boxes, listed, cost);
+}
 /// The mean of as many frames, in the first of which the list is made.
 [[nodiscard]] inline double cost_of_list(double boxes, double listed, std::size_t frames, const cost_model& cost) {
-    const double made = boxes * cost.keep_box + cost_of_search(boxes, listed, cost);
-    return made / static_cast<double>(frames) + cost_of_service(boxes, listed, cost);
+    return cost_of_making(boxes, listed, cost) / static_cast<double>(frames) + cost_of_service(boxes, listed, cost);
+}
+/// What a frame costs more, over all that are left, where the list is made in new memory: pages that are touched for
+/// the first time make it take about four times as long as later ones, which reuse them.
+[[nodiscard]] inline double cost_of_new_memory(double boxes, double listed, const list_horizon& horizon,
+                                               const cost_model& cost) {
+    constexpr double times_as_long = 4;
+    if (!horizon.in_new_memory) return 0;
+    return (times_as_long - 1) * cost_of_making(boxes, listed, cost) / static_cast<double>(horizon.frames_left);
 }
 
 /// Whether a frame that a list of so many pairs serves costs less than one that is searched.
@@ -166,15 +185,19 @@ inline constexpr double worth_another_list = 0.95;
                                                     24, 32, 40, 48, 64, 96, 128, 192, 256};
     const auto n = static_cast<double>(seen.boxes);
     list_plan best;
-    if (seen.motion.empty()) return best;
+    const std::size_t frames_left = seen.horizon.frames_left;
+    if (seen.motion.empty() || frames_left < 2) return best;
     const double search = cost_of_search(n, pairs_listed(seen, 0), cost);
-    for (const std::size_t frames : lifetimes) {
+    for (const std::size_t lifetime : lifetimes) {
+        const std::size_t frames = std::min(lifetime, frames_left);
         const double margin = margin_after(seen.motion, frames - 1);
         if (!(margin <= seen.growth.longest_margin())) break;
         const double listed = pairs_listed(seen, margin);
         if (cost_of_service(n, listed, cost) / search >= std::min(best.cost, most)) break;
-        const double each = cost_of_list(n, listed, frames, cost) / search;
+        const double each =
+            (cost_of_list(n, listed, frames, cost) + cost_of_new_memory(n, listed, seen.horizon, cost)) / search;
         if (each < best.cost) best = {frames, margin, each};
+        if (frames == frames_left) break;
     }
     if (best.cost >= worth) best.frames = 1;
     return best;

@@ -6,6 +6,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,6 +46,7 @@ public:
                          instrumentation counted)
         : search_(std::move(search)), config_(config), counted_(counted) {}
 
+    void expect(std::size_t frames) override { expected_ = frames; }
     void insert(std::uint32_t id) override {
         objects_.insert(id);
         frame_.change([&] { search_->insert(id); });
@@ -96,7 +98,14 @@ private:
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
         return list_forecast::is_far_too_long(forecast_.reach(boxes, objects_, margin), objects_.size(), found_);
     }
-    [[nodiscard]] list_outlook outlook() const { return forecast_.outlook(motion_, objects_.size(), found_); }
+    [[nodiscard]] list_outlook outlook() const {
+        return forecast_.outlook(motion_, objects_.size(), found_, horizon());
+    }
+    [[nodiscard]] list_horizon horizon() const noexcept {
+        const bool goes_on = frames_ >= expected_;
+        return {.frames_left = goes_on ? std::numeric_limits<std::size_t>::max() : expected_ - frames_,
+                .in_new_memory = grown_.capacity() == 0};
+    }
     void search_as_it_is(std::span<const box> boxes);
     void keep(std::span<const box> boxes, wanted_list next);
     void judge_first_list();
@@ -113,6 +122,9 @@ private:
     static constexpr std::uint32_t longest_watch = 8;
     /// A list that costs so many times what a search does is not waited for.
     static constexpr double hopeless = 3;
+    /// Of fewer frames in all, the first one gets no list: how boxes move is not known, and a list that is made in new
+    /// memory takes as long as searching several frames.
+    static constexpr std::size_t fewest_frames_of_first_list = 64;
     /// Fewer are searched in the time that it takes to watch them.
     static constexpr std::size_t fewest_boxes_of_list = 2 * simd::width + 1;
     /// Of fewer boxes any list is short.
@@ -174,6 +186,8 @@ private:
     bool watches_ = false;       // how far boxes are from those that are kept, without a list
     bool watches_long_ = false;  // before anything is planned
     list_pause pause_;
+    std::size_t frames_ = 0;  // before this one
+    std::size_t expected_ = std::numeric_limits<std::size_t>::max();
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
@@ -188,6 +202,11 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     if (leaves_any && is_kept_)
         list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
     if (adapts() && objects_.size() < fewest_boxes_of_list) {
+        search_as_it_is(boxes);
+    } else if (adapts() && frames_ == 0 && expected_ < fewest_frames_of_first_list) {
+        is_first_ = false;
+        pause_.begin_with_look();
+        pass_over(boxes);
         search_as_it_is(boxes);
     } else if (pause_.lasts()) {
         pass_over(boxes);
@@ -210,6 +229,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
             search_as_it_is(boxes);
         }
     }
+    ++frames_;
     frame_.taken();
 }
 
@@ -333,7 +353,7 @@ auto neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects
 }
 
 void neighbour_list_stage::pass_over(std::span<const box> boxes) {
-    if (!pause_.pass(boxes, objects_, found_, forecast_, trust() * worth_a_list)) return;
+    if (!pause_.pass(boxes, objects_, found_, forecast_, horizon(), trust() * worth_a_list)) return;
     release(kept_);
     release(grown_);
     list_.release();

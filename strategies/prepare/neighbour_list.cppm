@@ -23,10 +23,12 @@ export namespace aabb {
 /// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one,
 /// or that of the last one where this costs about as little, and more where that lists next to no more. Of the first
 /// one nothing is known yet: it gets a tenth of the mean extent, and three where boxes lie further apart. Where no list
-/// pays, frames are searched as they are, and boxes watched in some of them. Where boxes move by far less than was
-/// thought, the list becomes the one that a smaller margin would have made, once that pays; where they swing about
-/// their places by more, the next one is about where they were when the last one was made. What a search costs is
-/// reckoned as that of `columns`: before a slower one, lists are given up sooner than they need to be.
+/// pays, frames are searched as they are, and boxes watched in some of them. Where few frames are expected
+/// (`global_stage::expect`), no list is made before some of the boxes have shown that it repays its making in those
+/// that are left. Where boxes move by far less than was thought, the list becomes the one that a smaller margin would
+/// have made, once that pays; where they swing about their places by more, the next one is about where they were when
+/// the last one was made. What a search costs is reckoned as that of `columns`: before a slower one, lists are given up
+/// sooner than they need to be.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
 /// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where

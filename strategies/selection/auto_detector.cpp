@@ -82,7 +82,9 @@ auto_detector::auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t
 
 auto_detector::auto_detector(const named_strategies& named, const scene_outlook& scene)
     : selected_(select_strategies(named, scene)),
-      global_(compose_global_search(composed_of(selected_), instrumentation::none)) {}
+      global_(compose_global_search(composed_of(selected_), instrumentation::none)) {
+    global_->expect(scene.frames);
+}
 
 auto_detector::~auto_detector() = default;
 

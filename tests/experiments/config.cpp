@@ -284,7 +284,7 @@ TEST_CASE("The configs of the repository are good, in both sizes") {
         "peers/ten_million.toml", "peers/threads.toml", "peers/meshes.toml", "peers/meshes_ordered.toml",
         "peers/meshes_kept.toml", "peers/meshes_cold.toml", "peers/meshes_counted.toml", "peers/first_pair.toml",
         "peers/builds.toml", "peers/slivers.toml", "auto/change.toml", "auto/regret.toml", "auto/regret_meshes.toml",
-        "auto/regret_small.toml", "auto/regret_unseen.toml");
+        "auto/regret_short.toml", "auto/regret_small.toml", "auto/regret_unseen.toml");
     for (const experiment_size size : {experiment_size::full, experiment_size::quick})
         REQUIRE_NOTHROW(aabblab::read_experiment(std::string(AABBLAB_CONFIGS) + "/" + config, size));
     // In full they make twenty million triangles.

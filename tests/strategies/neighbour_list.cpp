@@ -472,6 +472,8 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
         const auto n = *rc::gen::inRange<std::uint32_t>(40, 140);
         const auto stage = global_of(composed({{strategy_kind::prepare, "neighbour_list"}}), instrumentation::none);
         const auto exact = global_of({}, instrumentation::none);
+        // Told too few or too many, or nothing.
+        if (const auto frames = *rc::gen::inRange<std::size_t>(0, 120); frames > 0) stage->expect(frames);
         std::vector<bool> present(n);
         const auto change = [&](std::uint32_t id) {
             for (global_stage* one : {stage.get(), exact.get()}) present[id] ? one->remove(id) : one->insert(id);
@@ -580,7 +582,7 @@ TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") 
             for (int frames = 1;; ++frames) {
                 for (std::uint32_t id = 0; id < n; ++id)
                     boxes[id] = cube(boxes[id].min[0] + (id % 2 == 0 ? 50.0F : -50.0F));
-                if (pause.pass(boxes, objects, 0, forecast, worth_a_list)) return frames;
+                if (pause.pass(boxes, objects, 0, forecast, {}, worth_a_list)) return frames;
                 REQUIRE(pause.lasts());
             }
         };
@@ -1011,4 +1013,46 @@ TEST_CASE("the margin goes on as the last doublings of time did") {
     CHECK(margin_after(std::vector<double>{3.0}, 4) == Catch::Approx(12 * 1.05));
     const std::vector<double> speeding_up{1, 4, 9, 16, 25};
     CHECK(margin_after(speeding_up, 2) == Catch::Approx((25 - 9) * 1.05));
+}
+
+TEST_CASE("of few frames no list is made before boxes have shown that it repays its making") {
+    constexpr std::size_t n = 1000;
+    std::uint64_t random = 1;
+    const std::vector<vec3f> homes = scattered(n, 6, random);
+    const std::vector<vec3f> ways = scattered(n, 1, random);
+    // The first frame that a list serves, of boxes that move at that pace; `frames` where none does.
+    const auto first_list = [&](std::size_t expected, float pace) {
+        const auto stage = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), n);
+        stage->expect(expected);
+        for (std::size_t frame = 0; frame < expected; ++frame) {
+            const std::vector<box> boxes = cubes_on_their_ways(homes, ways, pace * static_cast<float>(frame));
+            REQUIRE(pairs_of(*stage, boxes) == overlapping(boxes));
+            if (margin_of(*stage) > 0) return frame;
+        }
+        return expected;
+    };
+    CHECK(first_list(200, 0.001F) == 0);
+    CHECK(first_list(60, 0.001F) > 0);
+    CHECK(first_list(60, 0.001F) < 4);
+    CHECK(first_list(60, 1) == 60);
+    CHECK(first_list(6, 0.001F) == 6);
+}
+
+TEST_CASE("no list is planned for more frames than are left, and new memory is to be repaid in them") {
+    std::array<box, 16> some;
+    for (std::size_t i = 0; i < some.size(); ++i) some[i] = cube(3 * static_cast<float>(i));
+    const std::vector<double> motion{0.001};
+    const auto planned = [&](const list_horizon& horizon) {
+        return plan_list({motion, 1000, 100, growth_of_pairs(some), 1, horizon});
+    };
+    const list_plan without_end = planned({});
+    REQUIRE(without_end.frames > 20);
+    CHECK(planned({.frames_left = 1}).frames == 1);
+    for (const std::size_t left : {7, 20}) {
+        CHECK(planned({.frames_left = left}).frames == left);
+        CHECK(planned({.frames_left = left}).cost > without_end.cost);
+        CHECK(planned({.frames_left = left, .in_new_memory = true}).cost > planned({.frames_left = left}).cost);
+    }
+    CHECK(planned({.frames_left = 5, .in_new_memory = true}).frames == 1);
+    CHECK(planned({.in_new_memory = true}).cost == without_end.cost);
 }
