@@ -49,10 +49,13 @@ std::vector<std::string> mesh_endings() {
 std::string mesh_report::text() const {
     std::string all;
     const auto say = [&](const std::string& sentence) { all += (all.empty() ? "" : ", ") + sentence; };
-    if (polygons) say(counted(polygons, "polygon", "polygons") + " fanned");
+    if (polygons > concave) say(counted(polygons - concave, "polygon", "polygons") + " fanned");
+    if (concave) say(counted(concave, "concave polygon", "concave polygons") + " cut by ears");
     if (zero_area) say(counted(zero_area, "triangle", "triangles") + " of zero area kept");
     if (rounded) say(counted(rounded, "coordinate", "coordinates") + " rounded to float");
     if (dropped) say(counted(dropped, "face", "faces") + " of fewer than three corners dropped");
+    if (animations) say(counted(animations, "animation", "animations") + " ignored");
+    if (hidden_meshes) say(counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
     return all;
 }
 

@@ -5,6 +5,7 @@ module;
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 /// A mesh as its file brings it: vertices, faces of any number of corners, and what became of them.
 module aabblab.files:mesh_builder;
@@ -12,6 +13,7 @@ module aabblab.files:mesh_builder;
 import aabb.base;
 import aabb.geometry;
 import :loaded_mesh;
+import :polygon;
 
 namespace aabblab {
 
@@ -25,8 +27,9 @@ public:
     void add_vertex(const aabb::vec3f& p) { loaded_.mesh.vertices.push_back(p); }
     [[nodiscard]] std::size_t vertices() const noexcept { return loaded_.mesh.vertices.size(); }
 
-    /// A polygon is fanned from its first corner; fewer than three corners are dropped.
-    /// @param place where it stands in the file, for the error about a corner that is no vertex: a line or a face.
+    /// A polygon becomes triangles when the mesh is finished, as vertices may come later; fewer than three corners are
+    /// dropped.
+    /// @param place where it stands in the file, for errors: a line or a face
     void add_face(std::span<const std::uint32_t> corners, std::size_t place) {
         for (const std::uint32_t corner : corners)
             if (corner >= greatest_) {
@@ -34,16 +37,21 @@ public:
                 greatest_at_ = place;
             }
         if (corners.size() < 3) return drop();
-        loaded_.report.polygons += corners.size() > 3;
+        if (corners.size() > 3) polygons_.push_back({loaded_.mesh.triangles.size(), corners.size(), place});
         for (std::size_t i = 2; i < corners.size(); ++i)
             loaded_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
     }
     void drop() { ++loaded_.report.dropped; }
+    /// What of a scene is not read: it is taken as it stands, and only what it shows.
+    void ignore(std::size_t animations, std::size_t hidden_meshes) {
+        loaded_.report.animations = animations;
+        loaded_.report.hidden_meshes = hidden_meshes;
+    }
 
     /// The mesh, checked.
     /// @param before "FILE:" or "FILE: face ", what the place of a face is appended to
     /// @param first the number of the first vertex in this format: 0 or 1
-    /// @throws aabb::input_error on no triangles or a corner that is no vertex.
+    /// @throws aabb::input_error on no triangles, a corner that is no vertex, or a polygon that bounds no surface.
     [[nodiscard]] loaded_mesh finish(std::size_t rounded, std::string_view before, std::size_t first) {
         aabb::mesh& m = loaded_.mesh;
         if (greatest_ > m.vertices.size())
@@ -56,6 +64,7 @@ public:
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(file_ + ": " + error.what());
         }
+        cut_polygons(before);
         m.vertices.shrink_to_fit();
         m.triangles.shrink_to_fit();
         loaded_.report.rounded = rounded;
@@ -64,9 +73,33 @@ public:
     }
 
 private:
+    struct polygon {
+        std::size_t first;  // triangle of its fan
+        std::size_t corners;
+        std::size_t place;
+    };
+
+    void cut_polygons(std::string_view before) {
+        polygon_cutter cutter;
+        for (const polygon& p : polygons_) {
+            const polygon_shape shape =
+                cutter.cut(loaded_.mesh.vertices, std::span(loaded_.mesh.triangles).subspan(p.first, p.corners - 2));
+            const auto fail = [&](const std::string& sentence) {
+                throw aabb::input_error(std::string(before) + std::to_string(p.place) + ": the boundary of a face of " +
+                                        std::to_string(p.corners) + " corners " + sentence);
+            };
+            if (shape == polygon_shape::no_normal)
+                fail("has no normal, as it encloses no area or as much in either direction");
+            if (shape == polygon_shape::crosses_itself) fail("crosses itself");
+            loaded_.report.concave += static_cast<std::size_t>(shape == polygon_shape::concave);
+        }
+        loaded_.report.polygons = polygons_.size();
+    }
+
     std::string file_;
     loaded_mesh loaded_;
-    std::size_t greatest_ = 0;  // one more than the greatest corner so far
+    std::vector<polygon> polygons_;  // of more than three corners
+    std::size_t greatest_ = 0;       // one more than the greatest corner so far
     std::size_t greatest_at_ = 0;
 };
 

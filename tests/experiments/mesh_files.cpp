@@ -144,20 +144,20 @@ TEST_CASE("glTF: nodes place their meshes, points are dropped") {
     REQUIRE(loaded.report.dropped == 4);
 }
 
-TEST_CASE("polygons are fanned in file order, and everything done to a mesh is counted") {
+TEST_CASE("triangles of polygons stand in file order, and everything done to a mesh is counted") {
     const aabblab::loaded_mesh loaded = read("a.off",
                                              "OFF\n6 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.1 0 0\n16777217 0 0\n"
                                              "4 0 1 2 3\n5 0 1 2 3 4\n3 0 1 5\n2 0 1\n3 2 2 1\n");
     REQUIRE(loaded.mesh.triangles ==
-            triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 1, 5}, {2, 2, 1}});
+            triangles{{0, 1, 2}, {0, 2, 3}, {4, 0, 1}, {3, 4, 1}, {1, 2, 3}, {0, 1, 5}, {2, 2, 1}});
     REQUIRE(loaded.report.polygons == 2);
-    REQUIRE(loaded.report.zero_area == 2);
+    REQUIRE(loaded.report.concave == 1);
+    REQUIRE(loaded.report.zero_area == 3);
     REQUIRE(loaded.report.rounded == 2);
     REQUIRE(loaded.report.dropped == 1);
-    REQUIRE(
-        loaded.report.text() ==
-        "2 polygons fanned, 2 triangles of zero area kept, 2 coordinates rounded to float, 1 face of fewer than three "
-        "corners dropped");
+    REQUIRE(loaded.report.text() ==
+            "1 polygon fanned, 1 concave polygon cut by ears, 3 triangles of zero area kept, 2 coordinates rounded to "
+            "float, 1 face of fewer than three corners dropped");
 }
 
 TEST_CASE("zero area is decided exactly") {

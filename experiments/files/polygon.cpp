@@ -1,0 +1,303 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+module aabblab.files;
+
+import aabb.geometry;
+import :polygon;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+namespace aabblab {
+
+namespace {
+
+using aabb::vec3d;
+
+int sign_of(double x) noexcept {
+    return static_cast<int>(x > 0) - static_cast<int>(x < 0);
+}
+
+/// Where the least rotation of a cycle begins (Shiloach, "Fast canonization of circular strings", 1981).
+template <class Key>
+std::size_t least_rotation(std::size_t count, Key key) {
+    std::size_t i = 0;
+    std::size_t j = 1;
+    std::size_t equal = 0;
+    while (i < count && j < count && equal < count) {
+        const auto a = key((i + equal) % count);
+        const auto b = key((j + equal) % count);
+        if (a == b) {
+            ++equal;
+            continue;
+        }
+        (a < b ? j : i) += equal + 1;
+        j += static_cast<std::size_t>(i == j);
+        equal = 0;
+    }
+    return std::min(i, j);
+}
+
+}  // namespace
+
+void exact_sum::add(double x) {
+    std::size_t kept = 0;
+    for (const double part : parts_) {
+        const double sum = x + part;
+        const double of_part = sum - x;
+        const double rest = (x - (sum - of_part)) + (part - of_part);
+        if (rest != 0) parts_[kept++] = rest;
+        x = sum;
+    }
+    parts_.resize(kept);
+    if (x != 0) parts_.push_back(x);
+}
+
+int exact_sum::sign() const noexcept {
+    return parts_.empty() ? 0 : sign_of(parts_.back());
+}
+
+void exact_sum::set_difference_of_magnitudes(const exact_sum& a, const exact_sum& b) {
+    parts_.clear();
+    for (const double part : a.parts_) add(a.sign() * part);
+    for (const double part : b.parts_) add(-b.sign() * part);
+}
+
+polygon_shape polygon_cutter::cut(std::span<const aabb::vec3f> vertices,
+                                  std::span<std::array<std::uint32_t, 3>> triangles) {
+    corners_.clear();
+    const auto add = [&](std::uint32_t vertex) {
+        const aabb::vec3f& p = vertices[vertex];
+        corners_.push_back({.p = {p[0], p[1], p[2]}, .vertex = vertex});
+    };
+    add(triangles.front()[0]);
+    add(triangles.front()[1]);
+    for (const auto& triangle : triangles) add(triangle[2]);
+
+    if (distinct_corners() < 4) return polygon_shape::convex;
+    const int way = project();
+    if (way == 0) return polygon_shape::no_normal;
+    if (is_convex(way)) return polygon_shape::convex;
+    if (way < 0) std::ranges::reverse(corners_);
+    begin_at_least_corner();
+    if (!cut_ears(triangles)) return polygon_shape::crosses_itself;
+    if (way < 0)
+        for (auto& [a, b, c] : triangles) std::swap(a, c);
+    return polygon_shape::concave;
+}
+
+std::size_t polygon_cutter::distinct_corners() const noexcept {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+        count += static_cast<std::size_t>(corners_[i].p != corners_[i > 0 ? i - 1 : corners_.size() - 1].p);
+    return count;
+}
+
+int polygon_cutter::project() {
+    // A product of two floats is a double exactly.
+    for (exact_sum& component : normal_) component.clear();
+    const vec3d* p = &corners_.back().p;
+    for (const corner& c : corners_) {
+        const vec3d& q = c.p;
+        for (int k = 0; k < 3; ++k) {
+            const int x = (k + 1) % 3;
+            const int y = (k + 2) % 3;
+            normal_[static_cast<std::size_t>(k)].add((*p)[x] * q[y]);
+            normal_[static_cast<std::size_t>(k)].add(-(*p)[y] * q[x]);
+        }
+        p = &q;
+    }
+    std::size_t dominant = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+        difference_.set_difference_of_magnitudes(normal_[k], normal_[dominant]);
+        if (difference_.sign() > 0) dominant = k;
+    }
+    axis_ = static_cast<int>(dominant);
+    return normal_[dominant].sign();
+}
+
+bool polygon_cutter::is_convex(int way) const noexcept {
+    // Edges of no length do not count.
+    const auto stands = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
+    const std::size_t n = corners_.size();
+    std::size_t last = n - 1;
+    while (stands(corners_[last].p, corners_[0].p)) --last;
+    const vec3d* a = &corners_[last].p;
+    const vec3d* b = &corners_[0].p;
+    std::size_t returns = 0;
+    for (std::size_t i = 1; i <= n; ++i) {
+        const vec3d& c = corners_[i % n].p;
+        if (stands(*b, c)) continue;
+        const int turned = turn(*a, *b, c);
+        const bool is_return = precedes(*a, *b) != precedes(*b, c);
+        if (turned == -way || (turned == 0 && is_return)) return false;
+        returns += static_cast<std::size_t>(is_return);
+        a = b;
+        b = &c;
+    }
+    return returns == 2;  // it goes around once
+}
+
+void polygon_cutter::begin_at_least_corner() {
+    const std::size_t first = least_rotation(corners_.size(), [&](std::size_t i) {
+        const corner& c = corners_[i];
+        return std::tuple(c.p[0], c.p[1], c.p[2], c.vertex);
+    });
+    std::ranges::rotate(corners_, corners_.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const noexcept {
+    const int x = (axis_ + 1) % 3;
+    const int y = (axis_ + 2) % 3;
+    const double left = (b[x] - a[x]) * (c[y] - a[y]);
+    const double right = (b[y] - a[y]) * (c[x] - a[x]);
+    // Shewchuk's bound; nothing overflows or underflows where coordinates are floats.
+    constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
+    const double error = (3 + 16 * unit) * unit * (std::abs(left) + std::abs(right));
+    const double turned = left - right;
+    return std::abs(turned) > error || error == 0 ? sign_of(turned) : aabb::exact_turn(a, b, c, axis_);
+}
+
+bool polygon_cutter::precedes(const vec3d& a, const vec3d& b) const noexcept {
+    const int x = (axis_ + 1) % 3;
+    const int y = (axis_ + 2) % 3;
+    return a[x] < b[x] || (a[x] == b[x] && a[y] < b[y]);
+}
+
+void polygon_cutter::link() noexcept {
+    const auto n = static_cast<std::uint32_t>(corners_.size());
+    for (std::uint32_t i = 0; i < n; ++i) {
+        corners_[i].before = i > 0 ? i - 1 : n - 1;
+        corners_[i].next = i + 1 < n ? i + 1 : 0;
+    }
+}
+
+int polygon_cutter::turn_at(const corner& b) const noexcept {
+    return turn(corners_[b.before].p, b.p, corners_[b.next].p);
+}
+
+bool polygon_cutter::is_needle(const corner& b) const noexcept {
+    const vec3d& a = corners_[b.before].p;
+    const vec3d& c = corners_[b.next].p;
+    const bool goes_on = (precedes(a, b.p) && precedes(b.p, c)) || (precedes(c, b.p) && precedes(b.p, a));
+    return !goes_on && turn(a, b.p, c) == 0;
+}
+
+polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
+    const int x = (axis_ + 1) % 3;
+    const int y = (axis_ + 2) % 3;
+    const vec3d& t0 = corners_[b.before].p;
+    const vec3d& t1 = b.p;
+    const vec3d& t2 = corners_[b.next].p;
+    const auto [low_x, high_x] = std::minmax({t0[x], t1[x], t2[x]});
+    const auto [low_y, high_y] = std::minmax({t0[y], t1[y], t2[y]});
+
+    const auto reaches_into = [&](const vec3d& p, const vec3d& q) {
+        const auto is_beyond = [&](const vec3d& s, const vec3d& t) { return turn(s, t, p) <= 0 && turn(s, t, q) <= 0; };
+        if (is_beyond(t0, t1) || is_beyond(t1, t2) || is_beyond(t2, t0)) return false;
+        const std::array<int, 3> sides = {turn(p, q, t0), turn(p, q, t1), turn(p, q, t2)};
+        return std::ranges::min(sides) < 0 && std::ranges::max(sides) > 0;
+    };
+    // Beside t1, in the triangle along the edge to t0, the edges below are counted, by their directions.
+    const bool is_right_of_corner = precedes(t1, t0);
+    int winding = 0;
+    const auto count_below = [&](const vec3d& p, const vec3d& q) {
+        const bool is_forward = precedes(p, q);
+        const vec3d& low = is_forward ? p : q;
+        const vec3d& high = is_forward ? q : p;
+        if (is_right_of_corner ? precedes(t1, low) || !precedes(t1, high) : !precedes(low, t1) || precedes(high, t1))
+            return;
+        int side = turn(low, high, t1);
+        if (side == 0) side = turn(low, high, t0);
+        if (side == 0) side = turn(low, high, t2);
+        if (side > 0) winding += is_forward ? 1 : -1;
+    };
+
+    const auto touches = [&](const vec3d& p) {
+        return turn(t0, t1, p) >= 0 && turn(t1, t2, p) >= 0 && turn(t2, t0, p) >= 0 && p != t0 && p != t1 && p != t2;
+    };
+
+    count_below(t0, t1);
+    count_below(t1, t2);
+    ear kind = ear::clear;
+    const vec3d* p = &t2;
+    for (std::uint32_t i = b.next; i != b.before;) {
+        i = corners_[i].next;
+        const vec3d* q = &corners_[i].p;
+        const vec3d& from = *std::exchange(p, q);
+        // Most edges lie to the left, to the right or above.
+        if (std::max(from[x], (*q)[x]) < low_x || std::min(from[x], (*q)[x]) > high_x ||
+            std::min(from[y], (*q)[y]) > high_y)
+            continue;
+        if (std::max(from[y], (*q)[y]) >= low_y) {
+            if (reaches_into(from, *q)) return ear::none;
+            if (touches(*q)) kind = ear::touched;
+        }
+        count_below(from, *q);
+    }
+    return winding == 1 ? kind : ear::none;
+}
+
+bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles) {
+    link();
+    std::size_t left = corners_.size();
+    const auto take = [&](std::uint32_t i) {
+        const corner& b = corners_[i];
+        corner& a = corners_[b.before];
+        corner& c = corners_[b.next];
+        triangles[triangles.size() + 2 - left] = {a.vertex, b.vertex, c.vertex};
+        a.next = b.next;
+        c.before = b.before;
+        a.kind = c.kind = ear::unknown;
+        --left;
+    };
+
+    // A boundary that goes somewhere and back may block an ear. Without it, a corner that is no ear becomes one only
+    // when a neighbour is cut.
+    std::uint32_t at = 0;
+    for (std::size_t passed = 0; left > 3 && passed < left;)
+        if (is_needle(corners_[at])) {
+            take(at);
+            at = corners_[at].before;
+            passed -= std::min<std::size_t>(passed, 2);
+        } else {
+            at = corners_[at].next;
+            ++passed;
+        }
+
+    for (std::size_t passed = 0; left > 3;) {
+        corner& b = corners_[at];
+        // Once around in vain, one is cut that is touched or in the middle of an edge.
+        const bool is_second_round = passed >= left;
+        const int turned = turn_at(b);
+        if (turned > 0 && (b.kind == ear::unknown || (is_second_round && b.kind == ear::touched))) b.kind = kind_of(b);
+        const bool is_ready = turned == 0  ? is_second_round || is_needle(b)
+                              : turned > 0 ? b.kind == ear::clear || (is_second_round && b.kind == ear::touched)
+                                           : false;
+        if (is_ready) {
+            take(at);
+            // The one after the next, so that ears do not all meet in one corner.
+            at = corners_[b.next].next;
+            passed = 0;
+        } else {
+            at = b.next;
+            if (++passed > 2 * left) return false;
+        }
+    }
+    const corner& last = corners_[at];
+    if (turn_at(last) < 0) return false;
+    triangles.back() = {corners_[last.before].vertex, last.vertex, corners_[last.next].vertex};
+    return true;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,341 @@
+#include <rapidcheck.h>
+#include <algorithm>
+#include <array>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh_bytes.hpp"
+#include "temporary_folder.hpp"
+
+import aabb;
+import aabblab.files;
+
+using Catch::Matchers::EndsWith;
+
+namespace {
+
+using polygon = std::vector<aabb::vec3f>;
+using numbers = std::vector<std::uint32_t>;
+using triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+aabblab::loaded_mesh read(const std::string& name, const std::string& bytes) {
+    const temporary_folder folder;
+    return aabblab::read_mesh(folder.write(name, bytes));
+}
+
+std::string error_of(const std::string& name, const std::string& bytes) {
+    try {
+        static_cast<void>(read(name, bytes));
+    } catch (const aabb::input_error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// A binary PLY file of one face.
+std::string ply(const polygon& vertices, const numbers& face) {
+    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices.size()) +
+                        "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                        "property list uint uint vertex_indices\nend_header\n";
+    for (const aabb::vec3f& p : vertices)
+        for (int k = 0; k < 3; ++k) bytes += raw(p[k]);
+    bytes += raw(static_cast<std::uint32_t>(face.size()));
+    for (const std::uint32_t corner : face) bytes += raw(corner);
+    return bytes;
+}
+
+numbers counted(std::size_t count) {
+    numbers face(count);
+    std::iota(face.begin(), face.end(), 0U);
+    return face;
+}
+
+aabblab::loaded_mesh cut(const polygon& vertices, const numbers& face) {
+    return read("a.ply", ply(vertices, face));
+}
+aabblab::loaded_mesh cut(const polygon& vertices) {
+    return cut(vertices, counted(vertices.size()));
+}
+std::string refusal_of(const polygon& vertices) {
+    return error_of("a.ply", ply(vertices, counted(vertices.size())));
+}
+const std::string crosses = "crosses itself";
+const std::string no_normal = "has no normal, as it encloses no area or as much in either direction";
+
+triangles fan(std::uint32_t corners) {
+    triangles expected;
+    for (std::uint32_t i = 2; i < corners; ++i) expected.push_back({0, i - 1, i});
+    return expected;
+}
+
+triangles reversed(triangles of) {
+    for (auto& [a, b, c] : of) std::swap(a, c);
+    return of;
+}
+
+// In the plane, in whole numbers.
+
+struct point {
+    std::int64_t u;
+    std::int64_t v;
+};
+using flat_polygon = std::vector<point>;
+
+std::int64_t twice_area(const point& a, const point& b, const point& c) {
+    return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
+}
+std::int64_t twice_area(const flat_polygon& p) {
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) sum += twice_area({0, 0}, p[i], p[(i + 1) % p.size()]);
+    return sum;
+}
+
+/// Whether two triangles that turn to the left have inner points in common.
+bool overlap(const std::array<point, 3>& s, const std::array<point, 3>& t) {
+    const auto parts = [](const std::array<point, 3>& of, const std::array<point, 3>& other) {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (std::ranges::all_of(other, [&](const point& p) { return twice_area(of[i], of[(i + 1) % 3], p) <= 0; }))
+                return true;
+        return false;
+    };
+    return !parts(s, t) && !parts(t, s);
+}
+
+/// Triangles that fill the polygon: none is turned the other way, none overlap, and their areas add up to its area.
+void require_fills(const flat_polygon& p, const triangles& cut) {
+    const std::int64_t area = twice_area(p);
+    std::int64_t sum = 0;
+    std::vector<std::array<point, 3>> filled;
+    for (const auto& [a, b, c] : cut) {
+        const std::int64_t part = twice_area(p[a], p[b], p[c]);
+        RC_ASSERT(!(area > 0 ? part < 0 : part > 0));
+        sum += part;
+        if (part > 0) filled.push_back({p[a], p[b], p[c]});
+        if (part < 0) filled.push_back({p[c], p[b], p[a]});
+    }
+    RC_ASSERT(sum == area);
+    RC_ASSERT(cut.size() == p.size() - 2);
+    for (std::size_t i = 0; i < filled.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) RC_ASSERT_FALSE(overlap(filled[i], filled[j]));
+}
+
+/// In a plane in space, any one but so that floats hold the coordinates.
+polygon placed(const flat_polygon& p) {
+    const int axis = *rc::gen::inRange(0, 3);
+    const int slope_u = *rc::gen::inRange(-1, 2);
+    const int slope_v = *rc::gen::inRange(-1, 2);
+    const int scale = *rc::gen::element(0, -149, 100);
+    polygon all;
+    for (const point& q : p) {
+        aabb::vec3f at{};
+        at[(axis + 1) % 3] = std::ldexp(static_cast<float>(q.u), scale);
+        at[(axis + 2) % 3] = std::ldexp(static_cast<float>(q.v), scale);
+        at[axis] = std::ldexp(static_cast<float>(slope_u * q.u + slope_v * q.v), scale);
+        all.push_back(at);
+    }
+    return all;
+}
+
+/// Points in the order of their directions from the origin, of which no two are alike.
+flat_polygon any_star() {
+    flat_polygon p = {{40, 0}, {-40, 41}, {-40, -41}};
+    for (int more = *rc::gen::inRange(1, 20); more > 0; --more) {
+        const point q{*rc::gen::inRange(-40, 41), *rc::gen::inRange(-40, 41)};
+        const auto is_alike = [&](const point& r) {
+            return twice_area({0, 0}, q, r) == 0 && q.u * r.u + q.v * r.v >= 0;
+        };
+        if (std::ranges::none_of(p, is_alike)) p.push_back(q);
+    }
+    const auto is_lower = [](const point& q) { return q.v < 0 || (q.v == 0 && q.u < 0); };
+    std::ranges::sort(p, [&](const point& q, const point& r) {
+        return is_lower(q) != is_lower(r) ? is_lower(r) : twice_area({0, 0}, q, r) > 0;
+    });
+    return p;
+}
+
+}  // namespace
+
+TEST_CASE("polygons: a concave one is cut by ears, the same from any first corner") {
+    const polygon notched = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+    const triangles ears = cut(notched).mesh.triangles;
+    CHECK(ears == triangles{{0, 1, 2}, {3, 4, 5}, {0, 2, 3}, {3, 5, 0}});
+    numbers face = counted(6);
+    for (int first = 0; first < 6; ++first) {
+        CHECK(cut(notched, face).mesh.triangles == ears);
+        CHECK(cut(notched, face).report.text() == "1 concave polygon cut by ears");
+        std::ranges::rotate(face, face.begin() + 1);
+    }
+    std::ranges::reverse(face);
+    CHECK(cut(notched, face).mesh.triangles == reversed(ears));
+    // Its triangles stand where the face does.
+    const std::string off =
+        "OFF\n6 4 0\n0 0 0\n2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n3 0 1 2\n4 0 1 2 3\n"
+        "6 0 1 2 3 4 5\n3 3 4 5\n";
+    const aabblab::loaded_mesh loaded = read("a.off", off);
+    CHECK(loaded.report.text() == "1 polygon fanned, 1 concave polygon cut by ears");
+    CHECK(loaded.mesh.triangles ==
+          triangles{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}, ears[0], ears[1], ears[2], ears[3], {3, 4, 5}});
+}
+
+TEST_CASE("polygons: a convex one is fanned from its first corner") {
+    const polygon octagon = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {3, 2, 0}, {2, 3, 0}, {0, 3, 0}, {0, 1, 0}};
+    CHECK(cut(octagon).mesh.triangles == fan(8));
+    CHECK(cut(octagon).report.text() == "1 polygon fanned, 2 triangles of zero area kept");
+    // Not flat, but convex along its normal.
+    CHECK(cut({{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}}).mesh.triangles == fan(4));
+}
+
+TEST_CASE("polygons: one that crosses itself or has no normal is refused with its place") {
+    const std::string bow = "0 0 0\n2 2 0\n2 0 0\n0 1 0\n";
+    CHECK_THAT(error_of("a.off", "OFF\n4 2 0\n" + bow + "3 0 1 2\n4 0 1 2 3\n"),
+               EndsWith("/a.off:8: the boundary of a face of 4 corners " + crosses));
+    CHECK_THAT(error_of("a.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\nf 1 2 3 4\n"),
+               EndsWith("/a.obj:6: the boundary of a face of 4 corners " + no_normal));
+    CHECK_THAT(error_of("a.ply",
+                        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                        "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                        "end_header\n" +
+                            bow + "4 0 1 2 3\n"),
+               EndsWith("/a.ply:14: the boundary of a face of 4 corners " + crosses));
+    CHECK_THAT(refusal_of({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}}),
+               EndsWith("/a.ply: face 0: the boundary of a face of 4 corners " + crosses));
+
+    CHECK_THAT(refusal_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), EndsWith(no_normal));
+    // All turns to the left: a pentagram; twice around a square; a loop that overlaps itself.
+    CHECK_THAT(refusal_of({{0, 3, 0}, {-2, -3, 0}, {3, 1, 0}, {-3, 1, 0}, {2, -3, 0}}), EndsWith(crosses));
+    CHECK_THAT(refusal_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
+               EndsWith(crosses));
+    CHECK_THAT(refusal_of({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {1, 4, 0}, {1, -1, 0}, {2, -1, 0}, {2, 3, 0}, {0, 3, 0}}),
+               EndsWith(crosses));
+}
+
+TEST_CASE("polygons: repeated corners count once") {
+    const polygon p = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}};
+    CHECK(cut(p, {0, 1, 1, 2}).mesh.triangles == triangles{{0, 1, 1}, {0, 1, 2}});
+    CHECK(cut(p, {0, 1, 4, 2, 3}).mesh.triangles == triangles{{0, 1, 4}, {0, 4, 2}, {0, 2, 3}});
+    // What is left is a triangle, a segment or a point, and these are kept.
+    CHECK(cut({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {0, 1, 1, 2}).mesh.triangles.size() == 2);
+    CHECK(cut(p, {0, 0, 1, 1}).mesh.triangles.size() == 2);
+    CHECK(cut(p, {2, 2, 2, 2}).report.text() == "1 polygon fanned, 2 triangles of zero area kept");
+    // Concave, with a corner repeated.
+    CHECK(cut({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 4, 0}}).report.concave == 1);
+}
+
+TEST_CASE("polygons: a boundary may touch itself, and go back where it came from") {
+    const auto require_filled = [](const flat_polygon& flat) {
+        polygon p;
+        for (const point& q : flat) p.push_back({static_cast<float>(q.u), static_cast<float>(q.v), 0});
+        const aabblab::loaded_mesh loaded = cut(p);
+        CHECK(loaded.report.concave == 1);
+        require_fills(flat, loaded.mesh.triangles);
+    };
+    // A hole; two holes; a hole to which the way has a bend.
+    require_filled({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 4}, {3, 6}, {6, 6}, {6, 3}, {3, 4}});
+    require_filled({{0, 0},
+                    {9, 0},
+                    {9, 9},
+                    {0, 9},
+                    {0, 0},
+                    {1, 1},
+                    {1, 2},
+                    {2, 2},
+                    {1, 1},
+                    {3, 3},
+                    {3, 4},
+                    {4, 4},
+                    {3, 3},
+                    {1, 1}});
+    require_filled({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {2, 5}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}, {2, 5}});
+    // Two squares that share a corner; two squares and a way from one to the other, with a bend.
+    require_filled({{0, 0}, {1, 0}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 1}, {0, 1}});
+    require_filled({{0, 0}, {1, 0}, {1, 1}, {2, 3}, {4, 2}, {5, 2}, {5, 3}, {4, 3}, {4, 2}, {2, 3}, {1, 1}, {0, 1}});
+    // Needles outwards and inwards, one with a bend.
+    require_filled({{0, 0}, {4, 0}, {4, 2}, {6, 2}, {4, 2}, {4, 4}, {0, 4}});
+    require_filled({{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, 3}, {2, 2}, {4, 2}, {4, 4}, {0, 4}});
+    // A corner that touches an edge.
+    require_filled({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}});
+}
+
+TEST_CASE("polygons: every decision is exact") {
+    // A corner on the diagonal, and one unit in the last place inside and outside, far from the origin.
+    const auto cut_at = [](float x) {
+        const polygon p = {{16777214, 16777214, 5}, {16777216, 16777214, 5}, {x, x, 5}, {16777214, 16777216, 5}};
+        return cut(p).report.concave;
+    };
+    CHECK(cut_at(16777215) == 0);
+    CHECK(cut_at(16777216) == 0);
+    const auto bent = [](float inwards, float scale) {
+        const float one = scale;
+        return cut({{0, 0, one}, {3 * one, 0, one}, {3 * one, 3 * one, one}, {2 * one, 2 * one - inwards, one}});
+    };
+    CHECK(bent(0, 1).report.concave == 0);
+    CHECK(bent(0x1p-22F, 1).report.concave == 1);
+    CHECK(bent(-0x1p-22F, 1).report.concave == 0);
+    CHECK(bent(0, 1e38F).report.concave == 0);
+    CHECK(bent(0x1p104F, 0x1p126F).report.concave == 1);
+    CHECK(bent(0x1p-149F, 0x1p-149F).report.concave == 1);
+    CHECK(bent(0x1p-149F, 0x1p-140F).report.concave == 1);
+    // The greatest component of the normal is the one along x by the last bit: along z the boundary crosses itself.
+    const float largest = std::numeric_limits<float>::max();
+    CHECK(cut({{-largest, -largest, 0}, {largest, -largest, 0}, {largest, largest, 0}, {-largest, largest, 0}})
+              .report.concave == 0);
+    CHECK(cut({{-largest, 0, 1}, {0, -0x1p-149F, 1}, {largest, 0, 1}, {0, -0x1p-148F, 1}}).report.concave == 1);
+}
+
+TEST_CASE("polygons: triangles fill any star, whatever its first corner and direction") {
+    REQUIRE(rc::check([] {
+        const flat_polygon flat = any_star();
+        const polygon p = placed(flat);
+        numbers face = counted(p.size());
+        const aabblab::loaded_mesh loaded = cut(p, face);
+        require_fills(flat, loaded.mesh.triangles);
+        std::ranges::rotate(face, face.begin() + *rc::gen::inRange<std::ptrdiff_t>(0, std::ssize(face)));
+        const aabblab::loaded_mesh rotated = cut(p, face);
+        RC_ASSERT(rotated.report.concave == loaded.report.concave);
+        require_fills(flat, rotated.mesh.triangles);
+        if (loaded.report.concave == 0) return;
+        RC_ASSERT(rotated.mesh.triangles == loaded.mesh.triangles);
+        std::ranges::reverse(face);
+        RC_ASSERT(cut(p, face).mesh.triangles == reversed(loaded.mesh.triangles));
+    }));
+}
+
+TEST_CASE("polygons: what is not refused is filled") {
+    REQUIRE(rc::check([] {
+        const int size = *rc::gen::inRange(2, 7);
+        flat_polygon flat;
+        for (int corners = *rc::gen::inRange(4, 10); corners > 0; --corners)
+            flat.push_back({*rc::gen::inRange(0, size), *rc::gen::inRange(0, size)});
+        // There and back.
+        if (*rc::gen::arbitrary<bool>())
+            flat.insert(flat.end(), {{*rc::gen::inRange(0, size), *rc::gen::inRange(0, size)}, flat.back()});
+        const polygon p = placed(flat);
+        const std::string refusal = refusal_of(p);
+        const std::int64_t area = twice_area(flat);
+        // All at one place, or going there and back, it may be kept without area.
+        if (refusal == "no error" && area != 0) require_fills(flat, cut(p).mesh.triangles);
+        RC_ASSERT(refusal.ends_with(no_normal) <= (area == 0));
+    }));
+}
+
+TEST_CASE("polygons: of ten thousand corners") {
+    polygon comb;
+    for (int tooth = 0; tooth < 5000; ++tooth) {
+        comb.push_back({static_cast<float>(tooth), 1, 0});
+        comb.push_back({static_cast<float>(tooth), 9, 0});
+    }
+    comb.push_back({5000, 0, 0});
+    comb.push_back({-1, 0, 0});
+    const aabblab::loaded_mesh loaded = cut(comb);
+    CHECK(loaded.report.text() == "1 concave polygon cut by ears");
+    CHECK(loaded.mesh.triangle_count() == 10'000);
+}
