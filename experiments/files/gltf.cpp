@@ -1,9 +1,12 @@
 module;
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,42 +38,27 @@ gltf_matrix product(const gltf_matrix& parent, const gltf_matrix& child) {
     return all;
 }
 
-aabb::vec3f moved(const gltf_matrix& m, const aabb::vec3f& p) {
-    aabb::vec3f result{};
+aabb::vec3d moved(const gltf_matrix& m, const aabb::vec3d& p) {
+    aabb::vec3d result{};
     for (int row = 0; row < 3; ++row) {
         const auto r = static_cast<std::size_t>(row);
-        result[row] = static_cast<float>(m[0][r] * p[0] + m[1][r] * p[1] + m[2][r] * p[2] + m[3][r]);
+        result[row] = m[0][r] * p[0] + m[1][r] * p[1] + m[2][r] * p[2] + m[3][r];
     }
     return result;
 }
 
 class gltf_reader {
 public:
-    gltf_reader(const file_text& file, gltf_asset asset) : file_(file), asset_(std::move(asset)), mesh_(file.name) {}
+    gltf_reader(const file_text& file, gltf_asset asset)
+        : file_(file),
+          asset_(std::move(asset)),
+          mesh_(file.name),
+          places_(asset_.nodes.size()),
+          is_shown_(asset_.meshes.size()) {}
 
     [[nodiscard]] loaded_mesh read() {
-        struct placed_node {
-            std::size_t node;
-            gltf_matrix parent;
-        };
-        std::vector<placed_node> waiting;
-        const auto add = [&](const std::vector<std::size_t>& nodes, const gltf_matrix& parent) {
-            for (std::size_t i = nodes.size(); i-- > 0;) waiting.push_back({nodes[i], parent});
-        };
-        std::vector<std::uint8_t> seen(asset_.nodes.size(), 0);
-        add(asset_.roots, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}}});
-        // In the order of the file, a node before its children.
-        while (!waiting.empty()) {
-            const placed_node at = waiting.back();
-            waiting.pop_back();
-            if (at.node >= asset_.nodes.size()) fail_missing("nodes", at.node);
-            if (std::exchange(seen[at.node], 1) != 0)
-                fail(gltf_place("nodes", at.node) + " stands in more than one place of the scene");
-            const gltf_node& node = asset_.nodes[at.node];
-            const gltf_matrix place = product(at.parent, node.place);
-            if (node.mesh) add_mesh(*node.mesh, place);
-            add(node.children, place);
-        }
+        for (const std::size_t node : placed_nodes()) add_node(asset_.nodes[node]);
+        mesh_.ignore(asset_.animations, static_cast<std::size_t>(std::ranges::count(is_shown_, false)));
         return mesh_.finish(0, file_.name + ": face ", 0);
     }
 
@@ -80,97 +68,220 @@ private:
         fail(gltf_place(list, index) + " is used, but is not there");
     }
 
-    /// An accessor whose elements are known to lie in a buffer.
-    struct elements {
-        const char* first;
-        std::size_t stride;
-        std::size_t count;
-    };
-    [[nodiscard]] elements elements_of(std::size_t index, const gltf_accessor& accessor, std::size_t bytes) const {
-        const std::string name = gltf_place("accessors", index);
-        if (accessor.sparse) fail(name + " is sparse, which is not supported");
-        if (!accessor.view) fail(name + " has no bufferView, so its numbers are not in the file");
-        if (*accessor.view >= asset_.views.size()) fail_missing("bufferViews", *accessor.view);
-        const gltf_view& view = asset_.views[*accessor.view];
-        const std::string view_name = gltf_place("bufferViews", *accessor.view);
-        if (view.buffer >= asset_.buffers.size()) fail_missing("buffers", view.buffer);
-        const std::string& held = asset_.buffers[view.buffer].bytes;
-        if (view.offset > held.size() || view.length > held.size() - view.offset)
-            fail(view_name + " reaches beyond the end of " + gltf_place("buffers", view.buffer));
-        const std::size_t stride = view.stride.value_or(bytes);
-        if (stride < bytes) fail(view_name + " has a byteStride below the " + std::to_string(bytes) + " bytes of one");
-        if (accessor.count > 0 && (accessor.offset > view.length || view.length - accessor.offset < bytes ||
-                                   (view.length - accessor.offset - bytes) / stride < accessor.count - 1))
-            fail(name + " reaches beyond the end of " + view_name);
-        return {accessor.count > 0 ? held.data() + view.offset + accessor.offset : nullptr, stride, accessor.count};
+    /// The nodes of the scene in the order of the file, a node before its children; where each stands is known then.
+    [[nodiscard]] std::vector<std::size_t> placed_nodes() {
+        struct waiting_node {
+            std::size_t node;
+            gltf_matrix parent;
+        };
+        std::vector<waiting_node> waiting;
+        const auto add = [&](const std::vector<std::size_t>& nodes, const gltf_matrix& parent) {
+            for (std::size_t i = nodes.size(); i-- > 0;) waiting.push_back({nodes[i], parent});
+        };
+        std::vector<std::size_t> nodes;
+        add(asset_.roots, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}}});
+        while (!waiting.empty()) {
+            const waiting_node at = waiting.back();
+            waiting.pop_back();
+            if (at.node >= asset_.nodes.size()) fail_missing("nodes", at.node);
+            std::optional<gltf_matrix>& place = places_[at.node];
+            if (place) fail(gltf_place("nodes", at.node) + " stands in more than one place of the scene");
+            const gltf_node& node = asset_.nodes[at.node];
+            if (!node.extension.empty())
+                fail(gltf_place("nodes", at.node) + " has the extension " + in_quotes(node.extension) +
+                     ", which is not supported");
+            place = product(at.parent, node.place);
+            nodes.push_back(at.node);
+            add(node.children, *place);
+        }
+        return nodes;
     }
+
     [[nodiscard]] const gltf_accessor& accessor(std::size_t index) const {
         if (index >= asset_.accessors.size()) fail_missing("accessors", index);
         return asset_.accessors[index];
     }
+    [[noreturn]] void fail_accessor(std::size_t index, const std::string& expected) const {
+        fail(gltf_place("accessors", index) + " must be " + expected);
+    }
+    [[nodiscard]] std::vector<double> numbers(std::size_t index, bool no_view_means_zeros = false) const {
+        return gltf_numbers(asset_, file_, index, no_view_means_zeros);
+    }
+
+    [[nodiscard]] std::vector<double> positions(std::size_t index, bool no_view_means_zeros) const {
+        const gltf_accessor& a = accessor(index);
+        const bool is_whole = a.component != gltf_component::f32 && a.component != gltf_component::u32;
+        if (a.type != "VEC3" || !(a.component == gltf_component::f32 || (is_whole && asset_.has_quantized_positions)))
+            fail_accessor(index, "of floats and VEC3, as it has positions");
+        return numbers(index, no_view_means_zeros);
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t index) const {
+        const gltf_accessor& a = accessor(index);
+        if (a.type != "SCALAR" || (a.component != gltf_component::u8 && a.component != gltf_component::u16 &&
+                                   a.component != gltf_component::u32))
+            fail_accessor(index, "of whole numbers and SCALAR, as it has indices");
+        const std::vector<double> read = numbers(index);
+        return {read.begin(), read.end()};
+    }
+
+    /// What moves a vertex of the skin from where it was bound to where each joint has taken it.
+    [[nodiscard]] std::vector<gltf_matrix> joint_matrices(std::size_t index) const {
+        if (index >= asset_.skins.size()) fail_missing("skins", index);
+        const gltf_skin& skin = asset_.skins[index];
+        const std::string name = gltf_place("skins", index);
+        std::vector<double> bind;
+        if (skin.inverse_bind_matrices) {
+            const gltf_accessor& a = accessor(*skin.inverse_bind_matrices);
+            if (a.type != "MAT4" || a.component != gltf_component::f32)
+                fail_accessor(*skin.inverse_bind_matrices, "of floats and MAT4, as it has inverse bind matrices");
+            if (a.count < skin.joints.size())
+                fail(name + " has " + std::to_string(skin.joints.size()) + " joints, but " + std::to_string(a.count) +
+                     " inverse bind matrices");
+            bind = numbers(*skin.inverse_bind_matrices);
+        }
+        std::vector<gltf_matrix> matrices;
+        for (std::size_t joint = 0; joint < skin.joints.size(); ++joint) {
+            const std::size_t node = skin.joints[joint];
+            if (node >= asset_.nodes.size()) fail_missing("nodes", node);
+            if (!places_[node]) fail(gltf_place("nodes", node) + " is a joint of " + name + ", but not in the scene");
+            matrices.push_back(*places_[node]);
+            if (bind.empty()) continue;
+            const double* const m = &bind[16 * joint];
+            gltf_matrix inverse{};
+            for (std::size_t column = 0; column < 4; ++column) {
+                inverse[column] = {m[4 * column], m[4 * column + 1], m[4 * column + 2]};
+                // Inverted in floats, it may be a little off.
+                if (!(std::abs(m[4 * column + 3] - (column == 3 ? 1 : 0)) <= 1e-6))
+                    fail(name + " has an inverse bind matrix whose last row is not 0 0 0 1");
+            }
+            matrices.back() = product(matrices.back(), inverse);
+        }
+        return matrices;
+    }
+
+    /// Adds the morph targets to the positions, each with its weight.
+    void morph(std::vector<double>& points, const gltf_primitive& primitive, const std::vector<double>& weights,
+               const std::string& mesh) const {
+        const auto is_zero = [](double weight) { return weight == 0; };
+        if (weights.size() != primitive.targets.size() && !std::ranges::all_of(weights, is_zero))
+            fail(mesh + " has a primitive of " + std::to_string(primitive.targets.size()) + " morph targets, but " +
+                 std::to_string(weights.size()) + " weights for them");
+        for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
+            if (!primitive.targets[t] || weights[t] == 0) continue;
+            const std::vector<double> moves = positions(*primitive.targets[t], true);
+            if (moves.size() != points.size())
+                fail(mesh + " has a morph target of " + std::to_string(moves.size() / 3) + " vertices, but " +
+                     std::to_string(points.size() / 3) + " positions");
+            for (std::size_t i = 0; i < points.size(); ++i) points[i] += weights[t] * moves[i];
+        }
+    }
+
+    /// Joints and weights of all vertices, four numbers a vertex each.
+    struct bindings {
+        std::vector<double> joints;
+        std::vector<double> weights;
+    };
+    [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
+                                                    const std::string& mesh) const {
+        if (primitive.joints.empty() || primitive.joints.size() != primitive.weights.size())
+            fail(mesh + " has a skin and a primitive of " + std::to_string(primitive.joints.size()) +
+                 " lists of joints and " + std::to_string(primitive.weights.size()) + " of weights");
+        std::vector<bindings> sets;
+        for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
+            const std::size_t joints = primitive.joints[set];
+            const std::size_t weights = primitive.weights[set];
+            const gltf_accessor& j = accessor(joints);
+            if (j.type != "VEC4" || (j.component != gltf_component::u8 && j.component != gltf_component::u16))
+                fail_accessor(joints, "of whole numbers and VEC4, as it has joints");
+            const gltf_accessor& w = accessor(weights);
+            const bool is_fraction =
+                w.normalized && (w.component == gltf_component::u8 || w.component == gltf_component::u16);
+            if (w.type != "VEC4" || (w.component != gltf_component::f32 && !is_fraction))
+                fail_accessor(weights, "of floats or normalized numbers and VEC4, as it has weights of joints");
+            if (j.count != vertices || w.count != vertices)
+                fail(mesh + " has " + std::to_string(vertices) + " positions, but joints of " +
+                     std::to_string(j.count) + " and weights of " + std::to_string(w.count) + " vertices");
+            sets.push_back({numbers(joints), numbers(weights)});
+        }
+        return sets;
+    }
+
+    /// Where the joints take a point: the mean of where each takes it, by their weights.
+    [[nodiscard]] aabb::vec3d skinned(const aabb::vec3d& p, std::size_t vertex, const std::vector<bindings>& sets,
+                                      const std::vector<gltf_matrix>& joints, const std::string& mesh) const {
+        aabb::vec3d sum{};
+        double weights = 0;
+        for (const bindings& set : sets)
+            for (std::size_t i = 4 * vertex; i < 4 * vertex + 4; ++i) {
+                const double weight = set.weights[i];
+                if (weight == 0) continue;
+                const auto joint = static_cast<std::size_t>(set.joints[i]);
+                if (joint >= joints.size())
+                    fail(mesh + " has a vertex of joint " + std::to_string(joint) + ", but its skin has " +
+                         std::to_string(joints.size()) + ", counted from 0");
+                const aabb::vec3d at = moved(joints[joint], p);
+                for (int k = 0; k < 3; ++k) sum[k] += weight * at[k];
+                weights += weight;
+            }
+        // They must add up to 1; the coarsest type has steps of 1/255, half of which each may have lost.
+        if (!(std::abs(weights - 1) <= static_cast<double>(4 * sets.size()) / 255 / 2))
+            fail(mesh + " has a vertex whose weights of joints add up to " + aabb::shortest(weights) + ", not to 1");
+        for (int k = 0; k < 3; ++k) sum[k] /= weights;
+        return sum;
+    }
 
     /// @returns how many there were
-    std::size_t add_vertices(std::size_t index, const gltf_matrix& place) {
-        const gltf_accessor& positions = accessor(index);
-        if (positions.type != "VEC3" || positions.component != gltf_float)
-            fail(gltf_place("accessors", index) + " must be of floats and VEC3, as it has positions");
-        const elements all = elements_of(index, positions, 3 * sizeof(float));
-        if (all.count > std::numeric_limits<std::uint32_t>::max() - mesh_.vertices())
+    std::size_t add_vertices(const gltf_primitive& primitive, const gltf_node& node,
+                             const std::vector<gltf_matrix>& joints, const std::string& mesh_name) {
+        std::vector<double> points = positions(*primitive.positions, false);
+        const std::size_t count = points.size() / 3;
+        if (count > std::numeric_limits<std::uint32_t>::max() - mesh_.vertices())
             fail("its scene has more than 2^32 - 1 vertices");
         // One mesh may stand in many places.
         require_memory(file_.name + ": its scene",
-                       static_cast<double>(mesh_.vertices() + all.count) * sizeof(aabb::vec3f) +
+                       static_cast<double>(mesh_.vertices() + count) * sizeof(aabb::vec3f) +
                            static_cast<double>(faces_) * sizeof(std::array<std::uint32_t, 3>));
-        for (std::size_t v = 0; v < all.count; ++v) {
-            aabb::vec3f p{};
-            std::memcpy(&p, all.first + v * all.stride, sizeof p);
-            p = moved(place, p);
-            if (!aabb::is_finite(p))
+        const gltf_mesh& mesh = asset_.meshes[*node.mesh];
+        morph(points, primitive, node.weights.value_or(mesh.weights.value_or(std::vector<double>())), mesh_name);
+        const auto sets = node.skin ? bindings_of(primitive, count, mesh_name) : std::vector<bindings>();
+        const gltf_matrix& place = *places_[static_cast<std::size_t>(&node - asset_.nodes.data())];
+        for (std::size_t v = 0; v < count; ++v) {
+            const aabb::vec3d p = {points[3 * v], points[3 * v + 1], points[3 * v + 2]};
+            // A skinned mesh stands where its joints are, wherever its node is.
+            const aabb::vec3d at = node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(place, p);
+            const aabb::vec3f rounded = {static_cast<float>(at[0]), static_cast<float>(at[1]),
+                                         static_cast<float>(at[2])};
+            if (!aabb::is_finite(rounded))
                 fail("vertex " + std::to_string(mesh_.vertices()) + " has a coordinate that is not finite");
-            mesh_.add_vertex(p);
+            mesh_.add_vertex(rounded);
         }
-        return all.count;
+        return count;
     }
 
-    template <class Index>
-    [[nodiscard]] std::vector<std::uint32_t> read_indices(std::size_t index) const {
-        const elements all = elements_of(index, accessor(index), sizeof(Index));
-        std::vector<std::uint32_t> indices(all.count);
-        for (std::size_t i = 0; i < all.count; ++i) {
-            Index read{};
-            std::memcpy(&read, all.first + i * all.stride, sizeof read);
-            indices[i] = read;
-        }
-        return indices;
-    }
-    [[nodiscard]] std::vector<std::uint32_t> indices_of(std::size_t index) const {
-        const gltf_accessor& all = accessor(index);
-        if (all.type == "SCALAR" && all.component == gltf_byte) return read_indices<std::uint8_t>(index);
-        if (all.type == "SCALAR" && all.component == gltf_short) return read_indices<std::uint16_t>(index);
-        if (all.type == "SCALAR" && all.component == gltf_int) return read_indices<std::uint32_t>(index);
-        fail(gltf_place("accessors", index) + " must be of whole numbers and SCALAR, as it has indices");
-    }
-
-    void add_mesh(std::size_t index, const gltf_matrix& place) {
-        if (index >= asset_.meshes.size()) fail_missing("meshes", index);
-        for (const gltf_primitive& primitive : asset_.meshes[index]) {
-            if (!primitive.positions) fail(gltf_place("meshes", index) + " has a primitive without positions");
+    void add_node(const gltf_node& node) {
+        if (!node.mesh) return;
+        if (*node.mesh >= asset_.meshes.size()) fail_missing("meshes", *node.mesh);
+        is_shown_[*node.mesh] = true;
+        const std::string mesh = gltf_place("meshes", *node.mesh);
+        const auto joints = node.skin ? joint_matrices(*node.skin) : std::vector<gltf_matrix>();
+        for (const gltf_primitive& primitive : asset_.meshes[*node.mesh].primitives) {
+            if (!primitive.positions) fail(mesh + " has a primitive without positions");
             if (primitive.mode > static_cast<std::size_t>(gltf_mode::triangle_fan))
-                fail(gltf_place("meshes", index) + " has a primitive of mode " + std::to_string(primitive.mode) +
-                     "; modes are 0 to 6");
+                fail(mesh + " has a primitive of mode " + std::to_string(primitive.mode) + "; modes are 0 to 6");
             const std::size_t first = mesh_.vertices();
-            const std::size_t count = add_vertices(*primitive.positions, place);
+            const std::size_t count = add_vertices(primitive, node, joints, mesh);
             std::vector<std::uint32_t> corners;
             if (primitive.indices) {
-                corners = indices_of(*primitive.indices);
+                corners = indices(*primitive.indices);
             } else {
                 corners.resize(count);
-                for (std::size_t v = 0; v < count; ++v) corners[v] = static_cast<std::uint32_t>(v);
+                std::iota(corners.begin(), corners.end(), 0U);
             }
             for (std::uint32_t& corner : corners) {
                 if (corner >= count)
-                    fail(gltf_place("meshes", index) + " has a face that uses vertex " + std::to_string(corner) +
-                         ", but there are " + std::to_string(count) + " vertices, counted from 0");
+                    fail(mesh + " has a face that uses vertex " + std::to_string(corner) + ", but there are " +
+                         std::to_string(count) + " vertices, counted from 0");
                 corner += static_cast<std::uint32_t>(first);
             }
             add_faces(static_cast<gltf_mode>(primitive.mode), corners);
@@ -192,6 +303,7 @@ private:
             case gltf_mode::line_strip: drop(count > 0 ? count - 1 : 0); break;
             case gltf_mode::triangles:
                 for (std::size_t i = 2; i < count; i += 3) add(i - 2, i - 1, i);
+                drop(count % 3 == 0 ? 0 : 1);
                 break;
             case gltf_mode::triangle_strip:  // every other one is turned, so that all face one way
                 for (std::size_t i = 2; i < count; ++i) add(i - 2, i - (i + 1) % 2, i - i % 2);
@@ -205,6 +317,8 @@ private:
     const file_text& file_;
     gltf_asset asset_;
     mesh_builder mesh_;
+    std::vector<std::optional<gltf_matrix>> places_;  // of the nodes in the scene
+    std::vector<bool> is_shown_;                      // of the meshes
     std::size_t faces_ = 0;
 };
 

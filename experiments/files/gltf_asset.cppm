@@ -22,22 +22,48 @@ struct gltf_view {
     std::optional<std::size_t> stride;
 };
 
-/// The numbers that stand for types in the format.
-inline constexpr std::size_t gltf_byte = 5121, gltf_short = 5123, gltf_int = 5125, gltf_float = 5126;
+/// The types of numbers, by the number that stands for each in the format.
+enum class gltf_component : std::size_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+
+/// Elements of an accessor that are others than its view has.
+struct gltf_sparse {
+    struct part {
+        std::size_t view = 0;
+        std::size_t offset = 0;
+    };
+    std::size_t count = 0;
+    part indices;
+    gltf_component index_component{};
+    part values;
+};
 
 struct gltf_accessor {
     std::optional<std::size_t> view;
     std::size_t offset = 0;
-    std::size_t component = 0;
+    gltf_component component{};
     std::size_t count = 0;
     std::string type;  ///< "SCALAR", "VEC3" and so on
-    bool sparse = false;
+    bool normalized = false;
+    std::optional<gltf_sparse> sparse;
 };
 
 struct gltf_primitive {
     std::optional<std::size_t> positions;
     std::optional<std::size_t> indices;
     std::size_t mode = 4;
+    std::vector<std::optional<std::size_t>> targets;  ///< positions of each morph target, where it moves them
+    std::vector<std::size_t> joints;                  ///< JOINTS_0, JOINTS_1, …
+    std::vector<std::size_t> weights;                 ///< WEIGHTS_0, WEIGHTS_1, …
+};
+
+struct gltf_mesh {
+    std::vector<gltf_primitive> primitives;
+    std::optional<std::vector<double>> weights;  ///< of the morph targets
+};
+
+struct gltf_skin {
+    std::vector<std::size_t> joints;  ///< nodes
+    std::optional<std::size_t> inverse_bind_matrices;
 };
 
 /// Four columns, without the last row, which is 0 0 0 1.
@@ -46,7 +72,10 @@ using gltf_matrix = std::array<std::array<double, 3>, 4>;
 struct gltf_node {
     gltf_matrix place{};  ///< in its parent
     std::optional<std::size_t> mesh;
+    std::optional<std::size_t> skin;
+    std::optional<std::vector<double>> weights;  ///< in the place of those of its mesh
     std::vector<std::size_t> children;
+    std::string extension;  ///< one that changes the surface and is not read; empty where there is none
 };
 
 struct gltf_buffer {
@@ -59,15 +88,24 @@ struct gltf_asset {
     std::vector<gltf_buffer> buffers;
     std::vector<gltf_view> views;
     std::vector<gltf_accessor> accessors;
-    std::vector<std::vector<gltf_primitive>> meshes;
+    std::vector<gltf_mesh> meshes;
+    std::vector<gltf_skin> skins;
     std::vector<gltf_node> nodes;
     std::vector<std::size_t> roots;  ///< nodes of the scene
+    std::size_t animations = 0;
+    bool has_quantized_positions = false;  ///< KHR_mesh_quantization: positions may be whole numbers
 };
 
 /// "accessors[3]"
 [[nodiscard]] inline std::string gltf_place(std::string_view list, std::size_t index) {
     return std::string(list) + "[" + std::to_string(index) + "]";
 }
+
+/// The numbers of an accessor, one after the other; normalized ones from -1 or 0 to 1.
+/// @param no_view_means_zeros The format says so, but where only an extension reads the bytes it looks the same.
+/// @throws aabb::input_error where something is used that is not there, or reaches beyond the end of its bytes.
+[[nodiscard]] std::vector<double> gltf_numbers(const gltf_asset& asset, const file_text& file, std::size_t accessor,
+                                               bool no_view_means_zeros);
 
 /// The two parts of a .glb file; a .gltf file is all JSON.
 struct gltf_parts {

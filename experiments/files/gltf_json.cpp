@@ -56,11 +56,23 @@ public:
     }
 
     [[nodiscard]] bool has(const char* key) const { return content_.contains(key); }
+    /// False where there is none.
+    [[nodiscard]] bool flag(const char* key) const {
+        const auto found = content_.find(key);
+        if (found == content_.end()) return false;
+        if (!found->is_boolean()) fail_member(key, "true or false");
+        return found->get<bool>();
+    }
 
     [[nodiscard]] std::optional<object> member(const char* key) const {
         const auto found = content_.find(key);
         if (found == content_.end()) return {};
-        return object(file_, place_.empty() ? key : place_ + "." + key, *found);
+        return object(file_, named(key), *found);
+    }
+    [[nodiscard]] object needed_member(const char* key) const {
+        const std::optional<object> found = member(key);
+        if (!found) throw aabb::input_error(file_.name + ": " + named(key) + " is missing");
+        return *found;
     }
 
     /// Empty where there is none.
@@ -68,8 +80,7 @@ public:
         std::vector<object> all;
         const json* const items = list(key);
         if (!items) return all;
-        for (std::size_t i = 0; i < items->size(); ++i)
-            all.emplace_back(file_, gltf_place(place_.empty() ? key : place_ + "." + key, i), (*items)[i]);
+        for (std::size_t i = 0; i < items->size(); ++i) all.emplace_back(file_, gltf_place(named(key), i), (*items)[i]);
         return all;
     }
     [[nodiscard]] std::vector<std::size_t> indices(const char* key) const {
@@ -96,12 +107,17 @@ public:
     [[nodiscard]] std::array<double, Count> numbers(const char* key, std::array<double, Count> fallback) const {
         const json* const items = list(key);
         if (!items) return fallback;
-        const auto is_number = [](const json& item) { return item.is_number(); };
-        if (items->size() != Count || !std::ranges::all_of(*items, is_number))
+        if (items->size() != Count || !std::ranges::all_of(*items, &json::is_number))
             fail_member(key, "a list of " + std::to_string(Count) + " numbers");
         std::array<double, Count> all{};
         for (std::size_t i = 0; i < Count; ++i) all[i] = (*items)[i].get<double>();
         return all;
+    }
+    [[nodiscard]] std::optional<std::vector<double>> numbers(const char* key) const {
+        const json* const items = list(key);
+        if (!items) return {};
+        if (!std::ranges::all_of(*items, &json::is_number)) fail_member(key, "a list of numbers");
+        return items->get<std::vector<double>>();
     }
 
 private:
@@ -136,11 +152,13 @@ json parsed(const file_text& file, const gltf_parts& parts) {
     }
 }
 
+constexpr std::string_view quantization = "KHR_mesh_quantization";
+
 /// What the file cannot be read without, unless it is about looks only.
 void require_no_extension(const object& root) {
     for (const std::string& name : root.texts("extensionsRequired")) {
         const auto is_about = [&](std::string_view looks) { return name.find(looks) != std::string::npos; };
-        if (!is_about("material") && !is_about("texture") && !is_about("light"))
+        if (!is_about("material") && !is_about("texture") && !is_about("light") && name != quantization)
             root.fail("requires the extension " + in_quotes(name) + ", which is not supported");
     }
 }
@@ -173,12 +191,64 @@ gltf_matrix place_of(const object& node) {
     return place;
 }
 
+gltf_sparse::part part_of(const object& part) {
+    return {part.needed_index("bufferView"), part.index("byteOffset").value_or(0)};
+}
+
+gltf_accessor accessor_of(const object& accessor) {
+    gltf_accessor read{.view = accessor.index("bufferView"),
+                       .offset = accessor.index("byteOffset").value_or(0),
+                       .component = gltf_component{accessor.needed_index("componentType")},
+                       .count = accessor.needed_index("count"),
+                       .type = accessor.text("type").value_or(""),
+                       .normalized = accessor.flag("normalized"),
+                       .sparse = {}};
+    if (const auto sparse = accessor.member("sparse")) {
+        const object indices = sparse->needed_member("indices");
+        read.sparse = {sparse->needed_index("count"), part_of(indices),
+                       gltf_component{indices.needed_index("componentType")}, part_of(sparse->needed_member("values"))};
+    }
+    return read;
+}
+
+/// NAME_0, NAME_1 and so on.
+std::vector<std::size_t> numbered_attributes(const object& attributes, const std::string& name) {
+    std::vector<std::size_t> accessors;
+    while (const auto next = attributes.index((name + "_" + std::to_string(accessors.size())).c_str()))
+        accessors.push_back(*next);
+    return accessors;
+}
+
 gltf_primitive primitive_of(const object& primitive) {
-    gltf_primitive made;
-    if (const auto attributes = primitive.member("attributes")) made.positions = attributes->index("POSITION");
-    made.indices = primitive.index("indices");
-    made.mode = primitive.index("mode").value_or(made.mode);
-    return made;
+    gltf_primitive read;
+    if (const auto attributes = primitive.member("attributes")) {
+        read.positions = attributes->index("POSITION");
+        read.joints = numbered_attributes(*attributes, "JOINTS");
+        read.weights = numbered_attributes(*attributes, "WEIGHTS");
+    }
+    read.indices = primitive.index("indices");
+    read.mode = primitive.index("mode").value_or(read.mode);
+    for (const object& target : primitive.objects("targets")) read.targets.push_back(target.index("POSITION"));
+    return read;
+}
+
+gltf_mesh mesh_of(const object& mesh) {
+    gltf_mesh read{{}, mesh.numbers("weights")};
+    for (const object& primitive : mesh.objects("primitives")) read.primitives.push_back(primitive_of(primitive));
+    return read;
+}
+
+/// An extension that says where the mesh of a node stands, or whether it is there.
+std::string surface_extension_of(const object& node) {
+    if (const auto extensions = node.member("extensions"))
+        for (const char* const name : {"EXT_mesh_gpu_instancing", "KHR_node_visibility"})
+            if (extensions->has(name)) return name;
+    return {};
+}
+
+gltf_node node_of(const object& node) {
+    return {place_of(node),          node.index("mesh"),       node.index("skin"),
+            node.numbers("weights"), node.indices("children"), surface_extension_of(node)};
 }
 
 std::vector<std::size_t> roots_of(const object& root) {
@@ -206,17 +276,14 @@ gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
     for (const object& view : root.objects("bufferViews"))
         asset.views.push_back({view.needed_index("buffer"), view.index("byteOffset").value_or(0),
                                view.needed_index("byteLength"), view.index("byteStride")});
-    for (const object& accessor : root.objects("accessors"))
-        asset.accessors.push_back({accessor.index("bufferView"), accessor.index("byteOffset").value_or(0),
-                                   accessor.needed_index("componentType"), accessor.needed_index("count"),
-                                   accessor.text("type").value_or(""), accessor.has("sparse")});
-    for (const object& mesh : root.objects("meshes")) {
-        asset.meshes.emplace_back();
-        for (const object& primitive : mesh.objects("primitives"))
-            asset.meshes.back().push_back(primitive_of(primitive));
-    }
-    for (const object& node : root.objects("nodes"))
-        asset.nodes.push_back({place_of(node), node.index("mesh"), node.indices("children")});
+    for (const object& accessor : root.objects("accessors")) asset.accessors.push_back(accessor_of(accessor));
+    for (const object& mesh : root.objects("meshes")) asset.meshes.push_back(mesh_of(mesh));
+    for (const object& skin : root.objects("skins"))
+        asset.skins.push_back({skin.indices("joints"), skin.index("inverseBindMatrices")});
+    for (const object& node : root.objects("nodes")) asset.nodes.push_back(node_of(node));
+    asset.animations = root.objects("animations").size();
+    const std::vector<std::string> extensions = root.texts("extensionsUsed");
+    asset.has_quantized_positions = std::ranges::find(extensions, quantization) != extensions.end();
     asset.roots = roots_of(root);
     return asset;
 }
