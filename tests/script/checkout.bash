@@ -4,15 +4,19 @@
 
 unset AABBLAB_PRESET AABBLAB_INSTALL AABBLAB_LINT AABBLAB_DATA
 mkdir checkout bin sources
-cp -r "$root/aabblab" "$root/CMakePresets.json" "$root/cmake" checkout/
-for folder in validation/engines experiments/stepping; do
+cp -r "$root"/{aabblab,CMakeLists.txt,CMakePresets.json,cmake} checkout/
+for folder in modules strategies validation/engines paper experiments/stepping tests; do
     mkdir -p "checkout/$folder"
     cp "$root/$folder/CMakeLists.txt" "checkout/$folder/"
 done
+cp -r "$root/experiments/stored_output" checkout/experiments/
 sed -i "s|/etc/os-release|$work/os-release|g; s|/etc/apt/sources.list.d|$work/sources|g" checkout/cmake/setup.bash
+sed -i "s|/var/lib/dpkg/status|$work/packages|g" checkout/aabblab
+touch packages
 holds 'the system is made up' grep -q "$work/os-release" checkout/cmake/setup.bash
 holds 'so are its package sources' grep -q "$work/sources" checkout/cmake/setup.bash
-for tool in awk bash cat chmod chown cp cut dirname env find flock grep ln mkdir mkfifo mv readlink rm sed sh sleep tail tee touch true uniq wc; do
+holds 'and what is installed on it' grep -q "$work/packages" checkout/aabblab
+for tool in awk bash cat chmod chown cp cut dirname env find flock grep ln mkdir mkfifo mv readlink rm sed sh sleep sort tail tee timeout touch true uniq wc; do
     ln -s "$(type -P "$tool")" bin/
 done
 
