@@ -1,4 +1,5 @@
-# Sourced by ./aabblab: what the build needs, and how it gets there. `root` and `build` are folders of the caller.
+# Sourced by ./aabblab: what the build needs, and how it gets there. `root` and `build` are folders of the caller, whose
+# `studies` is empty where what only single studies need is not wanted.
 # shellcheck shell=bash disable=SC2154
 
 # What the build needs: Debian's packages, Fedora's (- where there are none), and what shows that it is there on any
@@ -23,11 +24,13 @@ needs=(
     'libssl-dev                   openssl-devel            <openssl/evp.h>'
     'libarchive-dev               libarchive-devel         <archive.h>'
 )
-# The same of what each engine and integrator needs, as its own line says. Where that is not to be had it is left out.
-mapfile -t optional_needs < <(sed -nE 's/^aabblab_(engine|integrator)\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\2 \3 \4/p' \
-    "$root/validation/engines/CMakeLists.txt" "$root/experiments/stepping/CMakeLists.txt")
+# The same of what each engine needs, as its own line says. Where that is not to be had it is left out.
+needs_in() { sed -nE 's/^aabblab_[a-z]+\(.* DEBIAN ([^ ]+) FEDORA ([^ ]+) SHOWS ([^ ]+)\)$/\1 \2 \3/p' "$root/$1/CMakeLists.txt"; }
+mapfile -t optional_needs < <(needs_in validation/engines)
 # What only a test needs, which is skipped without it.
 optional_needs+=('valgrind valgrind valgrind')
+# An integrator's library brings more than all the others, MPI and a Fortran compiler among it, and serves one study.
+[[ ! $studies ]] || mapfile -t -O "${#optional_needs[@]}" optional_needs < <(needs_in experiments/stepping)
 [[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=(
     'clang-format-19   -  clang-format-19'
     'clang-tidy-19     -  clang-tidy-19'
@@ -35,7 +38,7 @@ optional_needs+=('valgrind valgrind valgrind')
     'libclang-19-dev   -  </usr/lib/llvm-19/include/clang/Basic/Version.inc>'
 )
 # Debian 12 has versions this new in its backports only.
-declare -A least=([cmake]=3.28 [catch2]=3.0)
+declare -gA least=([cmake]=3.28 [catch2]=3.0)
 backports_file=/etc/apt/sources.list.d/aabblab-backports.sources
 
 # at_least HAVE WANT: compares the first two numbers of two versions; no version is not enough.
@@ -153,14 +156,37 @@ explain_apt() {
     fail 'apt-get failed; its whole output is in build/apt.log.'
 }
 
+# run_apt DOING ARGUMENT…
 run_apt() {
-    logged installing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive LC_ALL=C \
-        apt-get -o DPkg::Lock::Timeout=300 "$@"
+    logged "$1" "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive LC_ALL=C \
+        apt-get -o DPkg::Lock::Timeout=300 "${@:2}"
 }
 
 # A source that we do not need may be out of reach; but then there is no long wait for the others.
 update_apt() {
-    run_apt -o APT::Update::Error-Mode=any -o Acquire::Retries=0 update || patience=(-o Acquire::Retries=0)
+    run_apt asking -o APT::Update::Error-Mode=any -o Acquire::Retries=0 update || patience=(-o Acquire::Retries=0)
+}
+
+# Says how much apt-get is about to install for `wanted`, with all that these depend on.
+say_how_much() {
+    local plan versions sizes
+    plan=$(LC_ALL=C apt-get -s install --no-install-recommends "${wanted[@]}" 2>>"$apt_log") || explain_apt
+    mapfile -t versions < <(sed -nE 's/^Inst ([^ ]+) (\[[^]]*\] )?\(([^ ]+) .*/\1=\3/p' <<<"$plan")
+    ((${#versions[@]} > 0)) || return 0
+    sizes=$(apt-cache show "${versions[@]}" 2>>"$apt_log" | awk '
+        /^Size:/ { bytes += $2 }
+        /^Installed-Size:/ { kibibytes += $2 }
+        END { printf "%.0f MB to download, %.0f MB on disk", bytes / 1e6, kibibytes * 1024 / 1e6 }') || explain_apt
+    say "installing ${#versions[@]} packages with apt-get: $sizes"
+}
+
+install_wanted() { run_apt installing "${patience[@]}" install -y --no-install-recommends "${wanted[@]}"; }
+
+# Does what is left to do where installing was cut short, by a signal or by a power cut.
+repair_packages() {
+    grep -q '^E: dpkg was interrupted' "$apt_log" || return 1
+    say 'packages were being installed when that was cut short; repairing it with dpkg --configure -a'
+    logged repairing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive dpkg --configure -a
 }
 
 # install_missing PACKAGE…: installs what is missing of these.
@@ -173,7 +199,7 @@ install_missing() {
         { command -v sudo >/dev/null && sudo true; } ||
             fail_lacking 'root or sudo is needed to install what is missing' "${missing[@]}"
     fi
-    say "installing with apt-get: ${missing[*]}"
+    say "not installed here: ${missing[*]}; asking apt-get how much that is"
     : >"$apt_log"
     update_apt
     name_wanted
@@ -182,18 +208,18 @@ install_missing() {
         "${as_root[@]}" tee "$backports_file" <<<"$backports" >/dev/null
         update_apt
     fi
-    run_apt "${patience[@]}" install -y --no-install-recommends "${wanted[@]}" || explain_apt
+    say_how_much
+    install_wanted || { repair_packages && install_wanted; } || explain_apt
     find_missing_packages "$@"
     ((${#missing[@]} == 0)) || fail "apt-get installed no version new enough of: ${missing[*]}."
 }
 
 # ---- Where nothing is installed ---------------------------------------------------------------------------------------
 
-# fail_lacking WHY WHAT…: ends with that and, where we know it, the line that installs it: Debian's packages `missing`,
-# Fedora's packages `rpms`. `unpackaged` is what Fedora has no package of.
-fail_lacking() {
-    local line='' what=it sentence
-    sentence="$1: $(listed "${@:2}")"
+# how_to_install SENTENCE: adds to it, where we know it, the line that installs what is missing: Debian's packages
+# `missing`, Fedora's packages `rpms`. `unpackaged` is what Fedora has no package of.
+how_to_install() {
+    local line='' what=it sentence=$1
     case $system in
     debian | apt) line=$(apt_line) ;;
     dnf)
@@ -203,8 +229,16 @@ fail_lacking() {
         fi
         ;;
     esac
-    [[ $line ]] || fail "$sentence."
-    fail "$sentence; as root, this installs $what:"$'\n'"  $line"
+    [[ ! $line ]] || sentence+="; as root, this installs $what:"$'\n'"  $line"
+    printf '%s' "$sentence"
+}
+
+# fail_lacking WHY WHAT…
+fail_lacking() {
+    local sentence
+    sentence=$(how_to_install "$1: $(listed "${@:2}")")
+    [[ $sentence == *$'\n'* ]] || sentence+=.
+    fail "$sentence"
 }
 
 # Why nothing is installed.
@@ -249,7 +283,8 @@ find_tools() {
     essential=${#lacking[@]}
     for need in "${optional_needs[@]}"; do note_lacking "$need"; done
     ((essential == 0)) || fail_lacking "$(no_installing) here is missing" "${lacking[@]}"
-    ((${#lacking[@]} == 0)) || say "engines, integrators and tests that need $(listed "${lacking[@]}") are left out"
+    ((${#lacking[@]} == 0)) ||
+        say "$(how_to_install "engines, integrators and tests that need $(listed "${lacking[@]}") are left out")"
 }
 
 # ----------------------------------------------------------------------------------------------------------------------
@@ -270,7 +305,7 @@ set_up() {
     if [[ $system == debian ]]; then
         mapfile -t packages <<<"$(build_packages)"
         install_missing "${packages[@]}"
-    elif [[ ! -e $build/build.ninja ]]; then
+    elif [[ ! -e $build/build.ninja || $studies ]]; then
         find_tools
     fi
 }

@@ -139,7 +139,7 @@ void print_text() {
     all.heading("integrators, of validate stiff");
     for (const integrator_info& i : integrators()) all.entry(i.name, i.summary);
     for (const std::string_view name : left_out_integrators())
-        all.entry(name, "left out: its library was not found when this was built");
+        all.entry(name, "left out: its library was not found when this was built; ./aabblab validate stiff installs it");
     all.heading("scenes");
     for (const auto& s : scene_kinds()) {
         all.entry(s.name, s.summary);

@@ -8,6 +8,7 @@
 #include "../validation/altered_stages.hpp"
 
 import aabblab.play;
+import aabblab.stepping;
 import aabblab.stiff;
 
 namespace {
@@ -41,7 +42,10 @@ aabblab::contender forgetful(std::size_t every) {
 }  // namespace
 
 TEST_CASE("every study of the stiff suite comes out as expected") {
+    const bool has_bdf = aabblab::integrator_named("bdf") != nullptr;
     for (const std::string_view name : {"ball_bounces", "stability", "overdamped", "stack", "plate", "sliding"}) {
+        // What is left of it takes short steps, and fewer rows.
+        if (name == "overdamped" && !has_bdf) continue;
         const aabblab::stiff_result result = played(name, aabblab::usual_contender());
         INFO(name);
         REQUIRE(result.rows.size() > 5);
@@ -49,6 +53,8 @@ TEST_CASE("every study of the stiff suite comes out as expected") {
         // Something is expected of the half of them, or nothing is tested.
         REQUIRE(std::ranges::count_if(result.rows, [](const auto& r) { return !r.rule.empty(); }) > 3);
     }
+    if (!has_bdf)
+        SKIP("overdamped, as the integrator bdf is left out of this build; AABBLAB_INSTALL=all ./aabblab test has it");
 }
 
 TEST_CASE("a contact that is dropped every thousandth step turns verdicts") {
