@@ -41,7 +41,7 @@ double pairs(const scene_measures& m) {
 }
 /// How far boxes move beside each other, in mean extents; beyond one they are new.
 double renewed(const scene_measures& m) {
-    return m.motion && m.boxes.mean_extent > 0 ? std::min(1.0, m.motion->relative / m.boxes.mean_extent) : 0;
+    return m.motion && m.boxes.typical_extent > 0 ? std::min(1.0, m.motion->relative / m.boxes.typical_extent) : 0;
 }
 double inversions(const scene_measures& m) {
     return m.motion ? objects(m) * m.motion->inversions : 0;

@@ -9,6 +9,7 @@ module;
 module aabblab.measures;
 
 import aabb.geometry;
+import aabb.prepare.mean_extent;
 
 namespace aabblab {
 
@@ -51,6 +52,9 @@ box_measures measure_boxes(std::span<const aabb::box> boxes) {
     const auto n = static_cast<double>(boxes.size());
     m.size_ratio = size_ratio_of(boxes);
     m.expected_pairs = n * (n - 1) / 2;
+    aabb::typical_extent extents_of_boxes;
+    for (const aabb::box& b : boxes) extents_of_boxes.add(b);
+    m.typical_extent = extents_of_boxes();
     for (int k = 0; k < 3; ++k) {
         std::vector<float> lower;
         std::vector<float> upper;
@@ -61,7 +65,6 @@ box_measures measure_boxes(std::span<const aabb::box> boxes) {
             extents += double{b.max[k]} - double{b.min[k]};
         }
         const double width = double{*std::ranges::max_element(upper)} - double{*std::ranges::min_element(lower)};
-        m.mean_extent += extents / n / 3;
         if (width > 0) m.expected_pairs *= std::min(1.0, 2 * extents / n / width);
         m.overlaps[static_cast<std::size_t>(k)] = 2 * overlapping_pairs(std::move(lower), std::move(upper)) / n;
     }

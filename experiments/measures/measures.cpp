@@ -64,6 +64,10 @@ void divide(motion_measures& sum, double by) {
 
 scene_measures measure_scene(const scene_choice& choice) {
     scene_play scene(choice);
+    return measure_scene(scene);
+}
+
+scene_measures measure_scene(scene_play& scene) {
     scene_measures m;
     m.objects = scene.objects();
     m.frames = scene.frames();
@@ -122,8 +126,8 @@ std::vector<told_measure> told(const scene_measures& m) {
     all.push_back({"density", fmt::format("{:.3g} overlapping pairs an object", m.pairs_an_object)});
     all.push_back({"clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering)});
     if (!m.motion) return all;
-    const double unit = m.boxes.mean_extent > 0 ? m.boxes.mean_extent : 1;
-    const char* of = m.boxes.mean_extent > 0 ? "of a mean extent" : "units";
+    const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
+    const char* of = m.boxes.typical_extent > 0 ? "of a mean extent" : "units";
     all.push_back({"displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, of)});
     all.push_back(
         {"relative", fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, of)});

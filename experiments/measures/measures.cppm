@@ -11,13 +11,14 @@ module;
 export module aabblab.measures;
 
 import aabb.geometry;
+import aabblab.play;
 import aabblab.scenes;
 
 export namespace aabblab {
 
 /// Of the boxes of one frame.
 struct box_measures {
-    double mean_extent = 0;  ///< over boxes and axes
+    double typical_extent = 0;  ///< mean over the axes, and the boxes that are not by far longer than others
     /// The longest edge of any box over the median of the boxes' longest edges; empty where that is 0, or there are no
     /// boxes.
     std::optional<double> size_ratio;
@@ -53,6 +54,8 @@ struct scene_measures {
 /// Plays the first frames of the scene.
 /// @throws aabb::input_error where the scene cannot be made or played.
 [[nodiscard]] scene_measures measure_scene(const scene_choice& scene);
+/// The same of a scene that is made already, from its first frame on.
+[[nodiscard]] scene_measures measure_scene(scene_play& scene);
 
 /// A measure as it is told: "displacement", "0.031 of a mean extent a frame".
 struct told_measure {

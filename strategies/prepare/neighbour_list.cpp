@@ -315,7 +315,7 @@ bool neighbour_list_stage::serves(std::span<const box> boxes) {
 auto neighbour_list_stage::next_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
     constexpr wanted_list of_boxes_as_they_are{.margin = 0};
     forecast_.foresee_nothing();
-    if (config_.margin) return wanted_list{mean_extents(*config_.margin, boxes, objects_)};
+    if (config_.margin) return wanted_list{typical_extents(*config_.margin, boxes, objects_)};
     const bool comes_to_rest = std::exchange(came_to_rest_, false);
     if (adapts() && is_first_) return wanted_list{first_margin(boxes)};
     // Whoever comes to boxes at rest does not make them move.
@@ -439,7 +439,7 @@ bool neighbour_list_stage::serves_few_well() const {
 
 /// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
 double neighbour_list_stage::first_margin(std::span<const box> boxes) {
-    const double margin = mean_extents(extents_of_first_margin, boxes, objects_);
+    const double margin = typical_extents(extents_of_first_margin, boxes, objects_);
     found_ = 0;
     if (objects_.size() < fewest_boxes_of_long_list) return margin;
     const rough_reach longer = forecast_.reach(boxes, objects_, longer_where_sparse * margin);
