@@ -11,6 +11,7 @@
 
 #include "command_parser.hpp"
 #include "commands.hpp"
+#include "number.hpp"
 #include "output.hpp"
 
 // Import, so they come last.
@@ -21,6 +22,7 @@
 #include "scene_arguments.hpp"
 #include "wrapped_row.hpp"
 
+import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
@@ -30,6 +32,7 @@ import aabblab.configs;
 import aabblab.measures;
 import aabblab.numbers;
 import aabblab.play;
+import aabblab.race;
 import aabblab.scenes;
 import aabblab.tables;
 
@@ -37,20 +40,32 @@ namespace aabblab {
 
 namespace {
 
-void print_parts(std::string_view stage, const std::string& made_of, const std::vector<aabb::part_bytes>& parts) {
-    print(fmt::format("    {}{}{}\n", stage, made_of.empty() ? "" : ": ", made_of));
+std::string text_of(std::string_view stage, const std::string& made_of, const std::vector<aabb::part_bytes>& parts) {
+    std::string text = fmt::format("    {}{}{}\n", stage, made_of.empty() ? "" : ": ", made_of);
     for (const aabb::part_bytes& part : parts)
-        print(fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes)));
+        text += fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes));
+    return text;
 }
 
-void print_wrapped(std::string_view before, const std::string& text) {
-    std::istringstream lines(wrapped(text, std::max<std::size_t>(output_width(), 40) - before.size()));
-    for (std::string line; std::getline(lines, line);) print(fmt::format("{}{}\n", before, line));
+std::string indented(std::string_view before, const std::string& paragraph) {
+    std::string text;
+    std::istringstream lines(wrapped(paragraph, std::max<std::size_t>(output_width(), 40) - before.size()));
+    for (std::string line; std::getline(lines, line);) text += fmt::format("{}{}\n", before, line);
+    return text;
 }
 
-void print_sentences(std::string_view of, const std::vector<std::string>& sentences) {
-    if (!sentences.empty()) print(fmt::format("    {}\n", of));
-    for (const std::string& sentence : sentences) print_wrapped("      ", sentence);
+std::string indented_all(std::string_view of, const std::vector<std::string>& sentences) {
+    std::string text = sentences.empty() ? "" : fmt::format("    {}\n", of);
+    for (const std::string& sentence : sentences) text += indented("      ", sentence);
+    return text;
+}
+
+/// Of the time that is left, what one part of the explanation may take of it.
+constexpr double share_of_part = 0.25;
+
+/// Why there is nothing to be said, where work did not come to its end.
+std::string reason_of(const work_apart& work) {
+    return text_of(attempt{work.end, {}, work.reason, work.seconds});
 }
 
 /// What the stage is made of.
@@ -65,18 +80,25 @@ std::string text_of(const contender_name& name, aabb::stage stage) {
 /// So that buffers have grown and what is kept between frames is there.
 constexpr std::size_t explained_frames = 2;
 
-void explain_contender(const scene_choice& choice, const contender& who) {
-    scene_play scene(choice);
+std::string explained(scene_play& scene, const contender& who) {
     player p(who, scene, aabb::instrumentation::none);
     play(scene, p, [](const played_frame&) {}, explained_frames);
     const contender_name& name = who.name;
-    print_wrapped("  ", text_of(name));
-    print_parts("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
-    print_parts(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
-    if (scene.meshes()) print_parts("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
-    print_sentences("planned from what was seen", p.plans());
-    print_sentences("left out", omissions_of(name, p.left_out()));
-    flush_output();
+    std::string text = text_of("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
+    text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
+    if (scene.meshes())
+        text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
+    text += indented_all("planned from what was seen", p.plans());
+    return text + indented_all("left out", omissions_of(name, p.left_out()));
+}
+
+void explain_contender(staged_scene& scene, const contender& who, const time_limits& limits) {
+    const work_apart work = scene.apart([&](scene_play& play, const telling& tell) { tell(explained(play, who)); },
+                                        share_of_part * limits.to_play());
+    // What cannot be played is bad input.
+    if (work.end == ending::refused) throw aabb::input_error(work.reason);
+    print(indented("  ", text_of(who.name)));
+    print(work.end == ending::done ? work.told : indented("    ", "its bytes and plans: " + reason_of(work)));
 }
 
 /// Parts of the config that a scene has no use for.
@@ -96,12 +118,24 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 }
 
 /// What the scene is and what it is like; nothing is said of one that cannot be played.
-void explain_measures(const scene_choice& scene) {
-    table t{{{"measured", false}, {"", false}}, {}};
-    for (const told_measure& one : told(measure_scene(scene))) t.rows.push_back({one.name, one.value});
-    print(wrapped(scene.kind + " (" + visible(parameters_text(scene)) + ")") + "\n" + to_text(t, output_width()) +
-          "\n");
-    flush_output();
+void explain_measures(staged_scene& scene, const time_limits& limits) {
+    const auto text_of_measures = [](const std::vector<told_measure>& measures) {
+        table t{{{"measured", false}, {"", false}}, {}};
+        for (const told_measure& one : measures) t.rows.push_back({one.name, one.value});
+        return to_text(t, output_width());
+    };
+    const work_apart work =
+        scene.apart([&](scene_play& play, const telling& tell) { tell(text_of_measures(told(measure_scene(play)))); },
+                    share_of_part * limits.to_play());
+    if (work.end == ending::refused) throw aabb::input_error(work.reason);
+    print(wrapped(scene.choice().kind + " (" + visible(parameters_text(scene.choice())) + ")") + "\n");
+    if (work.end == ending::done)
+        print(work.told);
+    else
+        print(text_of_measures({{"objects", grouped(scene.scene().objects())},
+                                {"frames", grouped(scene.scene().frames())},
+                                {"all else", reason_of(work)}}));
+    print("\n");
 }
 
 /// Reasons are broken where they are longer than the output is wide.
@@ -122,34 +156,39 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
 
 /// What is selected and why, what comes of it, and what it saves.
 /// @returns whether all that was played finds the same
-bool explain_automatic(const scene_choice& choice, const aabb::named_strategies& named) {
-    const scene_play scene(choice);
-    std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene));
+bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named, const time_limits& limits) {
+    const bool meshes = scene.scene().meshes() != nullptr;
+    std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene.scene()));
     const aabb::composition c = composed_of(selected);
-    if (!scene.meshes())
+    if (!meshes)
         std::erase_if(selected, [](const aabb::selected_strategy& one) {
             return info_of(one.kind).stage == aabb::stage::local_detection;
         });
     print_selected(selected);
-    explain_contender(choice, contender_of(c, scene.meshes() != nullptr));
+    explain_contender(scene, contender_of(c, meshes), limits);
     print("\n");
-    return print_savings(choice, c);
+    flush_output();
+    return print_savings(scene, c, limits);
 }
 
-bool explain_scene(const experiment& e, const scene_choice& scene) {
-    explain_measures(scene);
-    if (const std::size_t frames = scene_play(scene).frames(); frames > explained_frames)
+bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
+    explain_measures(scene, limits);
+    if (const std::size_t frames = scene.scene().frames(); frames > explained_frames)
         print(fmt::format("  bytes are those after {} of {} frames; run tells those after the last\n", explained_frames,
                           grouped(frames)));
-    explain_unused(e, scene);
+    explain_unused(e, scene.choice());
+    flush_output();
     bool same = true;
     for (const aabb::named_strategies& named : e.automatic) {
-        same &= explain_automatic(scene, named);
+        same &= explain_automatic(scene, named, limits);
         print("\n");
     }
-    const std::vector<contender> all = contenders_for(e, scene);
-    for (const contender& who : all)
-        if (!who.name.is_automatic()) explain_contender(scene, who);
+    const std::vector<contender> all = contenders_for(e, scene.choice());
+    for (const contender& who : all) {
+        if (who.name.is_automatic()) continue;
+        explain_contender(scene, who, limits);
+        flush_output();
+    }
     if (all.size() > e.automatic.size()) print("\n");
     return same;
 }
@@ -158,21 +197,32 @@ void explain_costs() {
     print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
 }
 
-int explain(const std::vector<std::string>& what) {
-    if (what.size() == 1 && names_config(what.front())) {
-        const experiment e = open_experiment(what.front(), false);
+struct explain_request {
+    std::vector<std::string> what;
+    double seconds = 60;
+};
+
+int explain(const explain_request& request) {
+    if (request.what.size() == 1 && names_config(request.what.front())) {
+        const experiment e = open_experiment(request.what.front(), false);
         explain_costs();
         bool same = true;
-        for (const scene_choice& scene : e.scenes) same &= explain_scene(e, scene);
+        for (const scene_choice& choice : e.scenes) {
+            time_limits limits(request.seconds);
+            staged_scene scene(choice);
+            limits.scene_is_read();
+            same &= explain_scene(e, scene, limits);
+        }
         return same ? 0 : 1;
     }
     experiment e;
     e.automatic.emplace_back();
-    const scene_choice scene = scene_of_arguments(what);
+    time_limits limits(request.seconds);
     // What cannot be made is said before anything else.
-    (void)scene_play(scene);
+    staged_scene scene(scene_of_arguments(request.what));
+    limits.scene_is_read();
     explain_costs();
-    return explain_scene(e, scene) ? 0 : 1;
+    return explain_scene(e, scene, limits) ? 0 : 1;
 }
 
 }  // namespace
@@ -180,14 +230,19 @@ int explain(const std::vector<std::string>& what) {
 void add_explain(const command_parser& program, int& status) {
     const command_parser command = program.add_command(
         "explain", "What a scene is like, which composition it gets and why, its bytes, and what is left out");
-    auto what = std::make_shared<std::vector<std::string>>();
+    auto request = std::make_shared<explain_request>();
     command
         .add_option(
-            "WHAT", *what,
+            "WHAT", request->what,
             std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help)
         .required()
         .type_name("");
-    command.callback([what, &status] { status = explain(*what); });
+    command
+        .add_option(
+            "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text, "play"); },
+            "How long to play each scene (default 60); it says what there was no time for")
+        .type_name("S");
+    command.callback([request, &status] { status = explain(*request); });
 }
 
 }  // namespace aabblab

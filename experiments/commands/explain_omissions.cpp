@@ -37,7 +37,7 @@ double median_ms(std::span<const race_time> times) {
 /// What is left out, without reasons.
 std::vector<std::string> omitted_by(const other_way& one) {
     std::vector<std::string> all;
-    for (const std::string& sentence : omissions_of(one.who.name, one.times.front().left_out))
+    for (const std::string& sentence : omissions_of(one.who.name, one.times.back().left_out))
         if (std::string what = sentence.substr(0, sentence.find(':')); std::ranges::find(all, what) == all.end())
             all.push_back(std::move(what));
     return all;
@@ -47,7 +47,7 @@ std::vector<std::string> omitted_by(const other_way& one) {
 const other_way* fastest_with(const std::string& what, std::span<const other_way> all) {
     const other_way* fastest = nullptr;
     for (const other_way& one : all)
-        if (std::ranges::count(omitted_by(one), what) == 0 &&
+        if (!one.times.empty() && std::ranges::count(omitted_by(one), what) == 0 &&
             (!fastest || median_ms(one.times) < median_ms(fastest->times)))
             fastest = &one;
     return fastest;
@@ -82,7 +82,7 @@ std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb:
         aabb::composition c = selected;
         c[kind] = choice;
         if (c != selected && refusal_of(c, info_of(kind).stage).empty())
-            all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}});
+            all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}, {}, false});
     }
     return all;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@ struct other_way {
     std::string kind;  ///< in which it differs from what is selected; empty where it does not
     std::string name;  ///< of what stands in its place
     contender who;
-    std::vector<race_time> times;
+    std::vector<race_time> times;       ///< none where no play came to its end
+    std::optional<attempt> broken_off;  ///< its first play, where that did not
+    bool is_hopeless;                   ///< it takes far longer than what is selected
 };
 
 /// Compositions that have what the selected one leaves out for the sake of this kind's settings, not of its strategy.

@@ -43,7 +43,7 @@ std::vector<other_way> others(const aabb::composition& selected, aabb::strategy_
         c[kind] = {info.name, {}};
         if (refusal_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
             (meshes || needs_meshes(c).empty()))
-            all.push_back({std::string(name_of(kind)), info.name, contender_of(c, meshes), {}});
+            all.push_back({std::string(name_of(kind)), info.name, contender_of(c, meshes), {}, {}, false});
     }
     return all;
 }
@@ -59,24 +59,37 @@ contender with_counters(contender who) {
 }
 
 /// Ratio and range.
-std::vector<std::string> ratio_cells(std::span<const race_time> times, std::span<const race_time> selected) {
-    if (times.size() < selected.size()) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
-    const paired_ratio ratio = paired_ratio_of(frame_ms_of(times), frame_ms_of(selected));
+std::vector<std::string> ratio_cells(const other_way& one, std::span<const race_time> selected) {
+    if (one.is_hopeless) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
+    if (one.times.empty()) return {"-", "-"};
+    const paired_ratio ratio = paired_ratio_of(frame_ms_of(one.times), frame_ms_of(selected));
     return {fmt::format("{:.2f}{}", ratio.median, ratio.may_be_same() ? "?" : ""),
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
 void add_row(table& t, const other_way& one, const other_way& selected) {
+    const std::vector<std::string> ratio =
+        &one == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells(one, selected.times);
+    if (one.times.empty()) {
+        t.rows.push_back({one.kind, one.name, "-", ratio[0], ratio[1], "-", "-"});
+        return;
+    }
     std::vector<double> build_ms;
     for (const race_time& time : one.times) build_ms.push_back(time.build_ms);
-    const std::vector<std::string> ratio =
-        &one == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells(one.times, selected.times);
     t.rows.push_back({one.kind, one.name, fmt::format("{:.4g}", quartiles_of(frame_ms_of(one.times)).median), ratio[0],
                       ratio[1], fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
 }
 
 void print_line(const std::string& line) {
     print(wrapped(line) + "\n");
+}
+
+/// Those who did not come to the end of a play, and why.
+void print_unfinished(const std::vector<other_way>& all) {
+    table t{{{"not finished", false}, {"", false}}, {}};
+    for (const other_way& one : all)
+        if (one.broken_off) t.rows.push_back({called(one), text_of(*one.broken_off)});
+    if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");
 }
 
 /// @returns whether there are none
@@ -93,11 +106,11 @@ bool print_disagreements(const std::vector<other_way>& all) {
 
 }  // namespace
 
-bool print_savings(const scene_choice& choice, const aabb::composition& selected) {
-    const scene_play scene(choice);
+bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
+    const scene_play& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
     const bool any = scene.objects() <= most_objects_of_any;
-    std::vector<other_way> all{{"", "as selected", contender_of(selected, meshes), {}}};
+    std::vector<other_way> all{{"", "as selected", contender_of(selected, meshes), {}, {}, false}};
     std::vector<other_way> by_settings;
     std::string alone;  // kinds of which nothing else goes with the rest
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -108,13 +121,22 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
         std::ranges::move(ways_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
         if (some.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    all.push_back({"", "counters of all work", with_counters(all.front().who), {}});
+    all.push_back({"", "counters of all work", with_counters(all.front().who), {}, {}, false});
     const std::size_t in_one_kind = all.size();
     std::ranges::move(by_settings, std::back_inserter(all));
     std::vector<contender> playing;
     for (const other_way& one : all) playing.push_back(one.who);
-    auto times = play_in_turn(choice, playing, most_frames, rounds);
-    for (std::size_t i = 0; i < all.size(); ++i) all[i].times = std::move(times[i]);
+    turns played = play_in_turn(staged, playing, most_frames, rounds, limits);
+    if (played.times[0].empty()) {
+        print_line("what each choice saves is not known: what is selected was " + text_of(*played.broken_off[0]) +
+                   "; a greater --seconds gives more time.");
+        return true;
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i].times = std::move(played.times[i]);
+        all[i].broken_off = std::move(played.broken_off[i]);
+        all[i].is_hopeless = played.hopeless[i];
+    }
 
     table t{{{"kind", false},
              {"in its place", false},
@@ -125,9 +147,10 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
              {"bytes", true, 1}},
             {}};
     for (std::size_t i = 0; i < in_one_kind; ++i) add_row(t, all[i], all[0]);
-    print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} rounds of {}",
-                           rounds, counted(std::min(scene.frames(), most_frames), "frame")));
+    print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} of {}",
+                           counted(played.rounds, "round"), counted(played.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
+    print_unfinished(all);
     if (!alone.empty()) print_line(alone + ": nothing else can be composed with the rest.");
     if (!any)
         print_line(fmt::format("With more than {} only kinds that stand apart are tried in other ways.",
@@ -135,7 +158,7 @@ bool print_savings(const scene_choice& choice, const aabb::composition& selected
     print_line(ms_a_frame_text);
     print_line(fmt::format(
         "ratio: ms/frame over that of what is selected in the same round, the median; range: the least and the "
-        "greatest; ?: the range comes within 3 % of 1, so that the rounds leave it open; > {:.0f}: seen after one "
+        "greatest; ?: the range comes within 3 % of 1, so that the rounds leave it open; > {:.0f}: seen in one "
         "round.",
         hopeless_ratio));
     print_line(build_ms_text);

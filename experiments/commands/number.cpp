@@ -31,6 +31,17 @@ Real parse_number(const std::string& text) {
 template float parse_number<float>(const std::string&);
 template double parse_number<double>(const std::string&);
 
+double seconds_of(const std::string& text, std::string_view to_do) {
+    constexpr double most = 1e6;
+    try {
+        if (const auto seconds = parse_number<double>(text); seconds > 0 && seconds <= most) return seconds;
+    } catch (const aabb::input_error&) {  // NOLINT(bugprone-empty-catch)
+        // What is expected says more.
+    }
+    throw aabb::input_error("--seconds is how long to " + std::string(to_do) +
+                            ": a number above 0, at most 1,000,000, not '" + text + "'");
+}
+
 std::vector<std::string> split_numbers(std::string_view line) {
     constexpr std::string_view blanks = " \t\r";
     std::vector<std::string> words;

@@ -11,6 +11,11 @@ namespace aabblab {
 template <class Real>
 [[nodiscard]] Real parse_number(const std::string& text);
 
+/// Of --seconds, a number above 0, at most a million.
+/// @param to_do what it is the time for, as in "race"
+/// @throws aabb::input_error on anything else.
+[[nodiscard]] double seconds_of(const std::string& text, std::string_view to_do);
+
 /// The words of a line of numbers, with blanks or one comma between two of them.
 /// @throws aabb::input_error on a comma that has no word on either side.
 [[nodiscard]] std::vector<std::string> split_numbers(std::string_view line);

@@ -23,6 +23,7 @@ import aabblab.files;
 import aabblab.machine;
 import aabblab.measures;
 import aabblab.numbers;
+import aabblab.play;
 import aabblab.race;
 import aabblab.results;
 import aabblab.scenes;
@@ -52,27 +53,41 @@ table table_of(const race_result& race) {
     for (const racer& r : race.finalists) {
         const race_time& time = *r.last;
         const auto [low, high] = r.ratio_range();
-        t.rows.push_back({std::to_string(t.rows.size() + 1), r.name, fmt::format("{:.4g}", time.whole_ms()),
-                          fmt::format("{:.2f}", r.ratio()),
-                          &r == &race.finalists.front() ? "-" : fmt::format("{:.2f}-{:.2f}", low, high),
-                          fmt::format("{:.4g}", time.frame_ms()), fmt::format("{:.3g}", time.first_ms),
-                          fmt::format("{:.3g}", time.build_ms), grouped(time.bytes / 1024)});
+        t.rows.push_back(
+            {std::to_string(t.rows.size() + 1), r.name, fmt::format("{:.4g}", time.whole_ms()),
+             fmt::format("{:.2f}", r.ratio()),
+             &r == &race.finalists.front() || !r.has_range() ? "-" : fmt::format("{:.2f}-{:.2f}", low, high),
+             fmt::format("{:.4g}", time.frame_ms()), fmt::format("{:.3g}", time.first_ms),
+             fmt::format("{:.3g}", time.build_ms), time.bytes > 0 ? grouped(time.bytes / 1024) : "-"});
     }
     return t;
+}
+
+/// Of a dropped racer: how far behind it was, or how its play ended.
+std::string fate_of(const racer& r) {
+    return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.behind);
 }
 
 table dropped_table_of(const race_result& race) {
     table t{{{"dropped", false}, {"after frames"}, {"times"}}, {}};
     for (const racer& r : race.dropped)
-        t.rows.push_back({r.name, r.last ? std::to_string(r.last->frames) : "-",
-                          r.last ? fmt::format("{:.3g}", r.behind) : "stopped"});
+        t.rows.push_back({r.name, r.last ? std::to_string(r.last->frames) : "-", fate_of(r)});
+    return t;
+}
+
+/// Those whose play did not end; none of those that were not played at all.
+table unfinished_table_of(const race_result& race) {
+    table t{{{"not finished", false}, {"", false}}, {}};
+    for (const racer& r : race.dropped)
+        if (r.broken_off && r.broken_off->seconds > 0) t.rows.push_back({r.name, fate_of(r)});
     return t;
 }
 
 /// What the columns of the finalists mean.
 std::vector<std::string> legend() {
     return {"all ms: build ms, first ms, which is frame 0, and all further frames; of the plays the median.",
-            "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %.",
+            "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %; -: of "
+            "itself, or of too few plays to say.",
             ms_a_frame_text, build_ms_text};
 }
 
@@ -88,53 +103,56 @@ std::string origin() {
     return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
 }
 
-std::string page_of(const std::string& scene, const race_result& race, const std::vector<told_measure>& measured) {
-    table measures{{{"measured", false}, {"", false}}, {}};
-    for (const told_measure& one : measured) measures.rows.push_back({one.name, one.value});
+std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
     return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(scene) +
            "</title>\n<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:"
            "0 .6em;text-align:left}</style></head><body>\n<h1>" +
            html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
-           "<p>" + html_text(joined(legend())) + "</p>\n" + to_html(measures) + to_html(dropped_table_of(race)) +
+           "<p>" + html_text(joined(legend())) + "</p>\n" + measured + to_html(dropped_table_of(race)) +
            "<p>Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in "
-           "those after the first; stopped: who took far longer than that, or failed. Strategies play with their "
+           "those after the first; or how a play ended that did not come to its end. Strategies play with their "
            "default parameters.</p>\n<p>" +
            html_text(origin()) + "</p>\n</body></html>\n";
 }
 
-double seconds_of(const std::string& text) {
-    constexpr double most = 1e6;
-    try {
-        if (const auto seconds = parse_number<double>(text); seconds > 0 && seconds <= most) return seconds;
-    } catch (const aabb::input_error&) {  // NOLINT(bugprone-empty-catch)
-        // What is expected says more.
-    }
-    throw aabb::input_error("--seconds is how long to race: a number above 0, at most 1,000,000, not '" + text + "'");
+/// As a page has it: what the scene is like, or that there was no time to find out.
+std::string measures_page(staged_scene& scene, double seconds) {
+    const work_apart measured = scene.apart(
+        [](scene_play& play, const telling& tell) {
+            table measures{{{"measured", false}, {"", false}}, {}};
+            for (const told_measure& one : told(measure_scene(play))) measures.rows.push_back({one.name, one.value});
+            tell(to_html(measures));
+        },
+        seconds);
+    return measured.end == ending::done ? measured.told
+                                        : "<p>There was no time to measure what the scene is like.</p>\n";
 }
 
 int recommend(const recommend_request& request) {
-    const scene_choice scene = scene_of_arguments(request.what);
+    time_limits limits(request.seconds);
+    staged_scene scene(scene_of_arguments(request.what));
+    limits.scene_is_read();
     std::optional<output_file> page;
     if (request.report) {
         require_no_mesh(*request.report, request.what);
         page.emplace(*request.report);
     }
-    const scene_measures measured = measure_scene(scene);
-    if (measured.objects < 2)
-        throw aabb::input_error("nothing to search: the scene has " + counted(measured.objects, "object"));
-    const std::string name = scene.kind + " (" + visible(parameters_text(scene)) + ")";
-    print(wrapped(name + ": " + counted(measured.objects, "object") + ", " + counted(measured.frames, "frame")) + "\n");
-    flush_output();
-    const race_result race = run_race(scene, starters(scene), request.seconds);
+    if (scene.scene().objects() < 2)
+        throw aabb::input_error("nothing to search: the scene has " + counted(scene.scene().objects(), "object"));
+    const race_result race = run_race(scene, starters(scene.scene()), limits);
+    const std::string name = scene.choice().kind + " (" + visible(parameters_text(scene.choice())) + ")";
+    print(wrapped(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame")) + "\n");
     print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
                       race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
                       100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
     print(to_text(table_of(race), output_width()) + "\n");
     for (const std::string& line : legend()) print(wrapped(line) + "\n");
     print("\n");
+    if (const table unfinished = unfinished_table_of(race); !unfinished.rows.empty())
+        print(to_text(unfinished, output_width()) + "\n");
     for (const std::string& sentence : advice_of(race)) print(wrapped(sentence) + "\n");
     if (page) {
-        page->write(page_of(name, race, told(measured)));
+        page->write(page_of(name, race, measures_page(scene, limits.to_end())));
         page->commit();
     }
     const std::string& answer = race.finalists.front().last->digest;
@@ -152,8 +170,10 @@ void add_recommend(const command_parser& program, int& status) {
     command.add_option("WHAT", request->what, scene_arguments_help).required().type_name("");
     command
         .add_option(
-            "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text); },
-            "About how long to race at most (default 60); then as long again at most until CGAL has the exact pairs")
+            "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text, "race"); },
+            "How long to race (default 60): it ends within twice that, or 2 s after the scene is read where that is "
+            "later; "
+            "who takes longer is stopped")
         .type_name("S");
     command.add_option("--report", request->report, "Write all of it as a page, too").type_name("FILE.html");
     command.callback([request, &status] { status = recommend(*request); });

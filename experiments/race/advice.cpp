@@ -21,6 +21,9 @@ namespace {
 
 /// "takes 1.31 times as long (1.25-1.36)"
 std::string beside_winner(const racer& one) {
+    if (!one.has_range())
+        return fmt::format("takes {:.2f} times as long, in {}, too few to say how sure that is", one.ratio(),
+                           counted(one.times.size(), "play"));
     const auto [low, high] = one.ratio_range();
     const std::string range = fmt::format("({:.2f}-{:.2f})", low, high);
     return low > 1 ? fmt::format("takes {:.2f} times as long {}", one.ratio(), range)
@@ -34,7 +37,7 @@ std::string of_automatic(const race_result& race) {
         return ended - race.finalists.begin() < 2 ? "" : ended->name + " " + beside_winner(*ended) + ".";
     const auto out = std::ranges::find_if(race.dropped, is_automatic);
     if (out == race.dropped.end()) return "";
-    if (!out->last) return out->name + " was stopped: it took too long, or failed.";
+    if (out->broken_off) return fmt::format("{}: {}.", out->name, text_of(*out->broken_off));
     return fmt::format("{} was dropped after {}: {:.2f} times as long as the fastest.", out->name,
                        counted(out->last->frames, "frame"), out->behind);
 }
@@ -58,6 +61,7 @@ struct crossing {
 
 /// None where the repeats do not show it.
 std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
+    if (!other.has_range()) return std::nullopt;
     const auto begin = shown_difference(other, winner, [](const race_time& t) { return t.over(1); });
     const auto steady = shown_difference(other, winner, [](const race_time& t) { return t.steady_ms(); });
     if (!begin || !steady || (*begin > 0) == (*steady > 0)) return std::nullopt;
@@ -73,10 +77,16 @@ std::string options_of(const contender_name& name) {
     return "To name it:" + (name.engine.empty() ? text : " --engine " + name.engine);
 }
 
+/// "25 frames", "the first 4 of 1,000 frames"
+std::string frames_text(const race_result& race) {
+    if (race.final_frames == race.frames) return counted(race.frames, "frame");
+    return fmt::format("the first {} of {}", race.final_frames, counted(race.frames, "frame"));
+}
+
 /// From how many frames on, or below how many, somebody else is faster than the winner: the first to overtake it.
 std::vector<std::string> what_would_change_it(const race_result& race) {
-    if (race.frames < 2 || race.finalists.size() < 2) return {};
-    const auto frames = static_cast<double>(race.frames);
+    if (race.final_frames < 2 || race.finalists.size() < 2 || !race.finalists.front().has_range()) return {};
+    const auto frames = static_cast<double>(race.final_frames);
     double below = 1.5;  // fewer than two would be one
     double above = 1e6;
     const racer* with_fewer = nullptr;
@@ -103,12 +113,34 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
     return parts;
 }
 
+/// What there was no time for, or was not compared with the exact pairs.
+std::vector<std::string> what_was_left(const race_result& race) {
+    std::vector<std::string> sentences;
+    const auto not_played = std::ranges::count_if(
+        race.dropped, [](const racer& one) { return one.broken_off && one.broken_off->seconds == 0; });
+    if (not_played > 0)
+        sentences.push_back(fmt::format("For {} there was no time; a greater --seconds gives more.",
+                                        counted(static_cast<std::size_t>(not_played), "other")));
+    if (race.is_validated()) return sentences;
+    const racer& winner = race.finalists.front();
+    sentences.push_back(
+        race.validated > 0
+            ? fmt::format("Only the first {} of these frames were compared with the exact pairs: CGAL takes longer "
+                          "than there was time.",
+                          race.validated)
+            : "Nobody was compared with the exact pairs: CGAL fails to find them, or takes longer than there was "
+              "time.");
+    for (const racer& other : race.finalists)
+        if (other.last->digest != winner.last->digest)
+            sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));
+    return sentences;
+}
+
 }  // namespace
 
 std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
-    std::string use =
-        fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), counted(race.frames, "frame"));
+    std::string use = fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), frames_text(race));
     if (race.finalists.size() > 1)
         use += fmt::format("; the next, {}, {}", race.finalists[1].name, beside_winner(race.finalists[1]));
     for (const std::string& part : what_would_change_it(race)) use += "; " + part;
@@ -117,12 +149,7 @@ std::vector<std::string> advice_of(const race_result& race) {
     if (std::string options = options_of(winner.who.name); !options.empty()) sentences.push_back(std::move(options));
     for (const racer& one : race.wrong)
         sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", one.name));
-    if (race.held_against_cgal) return sentences;
-    sentences.emplace_back(
-        "Nobody was held against the exact pairs: CGAL fails to find them, or takes longer than the race may.");
-    for (const racer& other : race.finalists)
-        if (other.last->digest != winner.last->digest)
-            sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));
+    for (std::string& sentence : what_was_left(race)) sentences.push_back(std::move(sentence));
     return sentences;
 }
 

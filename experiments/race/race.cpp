@@ -2,14 +2,13 @@ module;
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <sstream>
+#include <random>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -28,7 +27,6 @@ import aabblab.play;
 import aabblab.progress;
 import aabblab.scenes;
 import aabblab.statistics;
-import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -37,57 +35,33 @@ namespace {
 constexpr std::size_t first_frames = 4;
 constexpr std::size_t most_finalists = 6;
 constexpr std::size_t fewest_finalists = 2;
-constexpr std::size_t fewest_repeats = 5;
 constexpr std::size_t most_repeats = 15;
-constexpr double least_patience = 1;  // seconds
-constexpr double final_patience = 600;
 /// Who takes so many times as long as the fastest, in the whole and a frame, is dropped; less in every round.
 constexpr double first_margin = 2;
 constexpr double last_margin = 1.25;
-
-std::string to_line(const race_time& t) {
-    std::ostringstream text;
-    text.precision(17);
-    text << t.build_ms << ' ' << t.first_ms << ' ' << t.rest_ms << ' ' << t.frames << ' ' << t.bytes << ' ' << t.digest;
-    return text.str();
-}
-
-race_time from_line(const std::string& line) {
-    std::istringstream text(line);
-    race_time t;
-    text >> t.build_ms >> t.first_ms >> t.rest_ms >> t.frames >> t.bytes >> t.digest;
-    return t;
-}
-
-std::optional<race_time> play_apart(const scene_choice& choice, const contender& who, std::size_t frames,
-                                    double seconds) {
-    const auto line = done_apart([&] { return to_line(time_frames(choice, who, frames)); }, seconds);
-    return line ? std::optional(from_line(*line)) : std::nullopt;
-}
+/// Of the time to play, what the first round may take, so that there is some for repeats.
+constexpr double share_of_first_round = 2.0 / 3;
 
 class race {
 public:
-    race(const scene_choice& scene, std::vector<racer> all, double seconds)
-        : scene_(scene), running_(std::move(all)), seconds_(seconds) {
-        const scene_play made(scene);
-        result_.objects = made.objects();
-        result_.frames = made.frames();
+    race(staged_scene& scene, std::vector<racer> all, const time_limits& limits)
+        : scene_(scene), limits_(limits), whole_(limits.to_play()), running_(std::move(all)) {
+        result_.objects = scene.scene().objects();
+        result_.frames = scene.scene().frames();
         result_.of = result_.frames * running_.size();
     }
 
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;
-        play_round(frames, margin);
-        if (running_.empty())
-            throw aabb::input_error(fmt::format("nobody plays {} of this scene to the end in {:.4g} s",
-                                                counted(frames, "frame"), least_patience + seconds_));
-        while (frames < result_.frames && running_.size() > most_finalists && left() > seconds_ / 2) {
+        frames = play_first_round(frames, margin);
+        while (frames < result_.frames && running_.size() > most_finalists && left() > whole_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
             margin = std::max(last_margin, std::sqrt(margin));
-            play_round(frames, margin);
+            if (!play_round(frames, margin)) break;
         }
-        for (; running_.size() > most_finalists || (running_.size() > fewest_finalists && !final_fits());
+        result_.final_frames = running_.front().last->frames;
+        for (; running_.size() > most_finalists || (running_.size() > fewest_finalists && !final_fits(result_.frames));
              running_.pop_back())
             result_.dropped.push_back(std::move(running_.back()));
         play_final();
@@ -101,37 +75,89 @@ public:
     }
 
 private:
-    [[nodiscard]] double left() const {
-        return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+    [[nodiscard]] double left() const { return limits_.to_play(); }
+
+    /// For how long one may play frames that the fastest so far takes so many seconds for: far longer, but not much of
+    /// all time, unless it stays within the margin.
+    [[nodiscard]] double patience(double least, double margin) const {
+        constexpr double far = 20;
+        constexpr double share = 0.25;
+        const double to_begin = std::min(1.0, whole_ / 20);
+        return to_begin + (std::isfinite(least) ? std::min(far * least, std::max(share * whole_, margin * least))
+                                                : share * whole_);
     }
 
-    /// For how long one may play frames that the fastest so far takes so many milliseconds for: far longer, but no
-    /// longer than the whole race may take, unless it stays within the margin.
-    [[nodiscard]] double patience(double least_ms, double margin) const {
-        const double least = least_ms / 1000;
-        const double longest =
-            std::isfinite(least) ? std::min(20 * least, std::max(seconds_, margin * least)) : seconds_;
-        return least_patience + reading_s_ + longest;
+    /// One plays the first frames; it is out where it does not come to their end, unless all time is over.
+    /// @returns whether it did
+    bool plays(racer& one, std::size_t frames, double seconds, double time_left) {
+        attempt tried = scene_.play(one.who, frames, std::min(seconds, time_left));
+        if (tried.end != ending::done) {
+            tried.is_hopeless = tried.end == ending::stopped && seconds < time_left;
+            one.frames = std::max(one.frames, tried.time.frames);
+            one.broken_off = std::move(tried);
+            return false;
+        }
+        one.last = std::move(tried.time);
+        one.seconds = tried.seconds;
+        one.frames = frames;
+        return true;
     }
 
-    /// Plays the first frames with all; who takes far longer than the fastest so far is stopped.
-    void play_round(std::size_t frames, double margin) {
+    /// Plays the first frames with all. Where they take too long, those are raced over that the first who came to the
+    /// end of any came to the end of.
+    /// @returns how many
+    std::size_t play_first_round(std::size_t frames, double margin) {
         progress shown("racing over " + counted(frames, "frame"), running_.size());
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
         for (racer& one : running_) {
-            const auto began = std::chrono::steady_clock::now();
-            one.last = play_apart(scene_, one.who, frames, patience(least, margin));
-            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-            if (one.last) {
-                const double own = one.last->whole_ms();
-                // Reading the scene takes time as well.
-                if (!std::isfinite(least)) reading_s_ = 2 * std::max(0.0, took - own / 1000);
-                least = std::min(least, own);
-                one.frames = frames;
+            const double time_left = left() - (1 - share_of_first_round) * whole_;
+            bool ends = plays(one, frames, patience(least, margin), time_left);
+            if (!ends && !std::isfinite(least) && one.broken_off->end == ending::stopped && one.frames > 0) {
+                frames = one.frames;
+                one.seconds = one.broken_off->seconds_of_frames;
+                one.last = std::move(one.broken_off->time);
+                one.broken_off.reset();
+                ends = true;
+            }
+            if (ends) least = std::min(least, one.seconds);
+            shown.at(++done);
+        }
+        if (!std::isfinite(least)) refuse_all();
+        finish_round(frames, margin);
+        return frames;
+    }
+
+    /// Nobody came to the end of any frame.
+    [[noreturn]] void refuse_all() const {
+        for (const racer& r : running_)
+            if (r.broken_off->end == ending::refused) throw aabb::input_error(r.broken_off->reason);
+        throw aabb::input_error(
+            fmt::format("nobody plays even frame 0 of this scene in {:.2g} s; --seconds gives more time", whole_));
+    }
+
+    /// Plays the first frames with all; who takes far longer than the fastest so far is stopped. Where all time is over
+    /// before all have played, it is as if nobody had.
+    /// @returns whether all have
+    bool play_round(std::size_t frames, double margin) {
+        progress shown("racing over " + counted(frames, "frame"), running_.size());
+        const std::vector<racer> before = running_;
+        double least = std::numeric_limits<double>::infinity();
+        std::size_t done = 0;
+        for (racer& one : running_) {
+            if (plays(one, frames, patience(least, margin), left())) {
+                least = std::min(least, one.seconds);
+            } else if (one.broken_off->end == ending::stopped && !one.broken_off->is_hopeless) {
+                running_ = before;
+                return false;
             }
             shown.at(++done);
         }
+        finish_round(frames, margin);
+        return true;
+    }
+
+    void finish_round(std::size_t frames, double margin) {
         set_behind();
         play_again(frames, margin);
         judge(margin);
@@ -150,14 +176,14 @@ private:
     void play_again(std::size_t frames, double margin) {
         constexpr double far = 2;
         for (racer& r : running_) {
-            if (r.behind <= margin || r.behind > far * margin || left() < seconds_ / 2) continue;
-            const auto second = play_apart(scene_, r.who, frames, patience(r.last->whole_ms(), margin));
-            if (second && second->whole_ms() < r.last->whole_ms()) r.last = second;
+            if (r.broken_off || r.behind <= margin || r.behind > far * margin || left() < whole_ / 2) continue;
+            const attempt second = scene_.play(r.who, frames, std::min(patience(r.seconds, margin), left()));
+            if (second.end == ending::done && second.time.whole_ms() < r.last->whole_ms()) r.last = second.time;
         }
         set_behind();
     }
 
-    /// Drops who is behind both over the whole scene and a frame.
+    /// Drops who did not come to the end, and who is behind both over the whole scene and a frame.
     void judge(double margin) {
         double least_steady = std::numeric_limits<double>::infinity();
         for (const racer& r : running_)
@@ -166,7 +192,7 @@ private:
             return a.last.has_value() && (!b.last || a.behind < b.behind);
         });
         keep([&](const racer& r) {
-            return r.last &&
+            return !r.broken_off &&
                    (r.behind <= margin || (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
         });
     }
@@ -178,38 +204,94 @@ private:
         running_.erase(first_out, running_.end());
     }
 
-    [[nodiscard]] bool final_fits() const {
-        double ms = 0;
-        for (const racer& r : running_) ms += fewest_repeats * whole(r);
-        return ms / 1000 <= std::max(left(), seconds_ / 2);
+    /// About how many seconds a play takes: what is not timed, as reading and sorting, takes as long in each frame.
+    [[nodiscard]] static double seconds_of(const racer& r, std::size_t frames) {
+        const double share = static_cast<double>(frames) / static_cast<double>(r.last->frames);
+        return r.last->over(static_cast<double>(frames)) / 1000 +
+               share * std::max(0.0, r.seconds - r.last->whole_ms() / 1000);
+    }
+    [[nodiscard]] double seconds_of_repeat(std::size_t frames) const {
+        double seconds = 0;
+        for (const racer& r : running_) seconds += seconds_of(r, frames);
+        return seconds;
+    }
+    [[nodiscard]] bool final_fits(std::size_t frames) const {
+        return fewest_repeats * seconds_of_repeat(frames) <= left();
     }
 
-    /// The whole scene, in turn, as often as there is time for. Who does not come to the end each time is dropped.
+    /// All frames in turn, or as many as there is time for, as often as there is. Who fails, or takes far longer than
+    /// it seemed, is dropped. Where there is no time for any repeat, or nobody ends one, the last round counts as one.
     void play_final() {
+        std::size_t frames = result_.frames;
+        while (frames > result_.final_frames && !final_fits(frames))
+            frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
         progress shown("racing to the end", most_repeats);
-        for (std::size_t repeat = 0; repeat < most_repeats && (repeat < fewest_repeats || left() > 0); ++repeat) {
-            for (std::size_t k = 0; k < running_.size(); ++k) {
-                racer& r = running_[in_turn(k, repeat, running_.size())];
-                if (const auto time = play_apart(scene_, r.who, result_.frames, final_patience)) {
-                    r.times.push_back(*time);
-                    r.frames = result_.frames;
-                }
-            }
-            keep([&](const racer& r) { return r.times.size() > repeat; });
+        const std::vector<racer> before = running_;
+        double longest = seconds_of_repeat(frames);
+        for (std::size_t repeat = 0; repeat < most_repeats && longest < left() && !running_.empty(); ++repeat) {
+            const double begin = left();
+            if (!play_repeat(repeat, frames)) break;
+            longest = begin - left();
             shown.at(repeat + 1);
         }
-        if (running_.empty()) throw aabb::input_error("nothing plays this scene to its end");
+        if (!running_.empty() && !running_.front().times.empty()) {
+            result_.final_frames = frames;
+            return;
+        }
+        if (running_.empty()) take_back(before);
+        for (racer& r : running_) r.times.push_back(*r.last);
     }
 
-    /// Who is wrong is no answer to what to use, however fast.
+    /// Those whom the final dropped, where all were only too slow.
+    void take_back(std::vector<racer> before) {
+        const auto finalists = std::span(result_.dropped).last(before.size());
+        if (std::ranges::any_of(finalists, [](const racer& r) { return r.broken_off->end != ending::stopped; }))
+            throw aabb::input_error("nothing plays this scene to its end");
+        result_.dropped.resize(result_.dropped.size() - before.size());
+        running_ = std::move(before);
+    }
+
+    /// @returns whether there was time for it; otherwise nothing is kept of it
+    bool play_repeat(std::size_t repeat, std::size_t frames) {
+        for (std::size_t k = 0; k < running_.size(); ++k) {
+            racer& r = running_[in_turn(k, repeat, running_.size())];
+            const double time_left = left();
+            const double most = patience(seconds_of(r, frames), last_margin);
+            attempt tried = scene_.play(r.who, frames, std::min(most, time_left));
+            if (tried.end == ending::stopped && time_left <= most) {
+                for (racer& one : running_) one.times.resize(std::min(repeat, one.times.size()));
+                keep([](const racer& one) { return !one.broken_off; });
+                return false;
+            }
+            if (tried.end == ending::done) {
+                r.times.push_back(std::move(tried.time));
+                r.frames = frames;
+            } else {
+                r.broken_off = std::move(tried);
+            }
+        }
+        require_any_unrefused();
+        keep([&](const racer& r) { return r.times.size() > repeat; });
+        return true;
+    }
+
+    /// A frame that is wrong is so for all.
+    void require_any_unrefused() const {
+        if (std::ranges::all_of(running_,
+                                [](const racer& r) { return r.broken_off && r.broken_off->end == ending::refused; }))
+            throw aabb::input_error(running_.front().broken_off->reason);
+    }
+
+    /// Who is wrong is no answer to what to use, however fast. CGAL's first frames tell something too.
     void hold_against_cgal() {
         const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
-        const auto exact = play_apart(scene_, *contender_of(*cgal, has_meshes(scene_)), result_.frames,
-                                      least_patience + reading_s_ + seconds_);
-        result_.held_against_cgal = exact.has_value();
-        if (!exact) return;
+        const attempt exact = scene_.play(*contender_of(*cgal, scene_.scene().meshes() != nullptr),
+                                          result_.final_frames, limits_.to_end());
+        result_.validated = exact.time.frames;
+        if (result_.validated == 0) return;
         const auto right = [&](const racer& r) {
-            return std::ranges::all_of(r.times, [&](const race_time& t) { return t.digest == exact->digest; });
+            return std::ranges::all_of(
+                r.times, [&](const race_time& t) { return t.digests[result_.validated - 1] == exact.time.digest; });
         };
         const auto first_wrong = std::stable_partition(running_.begin(), running_.end(), right);
         result_.wrong.assign(std::move_iterator(first_wrong), std::move_iterator(running_.end()));
@@ -217,38 +299,16 @@ private:
         if (running_.empty()) throw std::runtime_error("nobody finds the exact pairs of this scene");
     }
 
-    const scene_choice& scene_;
+    staged_scene& scene_;
+    const time_limits& limits_;
+    double whole_;  // time to play, in seconds
     std::vector<racer> running_;
-    double seconds_;
-    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-    double reading_s_ = 0;
     race_result result_;
 };
 
 }  // namespace
 
-race_time time_frames(const scene_choice& choice, const contender& who, std::size_t frames) {
-    scene_play scene(choice);
-    std::optional<player> p;
-    race_time time;
-    time.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
-    tally found(scene.meshes() != nullptr);
-    play(
-        scene, *p,
-        [&](const played_frame& frame) {
-            found.add(frame.pairs, frame.contacts);
-            (frame.number == 0 ? time.first_ms : time.rest_ms) += frame.ms();
-            ++time.frames;
-        },
-        frames);
-    time.bytes = p->held_bytes();
-    time.digest = found.digest();
-    time.left_out = p->left_out();
-    return time;
-}
-
-std::vector<racer> starters(const scene_choice& choice) {
-    const scene_play scene(choice);
+std::vector<racer> starters(const scene_play& scene) {
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> all;
     const auto add = [&](contender who, std::string name) {
@@ -258,21 +318,23 @@ std::vector<racer> starters(const scene_choice& choice) {
     };
     const auto automatic = contender_of(select_composition({}, outlook_of(scene)), meshes).name;
     add(contender_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");
+    // Whoever may find other pairs is no answer to what to use.
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (engine.exact && (meshes ? engine.collides_meshes : engine.searches_boxes))
+            if (const auto who = contender_of(engine, meshes)) add(*who, text_of(who->name));
+    const auto first_composition = static_cast<std::ptrdiff_t>(all.size());
     const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
     for (const aabb::composition& c : aabb::every_composition(stage)) {
         if (!is_exact(c, stage) || (!meshes && !needs_meshes(c).empty())) continue;
         // It is the same twice.
         if (contender who = contender_of(c, meshes); who.name != automatic) add(who, text_of(who.name));
     }
-    // Whoever may find other pairs is no answer to what to use.
-    for (const aabb::engine_info& engine : aabb::engines())
-        if (engine.exact && (meshes ? engine.collides_meshes : engine.searches_boxes))
-            if (const auto who = contender_of(engine, meshes)) add(*who, text_of(who->name));
+    std::shuffle(all.begin() + first_composition, all.end(), std::mt19937_64(1));
     return all;
 }
 
-race_result run_race(const scene_choice& scene, std::vector<racer> all, double seconds) {
-    return race(scene, std::move(all), seconds).run();
+race_result run_race(staged_scene& scene, std::vector<racer> all, const time_limits& limits) {
+    return race(scene, std::move(all), limits).run();
 }
 
 }  // namespace aabblab

@@ -107,7 +107,7 @@ TEST_CASE("Boxes are measured: spread, sizes, pairs expected") {
     // On x all overlap, on y two and two; the pairs expected are those of all on x and z.
     const std::vector<aabb::box> boxes{cube(0, 0, 0), cube(0, 0.5F, 0), cube(0, 8, 0), cube(0, 9, 0)};
     const aabblab::box_measures m = aabblab::measure_boxes(boxes);
-    CHECK(is_near(m.mean_extent, 1));
+    CHECK(is_near(m.typical_extent, 1));
     CHECK(is_near(m.size_ratio.value(), 1));
     CHECK(is_near(m.overlaps[0], 3));
     CHECK(is_near(m.overlaps[1], 1));
@@ -254,6 +254,24 @@ TEST_CASE("explain takes meshes, and a motion with its meshes") {
     const program_result three = run_program({"explain", "icosphere", "icosphere", "icosphere"});
     CHECK(three.status == 2);
     CHECK(three.err.find("more than two meshes move by a motion file") != std::string::npos);
+}
+
+TEST_CASE("explain says what it did not get to in its time") {
+    const temporary_folder folder;
+    // Each with each other.
+    const std::string file = (folder / "p.aabbs").string();
+    REQUIRE(
+        run_program({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file}).status ==
+        0);
+    const program_result told = run_program({"explain", file, "--seconds", "0.01"});
+    INFO(told.out << told.err);
+    REQUIRE(told.status == 0);
+    for (const char* part : {"objects   4,000\n", "all else  stopped after ",
+                             "prepare    neighbour_list  frames follow", "stopped after "})
+        CHECK(told.out.find(part) != std::string::npos);
+    CHECK(
+        run_program({"explain", file, "--seconds", "0"}).err.find("--seconds is how long to play: a number above 0") !=
+        std::string::npos);
 }
 
 TEST_CASE("explain says what is wrong with a name before anything else") {

@@ -12,9 +12,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <initializer_list>
 #include <iterator>
 #include <memory>
+#include <new>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -87,6 +89,15 @@ public:
 
 const aabblab::scene_choice scene{"brownian", {{"objects", "200"}, {"frames", "24"}}, {}, 1, {}};
 
+aabblab::race_result race_of(const aabblab::scene_choice& choice, std::vector<racer> all, double seconds) {
+    aabblab::staged_scene staged(choice);
+    return aabblab::run_race(staged, std::move(all), aabblab::time_limits(seconds));
+}
+
+std::vector<racer> starters_of(const aabblab::scene_choice& choice) {
+    return aabblab::starters(aabblab::scene_play(choice));
+}
+
 bool holds(const std::vector<racer>& some, const std::string& name) {
     return std::ranges::find(some, name, &racer::name) != some.end();
 }
@@ -106,7 +117,7 @@ TEST_CASE("A race ends with the fastest, and those who are far behind or fail pl
                                // Slow for a frame, then as fast as any.
                                std::this_thread::sleep_for(i++ == 0 ? 60 * frame : frame);
                            })};
-    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 2);
+    const aabblab::race_result race = race_of(scene, std::move(all), 8);
     REQUIRE(race.frames == 25);
     REQUIRE(race.objects == 200);
     REQUIRE_FALSE(race.finalists.empty());
@@ -139,13 +150,13 @@ TEST_CASE("Who was disturbed once is not dropped") {
         const auto slow = [] { std::this_thread::sleep_for(3 * frame); };
         return std::make_unique<delayed_stage<decltype(slow)>>(slow);
     };
-    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 5);
+    const aabblab::race_result race = race_of(scene, std::move(all), 5);
     CHECK(holds(race.finalists, "disturbed"));
 }
 
 TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
     std::vector<racer> all{delayed("one", [] {}), delayed("other", [] {})};
-    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 1);
+    const aabblab::race_result race = race_of(scene, std::move(all), 20);
     REQUIRE(race.finalists.size() + race.dropped.size() == 2);
     CHECK(race.of == 50);
     CHECK(race.played == 25 * race.finalists.size() + 4 * race.dropped.size());
@@ -159,27 +170,29 @@ const aabblab::scene_choice short_scene{"brownian", {{"objects", "200"}, {"frame
 TEST_CASE("Who finds other pairs than CGAL does not win a race") {
     std::vector<racer> all{delayed("right", long_wait()), delayed("wrong", [] {})};
     all.back().who.make_global = [](aabb::instrumentation) { return std::make_unique<losing_stage>(); };
-    const aabblab::race_result race = aabblab::run_race(short_scene, all, 2);
-    CHECK(race.held_against_cgal);
+    const aabblab::race_result race = race_of(short_scene, all, 2);
+    CHECK(race.is_validated());
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "right");
     CHECK(holds(race.wrong, "wrong"));
     CHECK(aabblab::advice_of(race).back() == "wrong is out of the race: it does not find the exact pairs.");
-    CHECK_THROWS_WITH(aabblab::run_race(short_scene, {all.back()}, 2), "nobody finds the exact pairs of this scene");
+    CHECK_THROWS_WITH(race_of(short_scene, {all.back()}, 2), "nobody finds the exact pairs of this scene");
 }
 
 TEST_CASE("Who finds other pairs than the first of those who play in turn is known") {
     std::vector<aabblab::contender> all{delayed("a", [] {}).who, delayed("b", [] {}).who, delayed("c", [] {}).who};
     all[2].make_global = [](aabb::instrumentation) { return std::make_unique<losing_stage>(); };
-    CHECK(aabblab::who_disagrees(aabblab::play_in_turn(short_scene, all, 4, 2)) == std::vector<std::size_t>{2});
+    aabblab::staged_scene staged(short_scene);
+    const aabblab::turns played = aabblab::play_in_turn(staged, all, 4, 2, aabblab::time_limits(20));
+    CHECK(aabblab::who_disagrees(played.times) == std::vector<std::size_t>{2});
 }
 
 TEST_CASE("As many finish a race as there is time for, but two") {
     std::vector<racer> all;
     for (const char* name : {"a", "b", "c"})
         all.push_back(delayed(name, [] { std::this_thread::sleep_for(std::chrono::milliseconds(40)); }));
-    CHECK(aabblab::run_race(short_scene, all, 8).finalists.size() == 3);
-    CHECK(aabblab::run_race(short_scene, all, 0.5).finalists.size() == 2);
+    CHECK(race_of(short_scene, all, 8).finalists.size() == 3);
+    CHECK(race_of(short_scene, all, 0.5).finalists.size() == 2);
 }
 
 TEST_CASE("Each repeat of a race begins with another racer") {
@@ -194,12 +207,128 @@ TEST_CASE("Each repeat of a race begins with another racer") {
             return make(counted);
         };
     }
-    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 1);
+    const aabblab::race_result race = race_of(scene, std::move(all), 20);
     REQUIRE(race.finalists.size() == 2);
     const std::string order = bytes_of_file(file);
     // A round, then at least five repeats.
     REQUIRE(order.size() >= 2 + 2 * 5);
     for (std::size_t i = 2; i + 2 < order.size(); i += 2) CHECK(order[i] != order[i + 2]);
+}
+
+TEST_CASE("What is done apart is told as far as it comes, and how it ends") {
+    using namespace std::chrono_literals;
+    using aabblab::ending;
+    const auto ends = [](const std::function<void()>& work, double seconds) {
+        const aabblab::work_apart done = aabblab::done_apart(
+            [&](const aabblab::telling& tell) {
+                tell("begun;");
+                work();
+                tell("ended");
+            },
+            seconds);
+        CHECK(done.told.starts_with("begun;"));
+        CHECK((done.end == ending::done) == (done.told == "begun;ended"));
+        CHECK(done.seconds > 0);
+        CHECK((done.end == ending::refused) == !done.reason.empty());
+        return done.end;
+    };
+    CHECK(ends([] {}, 60) == ending::done);
+    CHECK(ends([] { std::this_thread::sleep_for(10min); }, 0.2) == ending::stopped);
+    CHECK(ends([] { throw std::bad_alloc(); }, 60) == ending::out_of_memory);
+    CHECK(ends([] { throw std::length_error("no"); }, 60) == ending::out_of_memory);
+    CHECK(ends([] { std::raise(SIGKILL); }, 60) == ending::out_of_memory);
+    CHECK(ends([] { throw aabb::input_error("it is wrong"); }, 60) == ending::refused);
+    CHECK(ends([] { throw std::runtime_error("no"); }, 60) == ending::failed);
+    CHECK(ends([] { std::raise(SIGUSR1); }, 60) == ending::failed);
+    const aabblab::work_apart refused =
+        aabblab::done_apart([](const aabblab::telling&) { throw aabb::input_error("it is wrong"); }, 60);
+    CHECK(refused.reason == "it is wrong");
+    const temporary_folder folder;
+    const std::string file = (folder / "begun").string();
+    const aabblab::work_apart none =
+        aabblab::done_apart([&](const aabblab::telling&) { std::ofstream(file) << "yes"; }, 0);
+    CHECK(none.end == ending::stopped);
+    CHECK(none.seconds == 0);
+    CHECK_FALSE(std::filesystem::exists(file));
+}
+
+TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene was read") {
+    double now = 0;
+    aabblab::time_limits limits(10, [&] { return now; });
+    const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
+    now = 1;
+    limits.scene_is_read();
+    CHECK(is_near(limits.to_play(), 9.5 - 1));
+    CHECK(is_near(limits.to_end(), 19 - 1));
+    now = 30;
+    CHECK(limits.to_play() < 0);
+    CHECK(limits.to_end() < 0);
+    now = 0;
+    aabblab::time_limits of_much(1, [&] { return now; });
+    now = 40;
+    of_much.scene_is_read();
+    CHECK(of_much.to_play() > 0.9);
+    CHECK(of_much.to_play() < 1);
+    CHECK(is_near(of_much.to_end(), 1.9));
+}
+
+TEST_CASE("Where the first frames take too long, fewer are raced over") {
+    using namespace std::chrono_literals;
+    const auto stuck_in = [](int frame, auto delay) {
+        return [frame, delay, i = 0]() mutable {
+            std::this_thread::sleep_for(i++ == frame ? std::chrono::milliseconds(10min) : delay);
+        };
+    };
+    std::vector<racer> all{delayed("never", stuck_in(0, 1ms)), delayed("early", stuck_in(2, 200ms)),
+                           delayed("fast", stuck_in(2, 5ms)), delayed("late", stuck_in(1, 1ms))};
+    const aabblab::race_result race = race_of(scene, std::move(all), 8);
+    CHECK(race.final_frames == 2);
+    REQUIRE_FALSE(race.finalists.empty());
+    CHECK(race.finalists.front().name == "fast");
+    CHECK(race.finalists.front().last->frames == 2);
+    CHECK(race.is_validated());
+    for (const char* name : {"never", "early", "late"}) CHECK(holds(race.dropped, name));
+    const std::string use = aabblab::advice_of(race).front();
+    CHECK(use.starts_with("Use fast: "));
+    CHECK(use.find(" ms for the first 2 of 25 frames") != std::string::npos);
+}
+
+TEST_CASE("Who gets stuck behind the first frames is not recommended where another comes to the end") {
+    using namespace std::chrono_literals;
+    std::vector<racer> all{delayed("stuck",
+                                   [i = 0]() mutable {
+                                       if (i++ == 5) std::this_thread::sleep_for(10min);
+                                   }),
+                           delayed("ends", [] { std::this_thread::sleep_for(1ms); })};
+    const aabblab::race_result race = race_of(scene, std::move(all), 20);
+    REQUIRE(race.finalists.size() == 1);
+    CHECK(race.finalists.front().name == "ends");
+    CHECK(race.final_frames == 25);
+    CHECK(holds(race.dropped, "stuck"));
+}
+
+TEST_CASE("Who did not end is not recommended where anybody did, and all are named who had no time") {
+    using namespace std::chrono_literals;
+    std::vector<racer> all;
+    for (int i = 0; i < 12; ++i) all.push_back(delayed("stuck", [] { std::this_thread::sleep_for(10min); }));
+    all.insert(all.begin() + 1, delayed("ends", [] { std::this_thread::sleep_for(2ms); }));
+    const aabblab::race_result race = race_of(scene, std::move(all), 1);
+    REQUIRE(race.finalists.size() == 1);
+    CHECK(race.finalists.front().name == "ends");
+    REQUIRE(race.dropped.size() == 12);
+    const auto not_played = std::ranges::count_if(
+        race.dropped, [](const racer& r) { return text_of(r.broken_off.value()) == "not played: no time was left"; });
+    CHECK(not_played > 0);
+    CHECK(not_played < 12);
+    const std::vector<std::string> advice = aabblab::advice_of(race);
+    CHECK(std::ranges::count(advice, "For " + std::to_string(not_played) + " other" + (not_played > 1 ? "s" : "") +
+                                         " there was no time; a greater --seconds gives more.") == 1);
+}
+
+TEST_CASE("A race that is refused a frame says why, as the command says it") {
+    std::vector<racer> all{delayed("one", [] { throw aabb::input_error("frame 0: box 3 is inverted"); }),
+                           delayed("other", [] { throw aabb::input_error("frame 0: box 3 is inverted"); })};
+    CHECK_THROWS_WITH(race_of(scene, all, 1), "frame 0: box 3 is inverted");
 }
 
 TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
@@ -210,11 +339,12 @@ TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
         });
     };
     std::vector<racer> all{hesitant(), delayed("fast", [] { std::this_thread::sleep_for(1ms); })};
-    const aabblab::race_result race = aabblab::run_race(scene, std::move(all), 0.5);
+    const aabblab::race_result race = race_of(scene, std::move(all), 0.5);
     REQUIRE(race.dropped.size() == 1);
     CHECK(race.dropped.front().name == "hesitant");
     CHECK_FALSE(race.dropped.front().last.has_value());
-    CHECK_THROWS_AS(aabblab::run_race(scene, {hesitant()}, 0.5), aabb::input_error);
+    CHECK(text_of(race.dropped.front().broken_off.value()).starts_with("stopped after "));
+    CHECK_THROWS_AS(race_of(scene, {hesitant()}, 0.5), aabb::input_error);
 }
 
 namespace {
@@ -242,7 +372,7 @@ racer finished(const std::string& name, double build_ms, double frame_ms, bool s
 
 aabblab::race_result ended(std::vector<racer> finalists, std::size_t frames = 100) {
     aabblab::race_result race;
-    race.frames = frames;
+    race.frames = race.final_frames = race.validated = frames;
     rank(finalists);
     race.finalists = std::move(finalists);
     return race;
@@ -290,6 +420,21 @@ TEST_CASE("What would change the answer of a race is told where the repeats show
     }
 }
 
+TEST_CASE("Of a few plays it is not said how sure a ratio is, and of CGAL how far it came") {
+    aabblab::race_result race = ended({finished("winner", {1, 1}), finished("other", {2, 2})}, 2);
+    CHECK(
+        aabblab::advice_of(race).front() ==
+        "Use winner: 1 ms for 2 frames; the next, other, takes 2.00 times as long, in 2 plays, too few to say how sure "
+        "that is.");
+    race.validated = 1;
+    CHECK(
+        aabblab::advice_of(race).back() ==
+        "Only the first 1 of these frames were compared with the exact pairs: CGAL takes longer than there was time.");
+    race.validated = 0;
+    CHECK(aabblab::advice_of(race).back() ==
+          "Nobody was compared with the exact pairs: CGAL fails to find them, or takes longer than there was time.");
+}
+
 TEST_CASE("The answer of a race can be named") {
     const auto named = [](const aabblab::contender_name& name) {
         racer winner = finished("winner", 10, 1);
@@ -329,8 +474,8 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     automatic.behind = 1.5;
     without.dropped.push_back(automatic);
     CHECK(told(without, "auto (= x) was dropped after 8 frames: 1.50 times as long as the fastest."));
-    without.dropped.back().last.reset();
-    CHECK(told(without, "auto (= x) was stopped"));
+    without.dropped.back().broken_off = aabblab::attempt{aabblab::ending::stopped, {}, "", 2.1};
+    CHECK(told(without, "auto (= x): stopped after 2.1 s."));
 }
 
 TEST_CASE("In rounds everybody plays once, begins in turn, and follows each other as often") {
@@ -356,24 +501,53 @@ TEST_CASE("In rounds everybody plays once, begins in turn, and follows each othe
 }
 
 TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once") {
-    std::string order;
+    const temporary_folder folder;
+    const std::string file = (folder / "order").string();
     std::vector<aabblab::contender> all;
     for (const char* name : {"a", "b", "c"}) {
         racer r = delayed(name, [wait = *name == 'c'] {
             if (wait) std::this_thread::sleep_for(std::chrono::milliseconds(250));
         });
         all.push_back(r.who);
-        all.back().make_global = [&order, name, make = r.who.make_global](aabb::instrumentation counted) {
-            order += name;
+        all.back().make_global = [file, name, make = r.who.make_global](aabb::instrumentation counted) {
+            std::ofstream(file, std::ios::app) << name;
             return make(counted);
         };
     }
-    const auto times = aabblab::play_in_turn(scene, all, 4, 3);
-    CHECK(order == "abcbaab");
-    REQUIRE(times.size() == 3);
-    CHECK(times[0].size() == 3);
-    CHECK(times[1].size() == 3);
-    CHECK(times[2].size() == 1);
+    aabblab::staged_scene staged(scene);
+    const aabblab::turns played = aabblab::play_in_turn(staged, all, 4, 3, aabblab::time_limits(60));
+    CHECK(bytes_of_file(file) == "abcbaab");
+    REQUIRE(played.times.size() == 3);
+    CHECK(played.times[0].size() == 3);
+    CHECK(played.times[1].size() == 3);
+    CHECK(played.times[2].size() <= 1);
+    CHECK(played.hopeless == std::vector<bool>{false, false, true});
+}
+
+TEST_CASE("Those who play in turn have as many frames and rounds as there is time for") {
+    using namespace std::chrono_literals;
+    const auto stuck_in = [](int frame) {
+        return [frame, i = 0]() mutable { std::this_thread::sleep_for(i++ == frame ? 10min : 1ms); };
+    };
+    const auto turns_of = [](const std::vector<racer>& racers, double seconds) {
+        std::vector<aabblab::contender> all;
+        for (const racer& r : racers) all.push_back(r.who);
+        aabblab::staged_scene staged(scene);
+        return aabblab::play_in_turn(staged, all, 4, 3, aabblab::time_limits(seconds));
+    };
+    const aabblab::turns some =
+        turns_of({delayed("first", stuck_in(2)), delayed("stuck", stuck_in(1)), delayed("fast", stuck_in(4))}, 3);
+    CHECK(some.frames == 2);
+    CHECK(some.times[0].size() == some.rounds);
+    CHECK(some.times[1].empty());
+    REQUIRE(some.broken_off[1].has_value());
+    CHECK(some.broken_off[1]->time.frames == 1);
+    CHECK_FALSE(some.times[2].empty());
+    const aabblab::turns none = turns_of({delayed("first", stuck_in(0)), delayed("fast", stuck_in(4))}, 1);
+    CHECK(none.rounds == 0);
+    CHECK(none.times[0].empty());
+    CHECK(text_of(none.broken_off[0].value()).starts_with("stopped after "));
+    CHECK_FALSE(none.broken_off[1].has_value());
 }
 
 TEST_CASE("A ratio of times in the same rounds has a median, a least and a greatest") {
@@ -393,7 +567,7 @@ TEST_CASE("A ratio of times in the same rounds has a median, a least and a great
 }
 
 TEST_CASE("All that is exact starts in a race, engines too") {
-    std::vector<racer> all = aabblab::starters(scene);
+    std::vector<racer> all = starters_of(scene);
     CHECK(all.front().name == "auto (= neighbour_list + bucket + columns + simd)");
     CHECK_FALSE(holds(all, "neighbour_list + bucket + columns + simd"));
     for (const char* name : {"bucket + columns + simd", "insertion + none + incremental", "std + uniform_grid + simd"})
@@ -404,11 +578,11 @@ TEST_CASE("All that is exact starts in a race, engines too") {
     // What auto is does not race twice.
     aabblab::scene_choice still = scene;
     still.settings[1].value = "1";
-    all = aabblab::starters(still);
+    all = starters_of(still);
     CHECK(all.front().name == "auto (= bucket + columns + simd)");
     CHECK_FALSE(holds(all, "bucket + columns + simd"));
     const aabblab::scene_choice meshes{"mesh_pair", {}, {"icosphere:triangles=80"}, 1, {}};
-    all = aabblab::starters(meshes);
+    all = starters_of(meshes);
     for (const char* name :
          {"bucket + columns + simd + sah + implicit + exact", "bucket + columns + simd + canonical + exact"})
         CHECK(holds(all, name));

@@ -1,0 +1,109 @@
+module;
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+module aabblab.race;
+
+import :apart;
+import aabb.pipeline;
+import aabblab.play;
+import aabblab.scenes;
+import aabblab.stopwatch;
+
+namespace aabblab {
+
+namespace {
+
+// What is told of a play: a line after each frame, with what it took up to there, then its bytes and what its stages
+// left out. The first letter says which.
+constexpr char frame_line = 'f';
+constexpr char bytes_line = 'b';
+constexpr char omission_line = 'o';
+
+/// @param seconds since the play began
+std::string line_of(const race_time& t, double seconds) {
+    std::ostringstream text;
+    text.precision(17);
+    text << frame_line << ' ' << seconds << ' ' << t.build_ms << ' ' << t.first_ms << ' ' << t.rest_ms << ' '
+         << t.frames << ' ' << t.digest << '\n';
+    return text.str();
+}
+
+/// A last line that was cut off is none.
+attempt attempt_from(const work_apart& played) {
+    attempt one{.end = played.end, .time = {}, .reason = played.reason, .seconds = played.seconds};
+    race_time& t = one.time;
+    std::istringstream lines(played.told.substr(0, played.told.rfind('\n') + 1));
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream text(line.substr(1));
+        if (line[0] == frame_line) {
+            text >> one.seconds_of_frames >> t.build_ms >> t.first_ms >> t.rest_ms >> t.frames >> t.digest;
+            t.digests.push_back(t.digest);
+        } else if (line[0] == bytes_line) {
+            text >> t.bytes;
+        } else {
+            t.left_out.push_back(line.substr(1));
+        }
+    }
+    return one;
+}
+
+void tell_play(scene_play& scene, const contender& who, std::size_t frames, const telling& tell) {
+    const auto begin = std::chrono::steady_clock::now();
+    race_time time;
+    std::optional<player> p;
+    time.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
+    tally found(scene.meshes() != nullptr);
+    play(
+        scene, *p,
+        [&](const played_frame& frame) {
+            found.add(frame.pairs, frame.contacts);
+            (frame.number == 0 ? time.first_ms : time.rest_ms) += frame.ms();
+            ++time.frames;
+            time.digest = found.digest();
+            tell(line_of(time, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+        },
+        frames);
+    tell(fmt::format("{} {}\n", bytes_line, p->held_bytes()));
+    for (const std::string& sentence : p->left_out()) tell(omission_line + sentence + "\n");
+}
+
+}  // namespace
+
+work_apart staged_scene::apart(const std::function<void(scene_play&, const telling&)>& work, double seconds) {
+    return done_apart(
+        [&](const telling& tell) {
+            if (scene_.meshes()) return work(scene_, tell);
+            // Of a file that is open in this process too, copies of it would read on where the last one stopped.
+            scene_play own(choice_);
+            work(own, tell);
+        },
+        seconds);
+}
+
+attempt staged_scene::play(const contender& who, std::size_t frames, double seconds) {
+    return attempt_from(
+        apart([&](scene_play& scene, const telling& tell) { tell_play(scene, who, frames, tell); }, seconds));
+}
+
+std::string text_of(const attempt& one) {
+    const std::string where = one.time.frames > 0 ? fmt::format(", in frame {}", one.time.frames) : "";
+    const std::string after = fmt::format("after {:.2g} s{}", one.seconds, where);
+    switch (one.end) {
+        case ending::done: return "played to its end";
+        case ending::stopped: return one.seconds > 0 ? "stopped " + after : "not played: no time was left";
+        case ending::out_of_memory: return "out of memory " + after;
+        case ending::refused: return "refused " + after + ": " + one.reason;
+        case ending::failed: break;
+    }
+    return "failed " + after;
+}
+
+}  // namespace aabblab
