@@ -73,6 +73,7 @@ int main_of(int argc, char** argv) {
         program.set_version_flag("--version", "aabblab " AABBLAB_VERSION, "Print the version");
         program.set_help_flag("-h,--help", "Print this help");
         program.require_subcommand(0, 1);
+        wrap_help(program);
         const command_parser commands(program);
         add_reproduce(commands, status);
         add_run(commands, status);
@@ -98,7 +99,7 @@ int main_of(int argc, char** argv) {
             "  benchmark                   Time each stage, elementary test and build alone\n"
             "  paper                       The report of a reproduction as a PDF\n"
             "aabblab COMMAND --help tells the options of a command.\n"
-            "Exit status: 0, 1 when a check failed, 2 on bad input.");
+            "Exit status: 0; 1 when a check failed, or collide --exit-code finds an intersection; 2 on bad input.");
         // Before any command, but the one that measures them anew, or removes a file that cannot be read.
         program.parse_complete_callback([&] {
             if (!program.got_subcommand("calibrate")) use_kept_costs();

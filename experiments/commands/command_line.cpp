@@ -3,8 +3,12 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
+
+#include "output.hpp"
 
 import aabb.base;
 import aabb.policy;
@@ -13,6 +17,26 @@ import aabb.registry;
 namespace aabblab {
 
 namespace {
+
+class wrapped_help final : public CLI::Formatter {
+public:
+    std::string make_option(const CLI::Option* option, bool is_positional) const override {
+        return entry("  " + make_option_name(option, is_positional) + make_option_opts(option),
+                     make_option_desc(option));
+    }
+    std::string make_subcommand(const CLI::App* command) const override {
+        return entry("  " + command->get_display_name(true), command->get_description());
+    }
+    std::string make_description(const CLI::App* command) const override {
+        return wrapped(command->get_description(), output_width()) + "\n";
+    }
+    std::string make_footer(const CLI::App* command) const override {
+        std::istringstream lines(Formatter::make_footer(command));
+        std::string text;
+        for (std::string line; std::getline(lines, line);) text += wrapped(line, output_width()) + "\n";
+        return text;
+    }
+};
 
 std::vector<std::string> command_names(const CLI::App& program) {
     std::vector<std::string> names;
@@ -41,6 +65,23 @@ std::string option_with(const std::string& parameter, const std::vector<std::str
     return {};
 }
 
+/// "aabblab validate extreme"
+std::string full_name(const CLI::App& command) {
+    const CLI::App* const above = command.get_parent();
+    return (above == nullptr ? "" : full_name(*above) + " ") + command.get_name();
+}
+
+std::string see_help_of(const CLI::App& command) {
+    return "; see " + full_name(command) + " --help";
+}
+
+/// Where neither the nearest name nor all of them are told, the help has them.
+std::string unknown_name(const std::string& what, const std::string& name, const std::vector<std::string>& known,
+                         const CLI::App& command) {
+    const std::string sentence = aabb::unknown_name(what, name, known);
+    return sentence == aabb::unknown_name(what, name, {}) ? sentence + see_help_of(command) : sentence;
+}
+
 std::string unknown_option(const CLI::App& command, const std::string& argument) {
     std::string name = argument.substr(0, argument.find('='));
     name.erase(0, name.find_first_not_of('-'));
@@ -51,29 +92,25 @@ std::string unknown_option(const CLI::App& command, const std::string& argument)
     const std::vector<std::string> options = option_names(command);
     if (const std::string option = option_with(name, options); !option.empty())
         return "'" + name + "' is a parameter of a strategy, as in " + option;
-    return aabb::unknown_name("option", argument.substr(0, argument.find('=')), options);
-}
-
-/// "validate extreme"
-std::string full_name(const CLI::App& command) {
-    const CLI::App* const above = command.get_parent();
-    return above != nullptr && above->get_parent() != nullptr ? full_name(*above) + " " + command.get_name()
-                                                              : command.get_name();
+    return unknown_name("option", argument.substr(0, argument.find('=')), options, command);
 }
 
 std::string unexpected(const CLI::App& program, const CLI::App& command, const std::string& argument) {
     if (argument.size() > 1 && argument[0] == '-') return unknown_option(command, argument);
-    if (&command != &program)
-        return "unexpected argument '" + argument + "'; see aabblab " + full_name(command) + " --help";
+    if (&command != &program) return "unexpected argument '" + argument + "'" + see_help_of(command);
     std::vector<std::string> names = command_names(program);
     const std::vector<std::string> of_script = {"test", "data", "benchmark", "paper"};
     if (std::ranges::find(of_script, argument) != of_script.end())
         return "'" + argument + "' is a command of the script aabblab at the root of the source tree";
     names.insert(names.end(), of_script.begin(), of_script.end());
-    return aabb::unknown_name("command", argument, names);
+    return unknown_name("command", argument, names, program);
 }
 
 }  // namespace
+
+void wrap_help(CLI::App& program) {
+    program.formatter(std::make_shared<wrapped_help>());
+}
 
 std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
     const CLI::App* innermost = &program;
@@ -97,9 +134,7 @@ std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
 
 void require_command(const CLI::App& program) {
     if (!program.get_subcommands().empty()) return;
-    std::string names;
-    for (const std::string& name : command_names(program)) names += (names.empty() ? "" : ", ") + name;
-    throw aabb::input_error("expected a command, one of " + names + "; see aabblab --help");
+    throw aabb::input_error("expected a command" + see_help_of(program));
 }
 
 }  // namespace aabblab

@@ -9,6 +9,9 @@ class ParseError;
 
 namespace aabblab {
 
+/// The help of the program, and of the commands that are added to it later, fits the terminal.
+void wrap_help(CLI::App& program);
+
 /// The sentence for a command line that was refused, with the nearest command or option for an unknown one.
 [[nodiscard]] std::string refusal_of(const CLI::App& program, const CLI::ParseError& error);
 

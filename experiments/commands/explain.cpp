@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,10 +47,7 @@ std::string text_of(std::string_view stage, const std::string& made_of, const st
 }
 
 std::string indented(std::string_view before, const std::string& paragraph) {
-    std::string text;
-    std::istringstream lines(wrapped(paragraph, std::max<std::size_t>(output_width(), 40) - before.size()));
-    for (std::string line; std::getline(lines, line);) text += fmt::format("{}{}\n", before, line);
-    return text;
+    return hanging(before, paragraph) + "\n";
 }
 
 std::string indented_all(std::string_view of, const std::vector<std::string>& sentences) {

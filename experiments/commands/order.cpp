@@ -72,10 +72,9 @@ void add_order(const command_parser& program, int&) {
                     "Write which triangle of MESH each one was, rows triangle,was, to this CSV file")
         .type_name("FILE");
     command.footer(
-        "The build file_order with the tree implicit:vertices=fetched takes 1.2 bytes a triangle of such a mesh, in\n"
+        "The build file_order with the tree implicit:vertices=fetched takes 1.2 bytes a triangle of such a mesh, in "
         "collide, contacts and configs. There FILE:order=BUILD, or SHAPE:triangles=N,order=BUILD, stands for it "
-        "without a\n"
-        "file. Put in order again, triangles move again: a build also goes by where they stood.");
+        "without a file. Put in order again, triangles move again: a build also goes by where they stood.");
     command.callback([request] { write_ordered(*request); });
 }
 

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +52,20 @@ std::size_t plain_length(std::string_view text) {
     return code >= least[length] && (code < 0xd800 || code > 0xdfff) && code <= 0x10ffff ? length : 0;
 }
 
+constexpr std::size_t least_width = 40;
+
+std::optional<std::size_t> width_of_terminal(int stream) {
+    winsize window{};
+    if (ioctl(stream, TIOCGWINSZ, &window) != 0 || window.ws_col == 0) return std::nullopt;
+    return std::max<std::size_t>(window.ws_col, least_width);
+}
+
+/// In characters, not bytes.
+std::size_t width_of(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+}
+
 std::string made_visible(std::string_view text, bool keep_lines) {
     std::string shown;
     while (!text.empty()) {
@@ -85,12 +100,9 @@ void outlive_reader() {
 }
 
 std::size_t output_width() {
-    constexpr std::size_t least = 40;
     std::size_t width = 80;
     if (const char* columns = std::getenv("COLUMNS")) std::from_chars(columns, columns + std::strlen(columns), width);
-    winsize window{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) width = window.ws_col;
-    return std::max(width, least);
+    return std::max(width_of_terminal(STDOUT_FILENO).value_or(width), least_width);
 }
 
 std::size_t paragraph_width() {
@@ -103,16 +115,40 @@ std::string wrapped(std::string_view text, std::size_t most) {
     for (std::size_t from = 0; from < text.size();) {
         const std::size_t to = std::min(text.find(' ', from), text.size());
         const std::string_view word = text.substr(from, to - from);
-        if (width > 0) lines += width + 1 + word.size() > most ? "\n" : " ";
-        width = width > 0 && width + 1 + word.size() <= most ? width + 1 + word.size() : word.size();
+        const std::size_t with_word = width + 1 + width_of(word);
+        const bool fits = with_word <= most;
+        if (width > 0) lines += fits ? " " : "\n";
+        width = width > 0 && fits ? with_word : width_of(word);
         lines += word;
         from = to + 1;
     }
     return lines;
 }
 
+std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
+    const std::size_t indent = width_of(before);
+    const std::string lines = wrapped(text, most > indent ? most - indent : 0);
+    std::string all(before);
+    for (const char c : lines) {
+        all += c;
+        if (c == '\n') all.append(indent, ' ');
+    }
+    return all;
+}
+
+std::string entry(std::string_view name, std::string_view text) {
+    const std::size_t column = std::min<std::size_t>(30, output_width() / 2);
+    const std::string pad(column, ' ');
+    const std::size_t width = width_of(name);
+    if (text.empty()) return std::string(name) + "\n";
+    if (width >= column) return std::string(name) + "\n" + hanging(pad, text) + "\n";
+    return hanging(std::string(name) + pad.substr(width), text) + "\n";
+}
+
 void note(std::string_view text) {
-    std::fprintf(stderr, "aabblab: %s\n", visible(text).c_str());
+    const std::string shown = visible(text);
+    const std::optional<std::size_t> width = width_of_terminal(STDERR_FILENO);
+    std::fprintf(stderr, "%s\n", (width ? hanging("aabblab: ", shown, *width) : "aabblab: " + shown).c_str());
 }
 
 void require_other_file(const std::string& out, std::span<const std::string> inputs) {

@@ -30,14 +30,20 @@ void flush_output();
 /// Of paragraphs: as wide as the output, at most 80.
 [[nodiscard]] std::size_t paragraph_width();
 
-/// The text in lines of at most so many bytes, as far as no word is longer.
+/// The text in lines of at most so many characters, as far as no word is longer.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t most = paragraph_width());
+
+/// The same behind what stands before its first line; further lines are indented as far.
+[[nodiscard]] std::string hanging(std::string_view before, std::string_view text, std::size_t most = output_width());
+
+/// A line of a list, with its end: a name, and in a second column what is said of it, below a name that is too long.
+[[nodiscard]] std::string entry(std::string_view name, std::string_view text);
 
 /// For commands whose work is not what they print: from now on, when whoever read standard output has gone, what is
 /// printed is lost and the work goes on.
 void outlive_reader();
 
-/// A note for the user, on standard error: one line, made visible.
+/// A note for the user, on standard error: one line, made visible; on a terminal, lines that fit it.
 void note(std::string_view text);
 
 /// Refuses to write over a file that the same command reads.

@@ -117,7 +117,10 @@ std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_i
 const scene_info& kind_named(const std::string& name) {
     const auto kinds = scene_kinds();
     const auto kind = std::ranges::find(kinds, name, &scene_info::name);
-    if (kind == kinds.end()) throw aabb::input_error(aabb::unknown_name("scene", name, scene_names()));
+    if (kind == kinds.end())
+        throw aabb::input_error(
+            aabb::unknown_name("scene", name, scene_names()) +
+            (aabb::nearest_name(name, scene_names()).empty() ? "; aabblab list scenes has them" : ""));
     return *kind;
 }
 
@@ -163,6 +166,16 @@ std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request&
     return outputs;
 }
 
+/// Other programs go by the ending, and so do we. A pipe or a device has none.
+void require_ending(const std::string& option, const std::optional<std::string>& file, const std::string& ending,
+                    const std::string& what) {
+    if (!file) return;
+    const std::filesystem::path extension = std::filesystem::path(*file).extension();
+    if (!extension.empty() && extension != ending)
+        throw aabb::input_error(option + " takes a name that ends in " + ending + ", not '" + *file + "': it writes " +
+                                what);
+}
+
 void require_outputs(const scene_request& request) {
     const auto outputs = outputs_of(request);
     const auto played = request.settings.find("file");
@@ -180,6 +193,8 @@ void require_outputs(const scene_request& request) {
                 throw aabb::input_error(outputs[i].first + " and " + outputs[j].first + " are the same file, " +
                                         outputs[i].second);
         }
+    require_ending("--out", request.out, ".aabbs", "a recording; aabblab pairs writes the pairs of one as CSV");
+    require_ending("--picture", request.picture, ".svg", "a picture");
 }
 
 void write_scene(const scene_request& request) {
@@ -238,7 +253,7 @@ void add_parameters(const command_parser& command, scene_request& request) {
         }
     for (const auto& [name, help] : helps)
         command.add_option(option_names(name), request.settings[name], help).type_name("V");
-    command.footer("aabblab list tells what these parameters mean and may be.");
+    command.footer("aabblab list scenes tells what these parameters mean and may be.");
 }
 
 }  // namespace

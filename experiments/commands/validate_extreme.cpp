@@ -93,10 +93,9 @@ void add_validate_extreme(const command_parser& validate, int& status) {
         "Every composition and engine where exactness is hardest: extreme scenes, bad input, other arithmetic, and "
         "pairs of triangles that were found hard");
     command.footer([] {
-        table t{{{"Scenes:", false}, {"", false}}, {}};
+        std::string text = "Scenes:\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
-            t.rows.push_back({scene.name, scene.summary});
-        const std::string text = to_text(t);
+            text += entry(scene.name, scene.summary);
         return text.substr(0, text.size() - 1);  // the end of the line is printed behind it
     });
     auto request = std::make_shared<extreme_request>();

@@ -143,7 +143,9 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
             e.recorded.insert(metric_named(one.text).group);
             if (std::ranges::find(e.shown, one.text) == e.shown.end()) e.shown.push_back(one.text);
         } else {
-            doc.fail(one.line, aabb::unknown_name("metric", one.text, known));
+            doc.fail(one.line,
+                     aabb::unknown_name("metric", one.text, known) +
+                         (aabb::nearest_name(one.text, known).empty() ? "; aabblab list metrics has them" : ""));
         }
     }
 }
@@ -248,6 +250,12 @@ std::string text_of_config(const std::filesystem::path& file) {
             if (const auto of_project = std::filesystem::path(folder) / file.filename();
                 std::filesystem::exists(of_project))
                 throw aabb::input_error(file.string() + " is not there; did you mean " + of_project.string() + "?");
+    if (file.extension() == ".aabbs")
+        throw aabb::input_error(
+            file.string() +
+            " is a recording, not a config: pairs, explain and recommend take it, and a config plays "
+            "it as kind = \"recording\", file = \"" +
+            file.filename().string() + "\" under [[scene]]");
     return text_of_file(file, longest_config, "a config");
 }
 

@@ -140,17 +140,28 @@ std::string expected_of(const T&) {
 constexpr auto columns_of_row = [](auto& r, auto field) { for_each_column(r, field); };
 constexpr auto columns_of_difference = [](auto& d, auto field) { for_each_column_of_difference(d, field); };
 
+/// What is quoted of a field that may be of any length.
+constexpr std::size_t longest_quote = 60;
+
 /// Columns that results of earlier versions do not have.
 constexpr std::array<std::string_view, 1> later_columns{"restarts"};
 
 template <class Row, class Columns>
-std::string header_of(Columns columns, const std::vector<std::string>& without = {}) {
+std::vector<std::string> names_of(Columns columns, const std::vector<std::string>& without = {}) {
     std::vector<std::string> names;
     Row any;
     columns(any, [&](const std::string& name, const auto&) {
         if (std::ranges::find(without, name) == without.end()) names.push_back(name);
     });
-    return csv_line(names);
+    return names;
+}
+
+/// "column 3 is 'x'; expected 'seed'"
+std::string first_difference(const std::vector<std::string>& names, const std::vector<std::string>& expected) {
+    const auto [is, should_be] = std::ranges::mismatch(names, expected);
+    return "column " + std::to_string(is - names.begin() + 1) +
+           (is == names.end() ? " is missing" : " is '" + is->substr(0, longest_quote) + "'") + "; expected " +
+           (should_be == expected.end() ? "no more" : "'" + *should_be + "'");
 }
 
 template <class Row, class Columns>
@@ -171,10 +182,10 @@ std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, 
     std::erase_if(absent, [&](const std::string& name) {
         return std::ranges::find(records[0].fields, name) != records[0].fields.end();
     });
-    const std::string header = header_of<Row>(columns, absent);
-    if (csv_line(records[0].fields) != header)
-        throw aabb::input_error(file.string() + ":1: these are not the columns of this version; expected " +
-                                header.substr(0, header.size() - 1));
+    const std::vector<std::string> header = names_of<Row>(columns, absent);
+    if (csv_line(records[0].fields) != csv_line(header))
+        throw aabb::input_error(file.string() + ":1: these are not the columns of this version; " +
+                                first_difference(records[0].fields, header));
     for (const auto& [fields, line] : std::span(records).subspan(1)) {
         const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         std::size_t at = 0;
@@ -200,13 +211,13 @@ std::string row::key() const {
 }
 
 std::string csv_header_of_rows() {
-    return header_of<row>(columns_of_row);
+    return csv_line(names_of<row>(columns_of_row));
 }
 std::string csv_of(const row& r) {
     return line_of(r, columns_of_row);
 }
 std::string csv_of(std::span<const difference> differences) {
-    std::string text = header_of<difference>(columns_of_difference);
+    std::string text = csv_line(names_of<difference>(columns_of_difference));
     for (const difference& d : differences) text += line_of(d, columns_of_difference);
     return text;
 }

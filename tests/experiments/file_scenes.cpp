@@ -286,6 +286,21 @@ TEST_CASE("scene draws a recording, and makes one of a motion") {
     CHECK(bytes_of_file(file) == bytes);
 }
 
+TEST_CASE("A recording in place of a config is refused with what takes it") {
+    const temporary_folder folder;
+    const std::string file = folder / "s.aabbs";
+    REQUIRE(run_program({"scene", "brownian", "--n", "20", "--frames", "1", "--out", file}).status == 0);
+    for (const char* command : {"run", "validate"}) {
+        const program_result refused = run_program({command, file});
+        INFO(refused.err);
+        CHECK(refused.status == 2);
+        CHECK(is_one_sentence(refused.err));
+        CHECK(
+            refused.err.ends_with("/s.aabbs is a recording, not a config: pairs, explain and recommend take it, and a "
+                                  "config plays it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
+    }
+}
+
 TEST_CASE("list says which scenes play a file, and that it must be given") {
     const program_result text = run_program({"list"});
     CHECK(text.out.find("    file=… ") != std::string::npos);

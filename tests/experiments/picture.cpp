@@ -197,4 +197,7 @@ TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind
     refused({"--out", file, "--picture", same}, "--out and --picture are the same file");
     refused({"--out", file, "--picture", nowhere}, "scene.svg: cannot be written");
     refused({"--picture", folder / "sub"}, "it is a folder");
+    refused({"--out", folder / "x.csv"}, "--out takes a name that ends in .aabbs, not '" + (folder / "x.csv").string() +
+                                             "': it writes a recording; aabblab pairs writes the pairs of one as CSV");
+    refused({"--picture", folder / "x.png"}, "--picture takes a name that ends in .svg");
 }

@@ -1,13 +1,19 @@
 #include "program.hpp"
 
 #include <fcntl.h>
+#include <pty.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
+#include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "temporary_folder.hpp"
@@ -24,6 +30,49 @@ program_result run_unread(const std::vector<std::string>& arguments) {
     return result;
 }
 
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+    std::istringstream in(text);
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// In characters, not bytes.
+std::size_t widest_line(const std::string& text) {
+    std::size_t widest = 0;
+    for (const std::string& line : lines_of(text))
+        widest = std::max(widest, static_cast<std::size_t>(std::ranges::count_if(
+                                      line, [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; })));
+    return widest;
+}
+
+/// What a terminal so many characters wide shows of a shell's command: of both streams.
+std::string shown_on_terminal(unsigned short columns, const std::string& command) {
+    winsize size{};
+    size.ws_row = 50;
+    size.ws_col = columns;
+    int terminal = -1;
+    int line = -1;
+    REQUIRE(openpty(&terminal, &line, nullptr, nullptr, &size) == 0);
+    std::string shown;
+    std::thread reader([&] {
+        char bytes[4096];
+        for (ssize_t n = 0; (n = read(terminal, bytes, sizeof bytes)) > 0;)
+            shown.append(bytes, static_cast<std::size_t>(n));
+    });
+    static_cast<void>(run_command({"sh", "-c", command + " 2>&1"}, {}, line));
+    close(line);
+    reader.join();
+    close(terminal);
+    std::erase(shown, '\r');
+    return shown;
+}
+
 }  // namespace
 
 TEST_CASE("The program prints its version and its help") {
@@ -36,6 +85,56 @@ TEST_CASE("The program prints its version and its help") {
     REQUIRE(run_program({"pairs", "--help"}).out.find("--sweep") != std::string::npos);
     for (const char* command : {"pairs", "collide", "contacts"})
         REQUIRE(run_program({command, "--help"}).out.find("aabblab list has every strategy") != std::string::npos);
+}
+
+TEST_CASE("Help and list fit the width they are given, 80 characters without a terminal") {
+    const std::vector<std::string> commands = {"reproduce", "run",   "validate",  "atlas",    "compare",  "errors",
+                                               "explain",   "pairs", "collide",   "list",     "contacts", "classify",
+                                               "order",     "scene", "calibrate", "recommend"};
+    for (const std::string& command : commands) {
+        INFO(command);
+        CHECK(widest_line(run_program({command, "--help"}).out) <= 80);
+    }
+    CHECK(widest_line(run_program({"--help"}).out) <= 80);
+    CHECK(widest_line(run_program({"validate", "extreme", "--help"}).out) <= 80);
+    CHECK(widest_line(run_program({"list"}).out) <= 80);
+    const std::string sorts = run_program({"list", "sort"}).out;
+    const program_result narrow = run_command({"env", "COLUMNS=50", AABBLAB_UNDER_TEST, "list", "sort"});
+    CHECK(widest_line(sorts) > 50);
+    CHECK(widest_line(narrow.out) <= 50);
+    // What is said of a name hangs in its own column, and is all there.
+    CHECK(narrow.out.find("\n" + std::string(25, ' ')) != std::string::npos);
+    CHECK(words_of(narrow.out) == words_of(sorts));
+}
+
+TEST_CASE("On a terminal, list and refusals are as wide as it is") {
+    const std::string program = AABBLAB_UNDER_TEST;
+    const std::string sorts = shown_on_terminal(60, program + " list sort");
+    CHECK(widest_line(sorts) <= 60);
+    CHECK(words_of(sorts) == words_of(run_program({"list", "sort"}).out));
+    const std::string refused = shown_on_terminal(60, program + " pairs s.aabbs --sweep unknown_at_all");
+    CHECK(widest_line(refused) <= 60);
+    CHECK(refused.starts_with("aabblab: unknown sweep 'unknown_at_all'; expected one of"));
+    CHECK(refused.find("\n         ") != std::string::npos);  // behind "aabblab: "
+}
+
+TEST_CASE("list shows one kind alone, and the nearest for one that is none") {
+    const program_result sorts = run_program({"list", "sort"});
+    CHECK(sorts.status == 0);
+    CHECK(sorts.out.starts_with("sort\n  insertion "));
+    CHECK(sorts.out.find("partition") == std::string::npos);
+    CHECK(run_program({"list"}).out.find(sorts.out) != std::string::npos);
+    const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
+    CHECK(nlohmann::json::parse(run_program({"list", "sort", "--json"}).out) ==
+          nlohmann::json{{"strategies", {{"sort", all["strategies"]["sort"]}}}});
+    CHECK(nlohmann::json::parse(run_program({"list", "engines", "--json"}).out) ==
+          nlohmann::json{{"engines", all["engines"]}, {"engines_left_out", all["engines_left_out"]}});
+    for (const auto& [name, content] : all.items()) {
+        if (name == "strategies" || name == "engines_left_out") continue;
+        INFO(name);
+        CHECK(run_program({"list", name}).out.starts_with(name));
+        CHECK(nlohmann::json::parse(run_program({"list", name, "--json"}).out)[name] == content);
+    }
 }
 
 TEST_CASE("A command line that is wrong gets one sentence and status 2") {
@@ -55,6 +154,13 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         {{"collide", "icosphere"}, "collide: expected B, the other mesh, or --self"},
         {{"scene", "brownian"}, "scene: expected --out, --motion or --picture"},
         {{"list", "--jsn"}, "did you mean '--json'?"},
+        {{"list", "sorts"}, "list: unknown kind 'sorts'; did you mean 'sort'?\n"},
+        {{"list", "nothing"}, "list: unknown kind 'nothing'; see aabblab list --help\n"},
+        {{"nothing_at_all"}, "unknown command 'nothing_at_all'; see aabblab --help\n"},
+        {{"scene", "brownian", "--xyzzyq", "3"}, "scene: unknown option '--xyzzyq'; see aabblab scene --help\n"},
+        {{"validate", "stiff", "a", "--xyzzyq"}, "see aabblab validate stiff --help\n"},
+        {{"scene", "xyzzyq", "--out", "a.aabbs"}, "unknown scene 'xyzzyq'; aabblab list scenes has them\n"},
+        {{"pairs", "x", "--engine", "xyzzyq"}, "unknown engine 'xyzzyq'; aabblab list engines has them\n"},
         {{"list", "--threads"}, "list: unknown option '--threads'; expected one of --help, --json\n"},
         {{"pairs", "x", "--threads", "2"},
          "'threads' is a parameter of a strategy, as in --partition columns:threads=…\n"},
