@@ -108,8 +108,10 @@ void print_overall(std::span<const scene_summary> scenes) {
     for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
     for (const auto& [base, some] : alike)
         if (const table overall = overall_table_of(some); some.size() > 1 && !overall.rows.empty())
-            print(fmt::format("{} scenes with {},\nthe ratio to it as a geometric mean, fastest first\n\n{}\n",
-                              some.size(), text_of(base), to_text(overall, output_width())));
+            print(
+                fmt::format("{} scenes with {},\nthe ratio to it as a geometric mean, fastest first; regret: the ratio "
+                            "over\nthe least of an exact answer in each scene, the median, and the worst\n\n{}\n",
+                            some.size(), text_of(base), to_text(overall, output_width())));
 }
 
 /// What takes several must not have them all on one processor.

@@ -16,7 +16,6 @@ module;
 module aabblab.tables;
 
 import aabb.registry;
-import aabblab.metrics;
 import aabblab.numbers;
 import aabblab.results;
 import aabblab.statistics;
@@ -25,21 +24,10 @@ namespace aabblab {
 
 namespace {
 
-/// Time of all frames, making the stages included.
-std::optional<double> whole_of(const summary_line& line) {
-    static const std::size_t place = [] {
-        const std::vector<std::string> names = metric_names();
-        return static_cast<std::size_t>(std::ranges::find(names, "whole_ms") - names.begin());
-    }();
-    return place < line.metrics.size() ? line.metrics[place] : std::nullopt;
-}
-
-std::optional<double> least_whole_of(const scene_summary& scene) {
+std::optional<double> least_ratio_of(const scene_summary& scene) {
     std::optional<double> least;
     for (const summary_line& line : scene.lines)
-        if (const std::optional<double> whole = whole_of(line);
-            whole && line.status == "exact" && (!least || *whole < *least))
-            least = whole;
+        if (line.ratio && line.status == "exact") least = std::min(least.value_or(*line.ratio), *line.ratio);
     return least;
 }
 
@@ -52,11 +40,10 @@ struct standing {
     double log_sum = 0;
     double least = std::numeric_limits<double>::infinity();
     double greatest = 0;
-    std::vector<double> regrets;  ///< time of all frames over that of the fastest of the exact ones
+    std::vector<double> regrets;  ///< ratios over that of the fastest of the exact ones
 
-    void add(const summary_line& line, bool wins_here, std::optional<double> least_whole) {
-        if (const std::optional<double> whole = whole_of(line); whole && least_whole)
-            regrets.push_back(*whole / *least_whole);
+    void add(const summary_line& line, bool wins_here, std::optional<double> least_ratio) {
+        if (least_ratio) regrets.push_back(*line.ratio / *least_ratio);
         ++scenes;
         wins += wins_here ? 1 : 0;
         exact = exact && line.status == "exact";
@@ -74,12 +61,12 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     std::map<contender_name, std::size_t> places;
     for (const scene_summary& scene : scenes) {
         const summary_line* const fastest = ranking_of(scene).front();
-        const std::optional<double> least_whole = least_whole_of(scene);
+        const std::optional<double> least_ratio = least_ratio_of(scene);
         for (const summary_line& line : scene.lines) {
             if (!line.ratio) continue;
             const auto [place, is_new] = places.emplace(line.name, all.size());
             if (is_new) all.emplace_back().name = line.name;
-            all[place->second].add(line, &line == fastest, least_whole);
+            all[place->second].add(line, &line == fastest, least_ratio);
         }
     }
     std::vector<contender_name> names;
@@ -91,15 +78,15 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     if (inexact) t.columns.push_back({"answer"});
     t.columns.insert(t.columns.end(),
                      {{"ratio"}, {"least", true, 2}, {"greatest", true, 1}, {"scenes"}, {"fastest in"}});
-    const bool whole = std::ranges::all_of(all, [](const standing& one) { return !one.regrets.empty(); });
-    if (whole) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
+    const bool regretted = std::ranges::all_of(all, [](const standing& one) { return !one.regrets.empty(); });
+    if (regretted) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
     for (const standing& one : all) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name, t.rows.size() + 1));
         if (inexact) cells.emplace_back(one.exact ? "exact" : "inexact");
         for (const double ratio : {one.ratio(), one.least, one.greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
         cells.push_back(grouped(one.scenes));
         cells.push_back(grouped(one.wins));
-        if (!whole) continue;
+        if (!regretted) continue;
         cells.push_back(fmt::format("{:.2f}", quartiles_of(one.regrets).median));
         cells.push_back(fmt::format("{:.2f}", std::ranges::max(one.regrets)));
     }

@@ -144,13 +144,18 @@ std::string heading_of(const scene_summary& scene) {
                                                          : "all compositions: ") +
                 scene.common + "\n";
     std::string same;
-    for (const shared_column& one : shared_columns(ranking_of(scene)))
+    const std::vector<const summary_line*> ranking = ranking_of(scene);
+    for (const shared_column& one : shared_columns(ranking))
         if (one.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(one.above), one.cells[0]);
     if (!same.empty()) text += "all lines: " + same + "\n";
     if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
     const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
-    if (inexact) text += "an answer -3 +5 misses 3 of the exact answer and invents 5\n";
+    const auto counted_line = std::ranges::find_if(
+        ranking, [](const summary_line* line) { return line->status != "exact" && line->missing.has_value(); });
+    if (counted_line != ranking.end())
+        text += fmt::format("an answer {} misses {} of the exact answer and invents {}\n", answer_of(**counted_line),
+                            *(*counted_line)->missing, *(*counted_line)->invented);
     std::size_t repeats = 0;
     for (const summary_line& line : scene.lines) repeats = std::max(repeats, line.repeats);
     std::string given_up;
@@ -159,9 +164,11 @@ std::string heading_of(const scene_summary& scene) {
     if (!given_up.empty()) text += "repeated less often than others: " + given_up + "\n";
     const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
     if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
-        text += (inexact ? "exact answers before inexact ones, each fastest first; ratio to "
-                         : "fastest first; ratio to ") +
+        text += (inexact ? "exact answers before inexact ones, each by ratio, the least first; ratio to "
+                         : "ranked by ratio, the least first; ratio to ") +
                 scene.lines[0].label + "\n";
+    if (std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ratio && !l.ratio_interval; }))
+        text += "95 %: -, where repeats, seeds or processes are too few for an interval\n";
     return text;
 }
 

@@ -110,7 +110,8 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
     if (count == 0) return;
     const estimate log_ratio = bootstrap(ratios);
     line.ratio = std::exp(log_ratio.value);
-    if (count == 1) return;
+    // Student's t has a variance with more than two degrees of freedom only: an interval of fewer says nothing.
+    if (count == 1 || (log_ratio.error > 0 && log_ratio.degrees <= 2)) return;
     const auto [low, high] = log_ratio.range();
     line.ratio_interval = {std::exp(low), std::exp(high)};
 }
@@ -186,7 +187,7 @@ std::vector<const summary_line*> ranking_of(const scene_summary& scene) {
     for (const summary_line& line : scene.lines) lines.push_back(&line);
     const auto key = [](const summary_line* line) {
         const double ms = line->ms_a_frame ? line->ms_a_frame->median : 0;
-        return std::tuple(!line->ms_a_frame, line->status != "exact", line->ratio.value_or(ms), ms, line);
+        return std::tuple(!line->ms_a_frame, line->status != "exact", !line->ratio, line->ratio.value_or(0), ms, line);
     };
     std::ranges::sort(lines, {}, key);
     return lines;

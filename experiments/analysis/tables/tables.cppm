@@ -62,7 +62,7 @@ struct summary_line {
     /// Of the time to that of the first composition in the same repeat: the geometric mean over processes and seeds of
     /// the median over repeats.
     std::optional<double> ratio;
-    std::optional<interval> ratio_interval;  ///< of 95 %; empty where there is one repeat only
+    std::optional<interval> ratio_interval;  ///< of 95 %; empty where there are too few repeats
     std::optional<double> build_ms;          ///< median
     /// Of all parts, the most of any seed; empty for an engine that does not say.
     std::optional<std::uint64_t> bytes;
@@ -90,7 +90,7 @@ struct scene_summary {
 /// Scene by scene, in the order of the rows.
 [[nodiscard]] std::vector<scene_summary> summarise(std::span<const row> rows);
 
-/// The lines from the fastest to the slowest: exact ones first, then inexact ones, then those without times.
+/// The lines from the least ratio to the greatest: exact ones first, then inexact ones, then those without times.
 [[nodiscard]] std::vector<const summary_line*> ranking_of(const scene_summary& scene);
 
 /// The lines of a scene by rank. What is the same in all of them stands in the heading in its place.
@@ -104,8 +104,8 @@ struct scene_summary {
 [[nodiscard]] table counts_table_of(const scene_summary& scene);
 
 /// All scenes in one, which have the same first composition: those who play from the fastest to the slowest by the
-/// geometric mean of their ratios. `regret` is the time of all frames, making the stages included, over that of the
-/// fastest exact line of the scene, the median and the worst over the scenes.
+/// geometric mean of their ratios. `regret` is the ratio over that of the fastest exact line of the scene, the median
+/// and the worst over the scenes.
 [[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
 
 /// The table of a summary.csv: every line of every scene with its rank, every number in full.
