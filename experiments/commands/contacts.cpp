@@ -26,6 +26,7 @@ import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;
+import aabblab.digits;
 import aabblab.files;
 import aabblab.numbers;
 import aabblab.pair_output;
@@ -122,7 +123,7 @@ contacts_result detect_all(scene_play& scene, both_stages& both, std::optional<n
     progress shown("frames searched", scene.frames());
     aabb::digest digest;
     play(scene, *who, [&](const played_frame& frame) {
-        result.milliseconds.push_back(frame.ms());
+        result.milliseconds.push_back(whole_nanoseconds(frame.ms()));
         require_each_once(frame.contacts, fmt::format("{}, frame {}", both.name, frame.number));
         for (const aabb::contact& c : frame.contacts)
             digest.add(std::array{frame.number, c.a, c.b, c.triangle_a, c.triangle_b});

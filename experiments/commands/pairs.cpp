@@ -23,6 +23,7 @@ import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;
+import aabblab.digits;
 import aabblab.files;
 import aabblab.numbers;
 import aabblab.pair_output;
@@ -74,7 +75,7 @@ search_result search_all(scene_play& scene, search_method& method, std::optional
     progress shown("frames searched", scene.frames());
     aabb::digest digest;
     play(scene, who, [&](const played_frame& frame) {
-        result.milliseconds.push_back(frame.ms());
+        result.milliseconds.push_back(whole_nanoseconds(frame.ms()));
         require_each_once(frame.pairs, fmt::format("{}, frame {}", method.name, frame.number));
         digest.add(frame.number, frame.pairs);
         if (table)

@@ -17,6 +17,7 @@
 
 import aabb.base;
 import aabb.policy;
+import aabblab.digits;
 import aabblab.figures;
 import aabblab.files;
 import aabblab.progress;
@@ -108,7 +109,7 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
                    {}};
         for (const stiff_row& r : result.rows) {
             rows.rows.push_back(
-                {r.subject, r.quantity, fmt::format("{}", r.measured), r.rule, std::string(verdict_of(r))});
+                {r.subject, r.quantity, fifteen_digits(r.measured), r.rule, std::string(verdict_of(r))});
             if (!r.holds)
                 report.failures.push_back(
                     fmt::format("{}: {}: {} is {:.4g}, not {}", study.name, r.subject, r.quantity, r.measured, r.rule));

@@ -1,9 +1,12 @@
 #include <catch2/catch_test_macros.hpp>
 
+import aabblab.digits;
 import aabblab.numbers;
 
 using aabblab::counted;
+using aabblab::fifteen_digits;
 using aabblab::three_digits;
+using aabblab::whole_nanoseconds;
 
 TEST_CASE("Three digits are three, after a carry too") {
     CHECK(three_digits(0) == "0");
@@ -13,6 +16,16 @@ TEST_CASE("Three digits are three, after a carry too") {
     CHECK(three_digits(99.96) == "100");
     CHECK(three_digits(-9.996) == "-10.0");
     CHECK(three_digits(1234.5) == "1234");
+}
+
+TEST_CASE("What computing a number has rounded is not written") {
+    CHECK(fifteen_digits(0.1 + 0.2) == "0.3");
+    CHECK(fifteen_digits(0.25) == "0.25");
+    CHECK(fifteen_digits(1e9) == "1000000000");
+    CHECK(fifteen_digits(-2) == "-2");
+    CHECK(whole_nanoseconds(0.003 + 0.011624) == 0.014624);
+    CHECK(whole_nanoseconds(0.0000014) == 0.000001);
+    CHECK(whole_nanoseconds(0) == 0);
 }
 
 TEST_CASE("One is one, all others are several") {

@@ -7,6 +7,7 @@ module;
 
 module aabblab.figures;
 
+import aabblab.digits;
 import aabblab.results;
 import :drawing;
 import :text;
@@ -33,8 +34,8 @@ std::string csv_of(const figure& f) {
     for (const numbered_series& s : numbered(f))
         for (const figure_point& p : points_of(*s.source)) {
             const bool level = s.source->style == series_style::level;
-            std::vector<std::string> fields{fmt::format("{}", s.number), level ? "" : fmt::format("{}", p.x)};
-            for (const double value : {p.y, p.low, p.high}) fields.push_back(fmt::format("{}", value));
+            std::vector<std::string> fields{fmt::format("{}", s.number), level ? "" : fifteen_digits(p.x)};
+            for (const double value : {p.y, p.low, p.high}) fields.push_back(fifteen_digits(value));
             fields.push_back(one_line(s.source->label));
             if (!f.panels.empty()) fields.push_back(s.panel == nullptr ? "" : one_line(s.panel->title));
             if (!f.x.names.empty()) fields.push_back(level ? "" : name_at(f.x, p.x));

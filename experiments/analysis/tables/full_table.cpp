@@ -4,6 +4,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@ module;
 module aabblab.tables;
 
 import aabb.registry;
+import aabblab.digits;
 import aabblab.metrics;
 import aabblab.results;
 import aabblab.scenes;
@@ -21,8 +23,7 @@ namespace aabblab {
 
 namespace {
 
-template <class Number>
-std::string text_of(const std::optional<Number>& value) {
+std::string text_of(const std::optional<std::uint64_t>& value) {
     return value ? fmt::format("{}", *value) : "";
 }
 
@@ -52,7 +53,7 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
         cells.push_back(value ? fmt::format("{:.6f}", *value) : "");
     cells.push_back(text_of(line.bytes));
     for (std::size_t i = 0; i < metrics().size(); ++i)
-        if (!has_own_column(metrics()[i])) cells.push_back(text_of(line.metrics[i]));
+        if (!has_own_column(metrics()[i])) cells.push_back(line.metrics[i] ? fifteen_digits(*line.metrics[i]) : "");
     return cells;
 }
 
