@@ -166,7 +166,7 @@ void set_bytes(detection_result& result, const player& who) {
 std::uint64_t take_pairs(const collide_request& request, detection_method& method, const scene_play& scene,
                          std::optional<std::uint32_t> pose, detection_result& result, number_table* table) {
     const std::vector<aabb::mesh>& meshes = scene.meshes()->meshes;
-    std::ranges::sort(result.pairs);
+    sort_rows(result.pairs);
     require_each_once(result.pairs, method.name);
     std::uint64_t neighbours = 0;
     if (request.self == "apart")

@@ -29,6 +29,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.pair_output;
 import aabblab.processes;
 import aabblab.scenes;
 
@@ -190,10 +191,13 @@ void external_search::update(std::span<const aabb::box>) {
 void external_search::take_frame() {
     pairs_.clear();
     for (; ahead_ && ahead_->frame <= frame_; read_ahead()) {
-        if (ahead_->frame < frame_) table_->fail("frames do not stand in order");
+        if (ahead_->frame < frame_)
+            table_->fail("this row of frame " + std::to_string(ahead_->frame) + " stands behind one of frame " +
+                         std::to_string(frame_) +
+                         "; expected rows sorted by frame, from 0 on, in any order within a frame");
         pairs_.push_back(ahead_->pair);
     }
-    std::ranges::sort(pairs_);
+    sort_rows(pairs_);
     if (const auto twice = std::ranges::adjacent_find(pairs_); twice != pairs_.end())
         throw aabb::input_error("the pairs of the " + name_ + " have " + std::to_string(twice->a) + " " +
                                 std::to_string(twice->b) + " twice in frame " + std::to_string(frame_));

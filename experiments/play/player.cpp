@@ -20,6 +20,7 @@ import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
 import aabb.policy;
+import aabblab.pair_output;
 import aabblab.scenes;
 import aabblab.stopwatch;
 
@@ -117,13 +118,13 @@ void player::find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& 
 
 const std::vector<aabb::index_pair>& player::sorted_pairs() {
     if (pipeline_) pairs_.assign(pipeline_->candidates().begin(), pipeline_->candidates().end());
-    std::ranges::sort(pairs_);
+    sort_rows(pairs_);
     return pairs_;
 }
 
 const std::vector<aabb::contact>& player::sorted_contacts() {
     if (pipeline_) contacts_.assign(pipeline_->contacts().begin(), pipeline_->contacts().end());
-    std::ranges::sort(contacts_);
+    sort_rows(contacts_);
     return contacts_;
 }
 

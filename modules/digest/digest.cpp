@@ -6,6 +6,7 @@ module;
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -33,7 +34,17 @@ digest& digest::operator=(digest&&) noexcept = default;
 
 void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
     assert(std::ranges::is_sorted(sorted));
-    for (const auto [a, b] : sorted) add(std::array{frame, a, b});
+    // Few at a time would be copied into a buffer of the hash first.
+    constexpr std::size_t at_once = 256;
+    std::array<std::uint32_t, 3 * at_once> records{};
+    while (!sorted.empty()) {
+        const auto rows = sorted.first(std::min(sorted.size(), at_once));
+        std::size_t end = 0;
+        for (const auto [a, b] : rows)
+            for (const std::uint32_t number : {frame, a, b}) records[end++] = number;
+        add(std::span(records).first(end));
+        sorted = sorted.subspan(rows.size());
+    }
 }
 
 void digest::add(std::span<const std::uint32_t> record) {

@@ -25,3 +25,13 @@ TEST_CASE("a digest is XXH3-64 of the little-endian u32 triples") {
     other_frame.add(2, second);
     CHECK(d.value() != other_frame.value());
 }
+
+TEST_CASE("a digest is the same of many pairs at once and of each for itself") {
+    std::vector<index_pair> pairs;
+    for (std::uint32_t a = 0; a < 1000; ++a) pairs.push_back({a, a + 1});
+    digest at_once;
+    at_once.add(3, pairs);
+    digest one_by_one;
+    for (const auto [a, b] : pairs) one_by_one.add(std::array{std::uint32_t{3}, a, b});
+    CHECK(at_once.value() == one_by_one.value());
+}

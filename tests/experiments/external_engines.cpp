@@ -162,7 +162,10 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
         {"echo 4,1,2 >>\"$2\"\n", ": expected a frame below 4"},
         {"sed -i '2s/.*/0,7,7/' \"$2\"\n",
          "the pairs of the external engine 'mine', line 2, '0,7,7': object 7 is paired with itself"},
-        {"echo 0,1,2 >>\"$2\"\n", ": frames do not stand in order"},
+        {"echo 0,1,2 >>\"$2\"\n",
+         ", '0,1,2': this row of frame 0 stands behind one of frame 3; expected rows sorted by frame, from 0 on, in "
+         "any "
+         "order within a frame"},
         {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", "the pairs of the external engine 'mine' have 5 6 twice in frame 0"},
         {"sed -i '$d' \"$3\"\n", "the times of the external engine 'mine' end before frame 3"},
         {"sed -i '3s/.*/2,1,1/' \"$3\"\n",

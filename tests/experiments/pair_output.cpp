@@ -1,5 +1,9 @@
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -36,4 +40,30 @@ TEST_CASE("A table of numbers is there only once it is committed") {
     table.add({2, 0, 4294967295});
     table.commit();
     REQUIRE(bytes_of_file(folder / "pairs.csv") == "frame,a,b\n0,0,1\n2,0,4294967295\n");
+}
+
+TEST_CASE("Rows are sorted whatever their order and their bits") {
+    std::mt19937 numbers(1);
+    const auto random = [&] { return static_cast<std::uint32_t>(numbers()); };
+    for (const std::size_t size : {0U, 1U, 2U, 64U, 65U, 1000U, 20000U})
+        for (const std::uint32_t of_a : {0xffffffffU, 0x100U, 0xfff000U, 1U, 0U})
+            for (const std::uint32_t of_b : {0xffffffffU, 0x1ffffU, 0x80000001U, 0U}) {
+                std::vector<aabb::index_pair> pairs;
+                std::vector<aabb::contact> contacts;
+                for (std::size_t i = 0; i < size; ++i) {
+                    pairs.push_back({random() & of_a, random() & of_b});
+                    contacts.push_back({random() & of_a, random() & of_b, random() & of_b, random() & of_a});
+                }
+                std::vector<aabb::index_pair> sorted_pairs = pairs;
+                std::ranges::sort(sorted_pairs);
+                aabblab::sort_rows(pairs);
+                CHECK(pairs == sorted_pairs);
+                std::ranges::reverse(pairs);
+                aabblab::sort_rows(pairs);
+                CHECK(pairs == sorted_pairs);
+                std::vector<aabb::contact> sorted_contacts = contacts;
+                std::ranges::sort(sorted_contacts);
+                aabblab::sort_rows(contacts);
+                CHECK(contacts == sorted_contacts);
+            }
 }

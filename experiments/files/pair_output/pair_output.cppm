@@ -21,6 +21,11 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// Brings pairs or contacts into ascending order, as digests and files take them: by their bits from the highest on, in
+/// place (American flag sort; McIlroy, Bostic and McIlroy, Engineering Radix Sort, 1993).
+void sort_rows(std::span<aabb::index_pair> pairs);
+void sort_rows(std::span<aabb::contact> contacts);
+
 /// Refuses what a stage reported twice. Both are sorted.
 /// @param where what reported them, as the sentence begins: "std + none + one_axis, frame 3"
 /// @throws defect where a pair is there more than once.
