@@ -52,6 +52,7 @@ struct collide_request {
     bool first = false;
     bool count = false;
     bool geometry = false;
+    bool exit_code = false;
     bool json = false;
 };
 
@@ -348,7 +349,8 @@ void require_sense(const collide_request& request) {
     require_no_engine(request.engine);
 }
 
-void collide(const collide_request& request) {
+/// @returns the exit status
+int collide(const collide_request& request) {
     require_sense(request);
     // What makes no sense is refused before anything is read.
     static_cast<void>(method_of(request, {}));
@@ -377,11 +379,13 @@ void collide(const collide_request& request) {
         print_json(request, method, result);
     else
         print_text(request, method, result);
+    const bool intersect = std::ranges::any_of(result.counts, [](std::uint64_t count) { return count > 0; });
+    return request.exit_code && intersect ? 1 : 0;
 }
 
 }  // namespace
 
-void add_collide(const command_parser& program, int&) {
+void add_collide(const command_parser& program, int& status) {
     const command_parser command =
         program.add_command("collide", "Local detection of two meshes: every pair of intersecting triangles");
     auto request = std::make_shared<collide_request>();
@@ -424,11 +428,14 @@ void add_collide(const command_parser& program, int&) {
         .type_name("FILE");
     command.add_flag("--geometry", request->geometry,
                      "Add to each pair what its triangles have in common, in the world: kind, corners, error");
+    command.add_flag("--exit-code", request->exit_code,
+                     "End with status 1 where anything intersects, as diff does; with --self, triangles that share no "
+                     "vertex");
     command.add_flag("--json", request->json, "Print the summary as JSON");
-    command.callback([request] {
+    command.callback([request, &status] {
         // What the parser makes of a flag without a value.
         if (request->self == "true") request->self = "together";
-        collide(*request);
+        status = collide(*request);
     });
 }
 

@@ -358,6 +358,26 @@ TEST_CASE("collide searches as often as it is asked to, and tells each time") {
     CHECK(text.find(" ms (median of 5)") != std::string::npos);
 }
 
+TEST_CASE("collide ends with status 1 where anything intersects, if it is asked to") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::string elsewhere = "1,0,0,100,0,1,0,0,0,0,1,0";
+    const auto status_of = [&](const std::vector<std::string>& options) {
+        return run_program(joined({"collide", a}, options)).status;
+    };
+    CHECK(status_of({a}) == 0);
+    CHECK(status_of({a, "--exit-code"}) == 1);
+    CHECK(status_of({a, "--exit-code", "--count"}) == 1);
+    CHECK(status_of({a, "--exit-code", "--first", "--json"}) == 1);
+    CHECK(status_of({a, "--exit-code", "--pose-b", elsewhere}) == 0);
+    CHECK(status_of({a, "--exit-code", "--poses", folder.write("apart.txt", elsewhere + "\n")}) == 0);
+    CHECK(status_of({a, "--exit-code", "--poses",
+                     folder.write("both.txt", elsewhere + "\n1 0 0 0 0 1 0 0 0 0 1 0\n" + elsewhere + "\n")}) == 1);
+    // Its triangles share vertices.
+    CHECK(status_of({"--self", "--exit-code"}) == 0);
+    CHECK(status_of({folder / "absent.off", "--exit-code"}) == 2);
+}
+
 TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
