@@ -145,9 +145,9 @@ void external_search::run(const external_engine& who, exchange_folder& exchange)
     for (const std::filesystem::path& file : {pairs_file_, times_file_}) std::filesystem::remove(file);
     std::vector<std::string> arguments(who.command.begin() + 1, who.command.end());
     for (const std::filesystem::path& file : {recording, pairs_file_, times_file_}) arguments.push_back(file.string());
-    // In a group that is not the terminal's it must not wait for what is typed there.
-    const child_result ended = run_child(who.program, arguments,
-                                         {.folder = {}, .input = "/dev/null", .errors = {}, .group = exchange.group()});
+    // Apart from the terminal it must not wait for what is typed there.
+    const child_result ended =
+        run_child(who.program, arguments, {.folder = {}, .input = "/dev/null", .errors = {}, .kept = true});
     if (ended.refused == ENOENT && who.program.find('/') == std::string::npos)
         throw aabb::input_error("the " + name_ + ": there is no program " + who.program + " in PATH; write ./" +
                                 who.program + " for one in the folder of the config");

@@ -39,8 +39,6 @@ public:
     [[nodiscard]] const std::filesystem::path& recording();
     [[nodiscard]] std::size_t objects() const { return objects_; }
     [[nodiscard]] std::size_t frames() const { return frames_; }
-    /// Of processes, which they join.
-    [[nodiscard]] int group() const { return guard_ ? guard_->group() : 0; }
 
 private:
     scene_choice scene_;

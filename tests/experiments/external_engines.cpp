@@ -1,7 +1,6 @@
 // Programs of others that join an experiment by the pairs and the times that they write.
 #include "program.hpp"
 
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,7 +11,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +27,11 @@ const std::string good = R"(#!/bin/sh
 ')" AABBLAB_UNDER_TEST R"(' pairs "$1" --engine brute_force --out "$2" >/dev/null || exit
 { echo frame,update_ms,search_ms; for frame in 0 1 2 3; do echo $frame,0.5,1.25; done; } >"$3"
 )";
+
+/// Starts what is of another session and another group, whose parent is gone, and writes its number to a file.
+const std::string stray =
+    "(setsid sh -c 'echo $$ >stray.part; mv stray.part stray; exec sleep 1000' &)\n"
+    "until [ -e stray ]; do sleep 0.01; done\n";
 
 std::string config_of(const std::string& kind, const std::string& more) {
     return "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = [\"./mine\"]\n" + more +
@@ -53,16 +56,6 @@ std::string refusal_of(const std::string& text) {
     return "accepted";
 }
 
-/// Its process.
-pid_t started(std::vector<std::string> arguments) {
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    REQUIRE(posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ) == 0);
-    return child;
-}
-
 /// Whether a process is gone, or waits for nothing but to be asked how it ended.
 bool has_ended(pid_t process) {
     std::ifstream in("/proc/" + std::to_string(process) + "/stat");
@@ -70,15 +63,6 @@ bool has_ended(pid_t process) {
     std::getline(in, text);
     const std::size_t name_end = text.rfind(')');
     return name_end == std::string::npos || text[name_end + 2] == 'Z';
-}
-
-/// Within half a minute.
-bool comes_true(const std::function<bool()>& what) {
-    for (int attempt = 0; attempt < 3000; ++attempt) {
-        if (what()) return true;
-        usleep(10'000);
-    }
-    return false;
 }
 
 }  // namespace
@@ -213,11 +197,11 @@ TEST_CASE("An interrupted run leaves neither its external engine nor what was ex
     const temporary_folder folder;
     const auto exchanged = folder / "tmp";
     std::filesystem::create_directory(exchanged);
-    // What it started itself has to end too.
-    std::filesystem::permissions(folder.write("mine",
-                                              "#!/bin/sh\nsleep 1000 &\ncd \"${0%/*}\"\necho $$ $! >began.part\n"
-                                              "mv began.part began\nwait\n"),
-                                 std::filesystem::perms::owner_all);
+    // What it started itself has to end too, also in a session of its own.
+    std::filesystem::permissions(
+        folder.write("mine", "#!/bin/sh\nsleep 1000 &\nof=$!\ncd \"${0%/*}\"\n" + stray +
+                                 "echo $$ $of $(cat stray) >began.part\nmv began.part began\nwait\n"),
+        std::filesystem::perms::owner_all);
     const auto config = folder.write("joined.toml", config_of("brownian", "") + "processes = " + processes + "\n");
     const pid_t program =
         started({"sh", "-c", "exec \"$0\" \"$@\" >/dev/null 2>&1", "env", "TMPDIR=" + exchanged.string(),
@@ -230,11 +214,26 @@ TEST_CASE("An interrupted run leaves neither its external engine nor what was ex
     REQUIRE(was_there);
     pid_t engine = 0;
     pid_t of_engine = 0;
-    std::ifstream(folder / "began") >> engine >> of_engine;
-    REQUIRE(of_engine > 0);
+    pid_t gone_astray = 0;
+    std::ifstream(folder / "began") >> engine >> of_engine >> gone_astray;
+    REQUIRE(gone_astray > 0);
     CHECK(comes_true([&] { return has_ended(engine); }));
     CHECK(comes_true([&] { return has_ended(of_engine); }));
+    CHECK(comes_true([&] { return has_ended(gone_astray); }));
     CHECK(comes_true([&] { return std::filesystem::is_empty(exchanged); }));
+}
+
+TEST_CASE("What an external engine leaves running is killed when it ends, whatever session that is in") {
+    const temporary_folder folder;
+    const std::string how = GENERATE("", "exit 3\n", "kill -9 $$\n");
+    CAPTURE(how);
+    const program_result result = run_with(folder, good + "cd \"${0%/*}\"\n" + stray + how);
+    INFO(result.err);
+    CHECK(result.status == (how.empty() ? 0 : 2));
+    pid_t gone_astray = 0;
+    std::ifstream(folder / "stray") >> gone_astray;
+    REQUIRE(gone_astray > 0);
+    CHECK(has_ended(gone_astray));
 }
 
 TEST_CASE("An external engine that cannot be started gets one sentence and status 2") {

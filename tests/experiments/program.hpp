@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -77,6 +78,26 @@ inline constexpr int closed_output = -2;
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), program_detail::content_of(out.get()),
             program_detail::content_of(err.get())};
+}
+
+/// Starts a command, and does not wait for it.
+[[nodiscard]] inline pid_t started(std::vector<std::string> arguments) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    const int failed = posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
+    if (failed != 0) throw std::system_error(failed, std::generic_category(), arguments[0]);
+    return child;
+}
+
+/// Within half a minute.
+[[nodiscard]] inline bool comes_true(const std::function<bool()>& what) {
+    for (int attempt = 0; attempt < 3000; ++attempt) {
+        if (what()) return true;
+        usleep(10'000);
+    }
+    return false;
 }
 
 /// Runs the program under test in the same way.

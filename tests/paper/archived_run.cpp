@@ -1,4 +1,9 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -11,6 +16,26 @@ namespace {
 const std::filesystem::path root = AABBLAB_CONFIGS "/../..";
 
 }  // namespace
+
+TEST_CASE("What is unpacked of an archive ends with the program, however that ends") {
+    const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP, SIGKILL);
+    CAPTURE(signal);
+    const temporary_folder folder;
+    const std::filesystem::path unpacked = folder / "tmp";
+    std::filesystem::create_directory(unpacked);
+    const std::string archive = (root / "paper/archive/full_run.tar.xz").string();
+    const pid_t program = started({"env", "TMPDIR=" + unpacked.string(), AABBLAB_UNDER_TEST, "reproduce", "--judge",
+                                   archive, "--out", (folder / "out").string()});
+    // In the midst of it.
+    const bool began = comes_true([&] { return !std::filesystem::is_empty(unpacked); });
+    usleep(200'000);
+    const bool was_there = !std::filesystem::is_empty(unpacked);
+    kill(program, signal);
+    waitpid(program, nullptr, 0);
+    CHECK(began);
+    CHECK(was_there);
+    CHECK(comes_true([&] { return std::filesystem::is_empty(unpacked); }));
+}
 
 TEST_CASE("The archived run is whole, README says what is found in it, and so does a program of another language") {
     const temporary_folder folder;

@@ -8,6 +8,8 @@ module;
 /// Files of a folder as one: tar, compressed by xz, so that any system can open it without us.
 export module aabblab.archive;
 
+import aabblab.processes;
+
 export namespace aabblab {
 
 /// Writes files of a folder into an archive, in which they stand below the folder `top`. The same files give the same
@@ -23,20 +25,17 @@ struct archive_limits {
     std::uint64_t bytes = std::uint64_t{4} << 30U;
 };
 
-/// The files of an archive in a folder that is gone with this.
+/// The files of an archive in a folder that is gone with this, and with this process, by whatever signal it ends.
 class unpacked_archive {
 public:
     /// @throws aabb::input_error where it is no such archive, cut off, larger than that, or has anything but files
     /// below `top`, each once: no links, no way out of the folder.
     unpacked_archive(const std::filesystem::path& archive, const std::string& top, const archive_limits& limits = {});
-    unpacked_archive(const unpacked_archive&) = delete;
-    unpacked_archive& operator=(const unpacked_archive&) = delete;
-    ~unpacked_archive();
 
-    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] const std::filesystem::path& folder() const { return guard_.folder(); }
 
 private:
-    std::filesystem::path folder_;
+    folder_guard guard_;
 };
 
 }  // namespace aabblab

@@ -125,19 +125,8 @@ private:
 
 unpacked_archive::unpacked_archive(const std::filesystem::path& archive, const std::string& top,
                                    const archive_limits& limits)
-    : folder_(make_temporary_folder()) {
-    try {
-        reader(archive, limits).unpack(top, folder_);
-    } catch (...) {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-        throw;
-    }
-}
-
-unpacked_archive::~unpacked_archive() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
+    : guard_(make_temporary_folder()) {
+    reader(archive, limits).unpack(top, folder());
 }
 
 }  // namespace aabblab

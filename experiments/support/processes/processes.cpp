@@ -45,11 +45,16 @@ struct pipe_ends {
     return opened >= 0 && dup2(opened, place) >= 0;
 }
 
-/// Between fork and exec only what a signal handler may call. Returns where the program cannot be started.
-void become(char* const* arguments, const surroundings& where, int output, pid_t parent) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+// Between fork and exec only what a signal handler may call.
+
+/// Has this process sent a signal when its parent ends.
+void end_with(pid_t parent, int signal) {
+    prctl(PR_SET_PDEATHSIG, signal);
     if (getppid() != parent) _exit(127);  // it ended before that
-    if (where.group != 0) setpgid(0, where.group);
+}
+
+/// Returns where the program cannot be started.
+void become(char* const* arguments, const surroundings& where, int output) {
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(where.input.c_str(), O_RDONLY, STDIN_FILENO) ||
         !redirect(where.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
         (!where.folder.empty() && chdir(where.folder.c_str()) != 0))
@@ -59,10 +64,69 @@ void become(char* const* arguments, const surroundings& where, int output, pid_t
     execvp(*arguments, arguments);
 }
 
-/// Ends when its standard input does. TERM, which it ignores, ends those of its group who might still write; in the end
-/// it kills all of them, and itself.
-constexpr const char* guard_script =
-    "trap '' HUP INT TERM; read -r end; kill -s TERM 0; rm -rf -- \"$1\"; kill -s KILL 0";
+/// Kills the children of this process, those whose parents die of it, and so on.
+void kill_descendants() {
+    std::array<char, 4096> list{};
+    for (;;) {
+        const int file = open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
+        const ssize_t size = file < 0 ? -1 : read(file, list.data(), list.size());
+        if (file >= 0) close(file);
+        if (size <= 0) return;
+        pid_t child = 0;
+        for (ssize_t i = 0; i < size; ++i) {
+            const char c = list[static_cast<std::size_t>(i)];
+            if (c >= '0' && c <= '9') {
+                child = 10 * child + (c - '0');
+            } else {
+                // Its number is whole.
+                kill(child, SIGKILL);
+                child = 0;
+            }
+        }
+        while (waitpid(-1, nullptr, 0) < 0 && errno == EINTR) continue;
+    }
+}
+
+/// Goes on in a new process, which is to become the program, and waits until that one ends, or TERM comes, as it does
+/// when the parent ends. Then it kills all that was started, whatever sessions that went to, and ends as the program
+/// did.
+/// @returns in the new process; false where there can be none
+[[nodiscard]] bool keep(int output, int refusal, pid_t parent) {
+    sigset_t awaited;
+    sigset_t before;
+    sigset_t none;
+    sigemptyset(&none);
+    sigfillset(&awaited);
+    sigprocmask(SIG_SETMASK, &awaited, &before);
+    end_with(parent, SIGTERM);
+    prctl(PR_SET_CHILD_SUBREAPER, 1);
+    setpgid(0, 0);
+    const pid_t keeper = getpid();
+    const pid_t program = fork();
+    if (program < 0) return false;
+    if (program == 0) {
+        end_with(keeper, SIGKILL);
+        sigprocmask(SIG_SETMASK, &before, nullptr);
+        return true;
+    }
+    close(output);
+    close(refusal);
+    int status = 0;
+    for (pid_t ended = 0; ended != program;) {
+        if (sigwaitinfo(&awaited, nullptr) == SIGTERM) break;
+        while (ended != program && (ended = waitpid(-1, &status, WNOHANG)) > 0) continue;
+    }
+    kill_descendants();
+    if (!WIFSIGNALED(status)) _exit(WEXITSTATUS(status));
+    prctl(PR_SET_DUMPABLE, 0);  // no core: it would be of this process
+    std::signal(WTERMSIG(status), SIG_DFL);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    kill(keeper, WTERMSIG(status));
+    _exit(127);
+}
+
+/// Ends when its standard input does, which all keepers hold open too.
+constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf -- \"$1\"";
 
 /// As `become`. Nobody who reads our output waits for it.
 [[noreturn]] void become_guard(int input, const char* folder) {
@@ -101,7 +165,9 @@ child_result run_child(const std::string& program, const std::vector<std::string
     const pid_t child = fork();
     if (child < 0) return {errno, 0, {}};
     if (child == 0) {
-        become(pointers.data(), where, output.ends[1], parent);
+        if (!where.kept) end_with(parent, SIGKILL);
+        if (!where.kept || keep(output.ends[1], refusal.ends[1], parent))
+            become(pointers.data(), where, output.ends[1]);
         const int why = errno;
         _exit(write(refusal.ends[1], &why, sizeof why) < 0 ? 126 : 127);
     }
@@ -119,18 +185,15 @@ child_result run_child(const std::string& program, const std::vector<std::string
 folder_guard::folder_guard(std::filesystem::path folder) : folder_(std::move(folder)) {
     pipe_ends life;
     if (!life.open()) return;
-    const pid_t guard = fork();
-    if (guard < 0) return;
-    if (guard == 0) become_guard(life.ends[0], folder_.c_str());
-    // Whoever of the two is first: the group is there when this returns.
-    setpgid(guard, guard);
-    guard_ = guard;
+    guard_ = fork();
+    if (guard_ < 0) return;
+    if (guard_ == 0) become_guard(life.ends[0], folder_.c_str());
     held_ = std::exchange(life.ends[1], -1);
 }
 
 folder_guard::~folder_guard() {
     if (held_ >= 0) close(held_);
-    while (guard_ != 0 && waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) continue;
+    while (guard_ > 0 && waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) continue;
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
 }

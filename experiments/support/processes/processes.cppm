@@ -13,7 +13,7 @@ struct surroundings {
     std::filesystem::path folder;
     std::filesystem::path input;
     std::filesystem::path errors;  ///< appended to; /dev/stdout: they go where its output goes
-    int group = 0;                 ///< of processes, which it joins with all that it starts
+    bool kept = false;             ///< apart from the terminal, and killed at its end with all that it starts
 };
 
 /// What a program left.
@@ -23,13 +23,13 @@ struct child_result {
     std::string printed;
 };
 
-/// Runs a program to its end. It does not outlive the thread that calls this, however that ends.
+/// Runs a program to its end. It does not outlive the thread that calls this, however that ends, nor does anything that
+/// it starts where it is kept.
 /// @param program a path, or a name without slashes to be looked up in PATH
 [[nodiscard]] child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                      const surroundings& where);
 
-/// A folder and a group of processes that end with this: the folder is removed, the processes are killed. So it is too
-/// where this process ends, by whatever signal.
+/// A folder that is removed with this, and with this process, by whatever signal it ends.
 class folder_guard {
 public:
     /// @param folder that is there, and is nobody else's
@@ -38,13 +38,12 @@ public:
     folder_guard& operator=(const folder_guard&) = delete;
     ~folder_guard();
 
-    /// For `surroundings`.
-    [[nodiscard]] int group() const { return guard_; }
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
 private:
     std::filesystem::path folder_;
-    int held_ = -1;  // an end of a pipe, which closes with this process
-    int guard_ = 0;  // waits for that; 0 where it could not be started
+    int held_ = -1;   // an end of a pipe, which closes with this process and those that keep programs for it
+    int guard_ = -1;  // the process that waits for that; less than 0 where it could not be started
 };
 
 }  // namespace aabblab
