@@ -20,6 +20,7 @@ import aabblab.files;
 import aabblab.machine;
 import aabblab.processor;
 import aabblab.statistics;
+import aabblab.stopwatch;
 import aabblab.tables;
 
 namespace aabblab {
@@ -67,6 +68,7 @@ table checks_of(const calibration& found) {
 void calibrate(const calibrate_request& request) {
     const std::filesystem::path file = file_of(request);
     if (request.reset) return reset(file);
+    require_fine_clock();
     // What is no file of costs is somebody's else.
     if (request.out && std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) > 0)
         (void)read_costs(file);

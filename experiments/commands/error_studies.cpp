@@ -15,6 +15,7 @@ import aabblab.configs;
 import aabblab.errors;
 import aabblab.files;
 import aabblab.results;
+import aabblab.stopwatch;
 import aabblab.tables;
 
 namespace aabblab {
@@ -72,6 +73,7 @@ std::vector<std::filesystem::path> error_configs() {
 }
 
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown) {
+    require_fine_clock();
     std::vector<std::string> failures;
     std::filesystem::create_directories(folder);
     // Of an earlier study, they would stand beside the config of this one.

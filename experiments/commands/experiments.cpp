@@ -29,6 +29,7 @@ import aabblab.results;
 import aabblab.play;
 import aabblab.processor;
 import aabblab.scenes;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -164,6 +165,7 @@ experiment open_experiment(const std::string& config, bool quick) {
 
 std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
                                          existing_results existing, const std::string& resume_with, printed shown) {
+    if (e.records(metric_group::time)) require_fine_clock();
     const interruption said(resume_with);
     const folder_lock alone(folder);
     std::vector<std::string> failures;

@@ -33,6 +33,7 @@ import aabblab.numbers;
 import aabblab.play;
 import aabblab.race;
 import aabblab.scenes;
+import aabblab.stopwatch;
 import aabblab.tables;
 
 namespace aabblab {
@@ -201,6 +202,7 @@ struct explain_request {
 int explain(const explain_request& request) {
     if (request.what.size() == 1 && names_config(request.what.front())) {
         const experiment e = open_experiment(request.what.front(), false);
+        if (!e.automatic.empty()) require_fine_clock();
         explain_costs();
         bool same = true;
         for (const scene_choice& choice : e.scenes) {
@@ -211,6 +213,7 @@ int explain(const explain_request& request) {
         }
         return same ? 0 : 1;
     }
+    require_fine_clock();
     experiment e;
     e.automatic.emplace_back();
     time_limits limits(request.seconds);

@@ -27,6 +27,7 @@ import aabblab.play;
 import aabblab.race;
 import aabblab.results;
 import aabblab.scenes;
+import aabblab.stopwatch;
 import aabblab.tables;
 
 namespace aabblab {
@@ -129,6 +130,7 @@ std::string measures_page(staged_scene& scene, double seconds) {
 }
 
 int recommend(const recommend_request& request) {
+    require_fine_clock();
     time_limits limits(request.seconds);
     staged_scene scene(scene_of_arguments(request.what));
     limits.scene_is_read();

@@ -1,11 +1,48 @@
 module;
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <limits>
+#include <string>
 
 module aabblab.stopwatch;
 
+import aabb.base;
+import aabblab.numbers;
+
 namespace aabblab {
+
+namespace {
+
+/// Some hundred boxes take as long a frame, and reading the clock less.
+constexpr double longest_step_ms = 1e-2;
+
+double wall_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// By how much a clock moves at once, or from one reading to the next. The least of some, for who is interrupted misses
+/// steps; short enough is enough.
+double step_of(double (*clock)()) {
+    double step = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 10 && step > longest_step_ms; ++i) {
+        const double before = clock();
+        double now = before;
+        while (now == before) now = clock();
+        step = std::min(step, now - before);
+    }
+    return step;
+}
+
+}  // namespace
+
+void require_fine_clock() {
+    const double step = std::max(step_of(wall_ms), step_of(thread_cpu_ms));
+    if (step > longest_step_ms)
+        throw aabb::input_error("the clock of this machine goes in steps of " + three_digits(step) +
+                                " ms, too long for what is to be timed; at most " + three_digits(longest_step_ms) +
+                                " ms are needed");
+}
 
 double thread_cpu_ms() {
     std::timespec now{};

@@ -6,6 +6,10 @@ export module aabblab.stopwatch;
 
 export namespace aabblab {
 
+/// To be called before anything is timed whose time is what is asked for.
+/// @throws aabb::input_error where a clock goes in steps of more than a hundredth of a millisecond.
+void require_fine_clock();
+
 /// Wall time of one call, in milliseconds.
 template <class Work>
 [[nodiscard]] double milliseconds_of(Work&& work) {

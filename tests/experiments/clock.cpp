@@ -1,0 +1,46 @@
+// On a clock that is too coarse nothing is timed.
+#include <catch2/catch_test_macros.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+TEST_CASE("On a clock that goes in steps of 15 ms, what is to be timed is refused, and nothing is written") {
+    const temporary_folder folder;
+    const std::string config = folder
+                                   .write("a.toml",
+                                          "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n"
+                                          "[[compose]]\nauto = true\n[measure]\nrepeats = 2\n")
+                                   .string();
+    const std::string scene = (folder / "a.aabbs").string();
+    REQUIRE(run_program({"scene", "still", "--n", "5", "--frames", "1", "--out", scene}).status == 0);
+    const std::size_t files = folder.files();
+    const std::string out = (folder / "out").string();
+    const auto on_coarse_clock = [](const std::vector<std::string>& arguments) {
+        // The address sanitizer is to come second.
+        return run_command(joined({"env", "ASAN_OPTIONS=verify_asan_link_order=0",
+                                   std::string("LD_PRELOAD=") + AABBLAB_COARSE_CLOCK, AABBLAB_UNDER_TEST},
+                                  arguments));
+    };
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"calibrate", "--quick", "--out", out},
+                                                    {"recommend", scene, "--report", out},
+                                                    {"run", config, "--out", out},
+                                                    {"explain", scene},
+                                                    {"explain", config},
+                                                    {"errors", "--quick", "--out", out},
+                                                    {"atlas", "--quick", "--out", out}}) {
+        CAPTURE(command);
+        const program_result result = on_coarse_clock(command);
+        CHECK(result.status == 2);
+        CHECK(result.out.empty());
+        CHECK(
+            result.err.ends_with("aabblab: the clock of this machine goes in steps of 15.0 ms, too long for what is "
+                                 "to be timed; at most 0.0100 ms are needed\n"));
+        CHECK(folder.files() == files);
+    }
+    // Whose times are not what is asked for.
+    CHECK(on_coarse_clock({"pairs", scene}).status == 0);
+    CHECK(on_coarse_clock({"validate", config}).status == 0);
+}
