@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 import aabb.base;
 import aabblab.figures;
 import aabblab.files;
+import aabblab.json;
 import aabblab.tables;
 
 namespace aabblab {
@@ -23,8 +25,14 @@ json json_of(const figure_axis& axis) {
     return {{"label", axis.label}, {"logarithmic", axis.logarithmic}, {"names", axis.names}};
 }
 
-figure_axis axis_of(const json& j) {
-    return {j.at("label"), j.at("logarithmic"), j.at("names").get<std::vector<std::pair<double, std::string>>>()};
+figure_axis axis_of(const json_value& j) {
+    figure_axis axis{j.needed("label").text(), j.needed("logarithmic").flag(), {}};
+    for (const json_value& name : j.needed("names").list()) {
+        const std::vector<json_value> pair = name.list();
+        if (pair.size() != 2) name.fail("must be a number and its name");
+        axis.names.emplace_back(pair[0].number(), pair[1].text());
+    }
+    return axis;
 }
 
 json json_of(const std::vector<series>& all) {
@@ -53,32 +61,43 @@ json json_of(const figure& f) {
 }
 
 /// A number that is none, as a trajectory's that ends beyond all, is null in JSON; figures leave it out.
-double number_of(const json& j) {
-    return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>();
+double number_of(const json_value& j) {
+    return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.number();
 }
 
-std::vector<series> series_of(const json& j) {
+std::vector<series> series_of(const json_value& in) {
     std::vector<series> all;
-    for (const json& line : j) {
-        series s{line.at("label"), static_cast<series_style>(line.at("style").get<int>()), {}};
-        for (const json& p : line.at("points"))
-            s.points.push_back({number_of(p.at(0)), number_of(p.at(1)), number_of(p.at(2)), number_of(p.at(3))});
+    for (const json_value& line : in.needed("lines").list()) {
+        const json_value style = line.needed("style");
+        if (style.index() > static_cast<std::size_t>(series_style::level)) style.fail("is not a style of lines");
+        series s{line.needed("label").text(), static_cast<series_style>(style.index()), {}};
+        for (const json_value& p : line.needed("points").list()) {
+            const std::vector<json_value> numbers = p.list();
+            if (numbers.size() != 4) p.fail("must be four numbers");
+            s.points.push_back(
+                {number_of(numbers[0]), number_of(numbers[1]), number_of(numbers[2]), number_of(numbers[3])});
+        }
         all.push_back(std::move(s));
     }
     return all;
 }
 
-std::vector<figure_mark> marks_of(const json& j) {
+std::vector<figure_mark> marks_of(const json_value& in) {
     std::vector<figure_mark> all;
-    for (const json& m : j) all.push_back({m.at("x"), m.at("label")});
+    for (const json_value& m : in.needed("marks").list())
+        all.push_back({m.needed("x").number(), m.needed("label").text()});
     return all;
 }
 
-figure figure_of(const json& j) {
-    figure f{j.at("name"),       j.at("caption"),          axis_of(j.at("x")),
-             axis_of(j.at("y")), series_of(j.at("lines")), marks_of(j.at("marks"))};
-    for (const json& p : j.value("panels", json::array()))
-        f.panels.push_back({p.at("title"), series_of(p.at("lines")), marks_of(p.at("marks"))});
+figure figure_of(const json_value& j) {
+    figure f{j.needed("name").text(),
+             j.needed("caption").text(),
+             axis_of(j.needed("x")),
+             axis_of(j.needed("y")),
+             series_of(j),
+             marks_of(j)};
+    for (const json_value& p : j.objects("panels"))
+        f.panels.push_back({p.needed("title").text(), series_of(p), marks_of(p)});
     return f;
 }
 
@@ -88,10 +107,15 @@ json json_of(const captioned_table& t) {
     return {{"name", t.name}, {"caption", t.caption}, {"columns", std::move(columns)}, {"rows", t.content.rows}};
 }
 
-captioned_table table_of(const json& j) {
-    captioned_table t{j.at("name"), j.at("caption"), {}};
-    for (const json& c : j.at("columns")) t.content.columns.push_back({c.at("name"), c.at("is_number")});
-    t.content.rows = j.at("rows").get<std::vector<std::vector<std::string>>>();
+captioned_table table_of(const json_value& j) {
+    captioned_table t{j.needed("name").text(), j.needed("caption").text(), {}};
+    for (const json_value& c : j.needed("columns").list())
+        t.content.columns.push_back({c.needed("name").text(), c.needed("is_number").flag()});
+    for (const json_value& row : j.needed("rows").list()) {
+        std::vector<std::string>& fields = t.content.rows.emplace_back();
+        for (const json_value& field : row.list()) fields.push_back(field.text());
+        if (fields.size() != t.content.columns.size()) row.fail("must have a field for each column");
+    }
     return t;
 }
 
@@ -110,17 +134,13 @@ void keep_report(const std::filesystem::path& file, const suite_report& report) 
 }
 
 suite_report kept_report(const std::filesystem::path& file) {
-    try {
-        const json all = json::parse(bytes_of_file(file));
-        suite_report report;
-        report.paragraphs = all.at("paragraphs").get<std::vector<std::string>>();
-        report.failures = all.at("failures").get<std::vector<std::string>>();
-        for (const json& f : all.at("figures")) report.figures.push_back(figure_of(f));
-        for (const json& t : all.at("tables")) report.tables.push_back(table_of(t));
-        return report;
-    } catch (const json::exception&) {
-        throw aabb::input_error(file.string() + " is not the report of a suite of validate; play the suite again");
-    }
+    const json_value all(file.string(), bytes_of_file(file), "is not the report of a suite of validate");
+    suite_report report;
+    report.paragraphs = all.needed("paragraphs").texts();
+    report.failures = all.needed("failures").texts();
+    for (const json_value& f : all.needed("figures").list()) report.figures.push_back(figure_of(f));
+    for (const json_value& t : all.needed("tables").list()) report.tables.push_back(table_of(t));
+    return report;
 }
 
 }  // namespace aabblab

@@ -1,5 +1,6 @@
 module;
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -69,7 +70,10 @@ bool taken(aabb::strategy_choice& to, const std::string& text) {
 template <class Number>
 bool taken(Number& to, const std::string& text) {
     const char* end = text.data() + text.size();
-    return std::from_chars(text.data(), end, to) == std::from_chars_result{end, std::errc{}};
+    if (std::from_chars(text.data(), end, to) != std::from_chars_result{end, std::errc{}}) return false;
+    // Times are drawn on a logarithmic axis.
+    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(to) && to > 0;
+    return true;
 }
 
 std::vector<column> columns() {

@@ -1,10 +1,8 @@
 module;
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -15,6 +13,7 @@ module;
 module aabblab.files;
 
 import aabb.base;
+import aabblab.json;
 import :file_text;
 import :gltf_asset;
 
@@ -22,135 +21,7 @@ namespace aabblab {
 
 namespace {
 
-using nlohmann::json;
-
-/// An object in the file with the way to it, as in "accessors[3]", and its members by type.
-class object {
-public:
-    object(const file_text& file, std::string place, const json& content)
-        : file_(file), place_(std::move(place)), content_(content) {
-        if (!content.is_object()) fail("must be an object");
-    }
-
-    [[noreturn]] void fail(const std::string& sentence) const {
-        throw aabb::input_error(file_.name + ": " + (place_.empty() ? "the file" : place_) + " " + sentence);
-    }
-
-    [[nodiscard]] std::optional<std::size_t> index(const char* key) const {
-        const auto found = content_.find(key);
-        if (found == content_.end()) return {};
-        if (!found->is_number_unsigned()) fail_member(key, "a whole number");
-        return found->get<std::size_t>();
-    }
-    [[nodiscard]] std::size_t needed_index(const char* key) const {
-        const std::optional<std::size_t> found = index(key);
-        if (!found) throw aabb::input_error(file_.name + ": " + named(key) + " is missing");
-        return *found;
-    }
-
-    [[nodiscard]] std::optional<std::string> text(const char* key) const {
-        const auto found = content_.find(key);
-        if (found == content_.end()) return {};
-        if (!found->is_string()) fail_member(key, "a string");
-        return found->get<std::string>();
-    }
-
-    [[nodiscard]] bool has(const char* key) const { return content_.contains(key); }
-    /// False where there is none.
-    [[nodiscard]] bool flag(const char* key) const {
-        const auto found = content_.find(key);
-        if (found == content_.end()) return false;
-        if (!found->is_boolean()) fail_member(key, "true or false");
-        return found->get<bool>();
-    }
-
-    [[nodiscard]] std::optional<object> member(const char* key) const {
-        const auto found = content_.find(key);
-        if (found == content_.end()) return {};
-        return object(file_, named(key), *found);
-    }
-    [[nodiscard]] object needed_member(const char* key) const {
-        const std::optional<object> found = member(key);
-        if (!found) throw aabb::input_error(file_.name + ": " + named(key) + " is missing");
-        return *found;
-    }
-
-    /// Empty where there is none.
-    [[nodiscard]] std::vector<object> objects(const char* key) const {
-        std::vector<object> all;
-        const json* const items = list(key);
-        if (!items) return all;
-        for (std::size_t i = 0; i < items->size(); ++i) all.emplace_back(file_, gltf_place(named(key), i), (*items)[i]);
-        return all;
-    }
-    [[nodiscard]] std::vector<std::size_t> indices(const char* key) const {
-        std::vector<std::size_t> all;
-        const json* const items = list(key);
-        if (!items) return all;
-        for (const json& item : *items) {
-            if (!item.is_number_unsigned()) fail_member(key, "a list of whole numbers");
-            all.push_back(item.get<std::size_t>());
-        }
-        return all;
-    }
-    [[nodiscard]] std::vector<std::string> texts(const char* key) const {
-        std::vector<std::string> all;
-        const json* const items = list(key);
-        if (!items) return all;
-        for (const json& item : *items) {
-            if (!item.is_string()) fail_member(key, "a list of texts");
-            all.push_back(item.get<std::string>());
-        }
-        return all;
-    }
-    template <std::size_t Count>
-    [[nodiscard]] std::array<double, Count> numbers(const char* key, std::array<double, Count> fallback) const {
-        const json* const items = list(key);
-        if (!items) return fallback;
-        if (items->size() != Count || !std::ranges::all_of(*items, &json::is_number))
-            fail_member(key, "a list of " + std::to_string(Count) + " numbers");
-        std::array<double, Count> all{};
-        for (std::size_t i = 0; i < Count; ++i) all[i] = (*items)[i].get<double>();
-        return all;
-    }
-    [[nodiscard]] std::optional<std::vector<double>> numbers(const char* key) const {
-        const json* const items = list(key);
-        if (!items) return {};
-        if (!std::ranges::all_of(*items, &json::is_number)) fail_member(key, "a list of numbers");
-        return items->get<std::vector<double>>();
-    }
-
-private:
-    [[noreturn]] void fail_member(const char* key, const std::string& expected) const {
-        throw aabb::input_error(file_.name + ": " + named(key) + " must be " + expected);
-    }
-    [[nodiscard]] std::string named(const char* key) const { return (place_.empty() ? "" : place_ + ".") + key; }
-    [[nodiscard]] const json* list(const char* key) const {
-        const auto found = content_.find(key);
-        if (found == content_.end()) return nullptr;
-        if (!found->is_array()) fail_member(key, "a list");
-        return &*found;
-    }
-
-    const file_text& file_;
-    std::string place_;
-    const json& content_;
-};
-
-json parsed(const file_text& file, const gltf_parts& parts) {
-    try {
-        return json::parse(parts.json);
-    } catch (const json::parse_error& error) {
-        const std::size_t read = std::min(error.byte, parts.json.size());
-        if (!parts.is_text)
-            throw aabb::input_error(file.name + ": is no glTF file: its JSON is malformed at byte " +
-                                    std::to_string(read));
-        const auto line = 1 + std::ranges::count(parts.json.substr(0, read), '\n');
-        throw aabb::input_error(file.name + ":" + std::to_string(line) + ": is no glTF file: its JSON is malformed");
-    } catch (const json::out_of_range&) {
-        throw aabb::input_error(file.name + ": is no glTF file: a number in it does not fit a double");
-    }
-}
+using object = json_value;
 
 constexpr std::string_view quantization = "KHR_mesh_quantization";
 
@@ -201,12 +72,12 @@ gltf_accessor accessor_of(const object& accessor) {
                        .component = gltf_component{accessor.needed_index("componentType")},
                        .count = accessor.needed_index("count"),
                        .type = accessor.text("type").value_or(""),
-                       .normalized = accessor.flag("normalized"),
+                       .normalized = accessor.flag("normalized").value_or(false),
                        .sparse = {}};
     if (const auto sparse = accessor.member("sparse")) {
-        const object indices = sparse->needed_member("indices");
+        const object indices = sparse->needed("indices");
         read.sparse = {sparse->needed_index("count"), part_of(indices),
-                       gltf_component{indices.needed_index("componentType")}, part_of(sparse->needed_member("values"))};
+                       gltf_component{indices.needed_index("componentType")}, part_of(sparse->needed("values"))};
     }
     return read;
 }
@@ -214,7 +85,7 @@ gltf_accessor accessor_of(const object& accessor) {
 /// NAME_0, NAME_1 and so on.
 std::vector<std::size_t> numbered_attributes(const object& attributes, const std::string& name) {
     std::vector<std::size_t> accessors;
-    while (const auto next = attributes.index((name + "_" + std::to_string(accessors.size())).c_str()))
+    while (const auto next = attributes.index(name + "_" + std::to_string(accessors.size())))
         accessors.push_back(*next);
     return accessors;
 }
@@ -263,8 +134,8 @@ std::vector<std::size_t> roots_of(const object& root) {
 }  // namespace
 
 gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
-    const json content = parsed(file, parts);
-    const object root(file, "", content);
+    const object root(file.name, parts.json, "is no glTF file",
+                      parts.is_text ? object::position::line : object::position::byte);
     const std::optional<object> about = root.member("asset");
     const std::string version = about ? about->text("version").value_or("") : "";
     if (!version.starts_with("2."))

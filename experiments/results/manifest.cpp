@@ -23,6 +23,7 @@ import aabb.base;
 import aabb.costs;
 import aabb.registry;
 import aabblab.files;
+import aabblab.json;
 import aabblab.machine;
 import aabblab.scenes;
 import aabblab.sha256;
@@ -80,10 +81,11 @@ json json_of(const contender_name& name) {
     return all;
 }
 
-contender_name contender_of(const json& all) {
+contender_name contender_of(const json_value& all) {
     contender_name name;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds) name[kind] = all.value(std::string(name_of(kind)), "");
-    name.engine = all.value("engine", "");
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        name[kind] = all.text(std::string(name_of(kind))).value_or("");
+    name.engine = all.text("engine").value_or("");
     return name;
 }
 
@@ -91,8 +93,8 @@ json json_of(const table_seal& table) {
     return {{"rows", table.rows}, {"sha256", table.checksum}};
 }
 
-table_seal table_of(const json& table) {
-    return {table.at("rows").get<std::size_t>(), table.at("sha256").get<std::string>()};
+table_seal table_of(const json_value& table) {
+    return {table.needed("rows").index(), table.needed("sha256").text()};
 }
 
 /// The name of a file need not be UTF-8.
@@ -106,33 +108,41 @@ std::string checksum_of(json manifest) {
     return sha256_of(text_of(manifest, -1));
 }
 
-results_seal seal_in(const json& manifest) {
-    const json& seal = manifest.at("seal");
-    results_seal all{table_of(seal.at("results.csv")), std::nullopt, {}};
-    if (seal.contains("differences.csv")) all.differences = table_of(seal.at("differences.csv"));
-    for (const json& contender : seal.at("contenders")) all.contenders.push_back(contender_of(contender));
+results_seal seal_in(const json_value& seal) {
+    results_seal all{table_of(seal.needed("results.csv")), std::nullopt, {}};
+    if (const auto table = seal.member("differences.csv")) all.differences = table_of(*table);
+    for (const json_value& contender : seal.objects("contenders")) all.contenders.push_back(contender_of(contender));
     return all;
 }
 
-/// The scenes of a manifest in their order, each with its exact digest, or an empty one.
-std::vector<std::pair<scene_choice, std::string>> scenes_in(const json& manifest) {
-    std::vector<std::pair<scene_choice, std::string>> scenes;
-    for (const json& scene : manifest.value("scenes", json::array())) {
-        scene_choice played{scene.value("kind", ""), {}, {}, std::nullopt};
-        if (scene.contains("seed")) played.seed = scene.value("seed", std::uint64_t{0});
-        if (set_parameters(played, scene.value("parameters", json()).dump()))
-            scenes.emplace_back(std::move(played), scene.value("digest", ""));
-    }
-    return scenes;
-}
+/// A manifest that somebody wrote.
+struct read_in {
+    json_value content;
+    json raw;  ///< the same in the order in which it stands there, for checksums
+};
 
-json read_json(const std::filesystem::path& file) {
+read_in read_json(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         throw aabb::input_error(file.string() + " is not there; results without it cannot be used");
-    json content = json::parse(bytes_of_file(file), nullptr, false);
-    if (!content.is_object() || !content.contains("build") || !content.contains("config"))
-        throw aabb::input_error(file.string() + " is not a manifest of results");
-    return content;
+    const std::string text = bytes_of_file(file);
+    const char* const otherwise = "is not a manifest of results";
+    json_value content(file.string(), text, otherwise);
+    if (!content.has("build") || !content.has("config")) throw aabb::input_error(file.string() + " " + otherwise);
+    return {std::move(content), json::parse(text)};
+}
+
+/// The scenes of a manifest in their order, each with its exact digest, or an empty one.
+std::vector<std::pair<scene_choice, std::string>> scenes_in(const read_in& manifest) {
+    std::vector<std::pair<scene_choice, std::string>> scenes;
+    for (const json_value& scene : manifest.content.objects("scenes")) {
+        scene_choice played{scene.text("kind").value_or(""), {}, {}, scene.index("seed")};
+        // As they were written, which is the order that rows have them in.
+        const json& raw = manifest.raw["scenes"][scenes.size()];
+        if (!set_parameters(played, raw.value("parameters", json()).dump()))
+            scene.fail("must have parameters, an object of settings");
+        scenes.emplace_back(std::move(played), scene.text("digest").value_or(""));
+    }
+    return scenes;
 }
 
 }  // namespace
@@ -171,31 +181,28 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
 }
 
 sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
-    const json manifest = read_json(file);
-    sealed_manifest all{manifest.value("experiment", ""), {}, std::nullopt};
-    try {
-        all.scenes = scenes_in(manifest);
-        if (!manifest.contains("seal")) return all;
-        all.seal = seal_in(manifest);
-        if (manifest.at("seal").at("manifest") == checksum_of(manifest)) return all;
-    } catch (const json::exception&) {
-        throw aabb::input_error(file.string() + " is not a manifest of results");
-    }
-    throw aabb::input_error(file.string() +
-                            " was altered after the run: what stands in it does not have the checksum that it states");
+    const read_in manifest = read_json(file);
+    sealed_manifest all{manifest.content.text("experiment").value_or(""), scenes_in(manifest), std::nullopt};
+    const std::optional<json_value> seal = manifest.content.member("seal");
+    if (!seal) return all;
+    all.seal = seal_in(*seal);
+    if (seal->needed("manifest").text() != checksum_of(manifest.raw))
+        throw aabb::input_error(
+            file.string() + " was altered after the run: what stands in it does not have the checksum that it states");
+    return all;
 }
 
 std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
-    const json before = read_json(manifest);
+    const read_in before = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
-    if (before["config"].value("hash", "") != e.hash)
+    if (before.content.needed("config").text("hash") != e.hash)
         return where + " are of another config or size, or of other meshes or recordings";
-    if (before["build"] != build())
-        return where + " were made by another build or machine (commit " + before["build"].value("commit", "unknown") +
-               "), whose times cannot be compared";
-    if (before.value("costs", json()) != costs())
+    if (before.raw["build"] != build())
+        return where + " were made by another build or machine (commit " +
+               before.content.needed("build").text("commit").value_or("unknown") + "), whose times cannot be compared";
+    if (before.raw.value("costs", json()) != costs())
         return where + " were made with other costs (aabblab calibrate), by which strategies plan otherwise";
-    if (!before.contains("seal")) return {};
+    if (!before.content.has("seal")) return {};
     // Nobody may continue what was altered, and seal it anew.
     try {
         (void)verified_rows(manifest.parent_path());
@@ -208,8 +215,8 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
 resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
     if (const std::string refusal = refusal_to_resume(file, e); !refusal.empty())
         throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
-    const json before = read_json(file);
-    resumed_manifest manifest{before.value("date", ""), {}};
+    const read_in before = read_json(file);
+    resumed_manifest manifest{before.content.text("date").value_or(""), {}};
     for (auto& [scene, digest] : scenes_in(before))
         if (!digest.empty()) manifest.digests[std::move(scene)] = std::move(digest);
     return manifest;
@@ -220,16 +227,20 @@ std::string build_description() {
 }
 
 manifest_summary read_manifest(const std::filesystem::path& folder) {
-    const json manifest = read_json(folder / "manifest.json");
-    const json& made = manifest["build"];
-    manifest_summary summary{manifest.value("date", ""),
-                             made.value("commit", "unknown"),
-                             made.value("compiler", ""),
-                             made.value("cpu", ""),
-                             manifest.value("notes", std::vector<std::string>{}),
-                             manifest["config"].value("quick", false),
-                             manifest.contains("seal")};
-    if (made.value("dirty", false)) summary.commit += " (changed)";
+    const read_in manifest = read_json(folder / "manifest.json");
+    const json_value build = manifest.content.needed("build");
+    const json_value config = manifest.content.needed("config");
+    manifest_summary summary{.date = manifest.content.text("date").value_or(""),
+                             .commit = build.text("commit").value_or("unknown"),
+                             .compiler = build.text("compiler").value_or(""),
+                             .flags = build.text("flags").value_or(""),
+                             .cpu = build.text("cpu").value_or(""),
+                             .notes = manifest.content.texts("notes"),
+                             .config = config.text("text").value_or(""),
+                             .quick = config.flag("quick").value_or(false),
+                             .finished = manifest.content.has("seal"),
+                             .text = text_of(manifest.raw, 2) + "\n"};
+    if (build.flag("dirty").value_or(false)) summary.commit += " (changed)";
     return summary;
 }
 

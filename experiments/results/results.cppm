@@ -193,11 +193,15 @@ struct manifest_summary {
     std::string date;
     std::string commit;  ///< with "(changed)" where files differed from it
     std::string compiler;
+    std::string flags;
     std::string cpu;
     std::vector<std::string> notes;
+    std::string config;  ///< what stands in it
     bool quick = false;
     bool finished = false;  ///< all was played
+    std::string text;       ///< the manifest as the program wrote it, however it came here
 };
+/// @throws aabb::input_error where it is not a manifest.
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 
 /// "2026-01-31T12:00:00Z"

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +12,7 @@ module;
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 module aabblab.results;
@@ -118,7 +120,9 @@ bool taken(std::string& to, const std::string& text) {
 template <class Number>
 bool taken(Number& to, const std::string& text) {
     const char* end = text.data() + text.size();
-    return std::from_chars(text.data(), end, to) == std::from_chars_result{end, std::errc{}};
+    if (std::from_chars(text.data(), end, to) != std::from_chars_result{end, std::errc{}}) return false;
+    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(to);
+    return true;
 }
 bool taken(parameters_of<scene_choice>& to, const std::string& text) {
     return set_parameters(to.scene, text);
@@ -135,6 +139,14 @@ std::string expected_of(const parameters_of<scene_choice>&) {
 template <class T>
 std::string expected_of(const T&) {
     return "a number";
+}
+
+template <class T>
+bool is_negative(const T&) {
+    return false;
+}
+bool is_negative(const std::optional<double>& number) {
+    return number.value_or(0) < 0;
 }
 
 constexpr auto columns_of_row = [](auto& r, auto field) { for_each_column(r, field); };
@@ -194,6 +206,8 @@ std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, 
             if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
             if (!taken(value, fields[at]))
                 throw aabb::input_error(place + name + " must be " + expected_of(value) + ", not '" + fields[at] + "'");
+            if (name.ends_with("_ms") && is_negative(value))
+                throw aabb::input_error(place + name + " is a time, which is not below 0, as '" + fields[at] + "' is");
             ++at;
         });
         if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");

@@ -94,7 +94,7 @@ draft shell_sort(const measurements& m) {
         for (const condition& c : conditions)
             if (is_brownian(c) == in_space) {
                 candidate one = told(over_insertion(c, "ciura"),
-                                     "on " + grouped(std::stoull(value_of(c.of(), "objects"))) +
+                                     "on " + number_text(value_of(c.of(), "objects")) +
                                          (in_space ? " boxes in space" : " boxes on a line"),
                                      "inversions");
                 // Few inversions and many. As many as boxes on a line that move by 300 edges have 100,000 in space

@@ -250,7 +250,7 @@ draft cut_against_grid(const measurements& m) {
             "With {} objects the safest of the cell sizes takes {:.1f} times the time of the best one in the scene "
             "that "
             "suits it least.",
-            grouped(std::stoull(objects)), std::exp(all.least_worst_regret(as_measured)));
+            number_text(objects), std::exp(all.least_worst_regret(as_measured)));
         add(
             "axial_cut over each scene's best cell size", "with the cut against each scene's best cell size",
             [&](const resample& d) { return all.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);

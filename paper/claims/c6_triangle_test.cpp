@@ -1,11 +1,10 @@
 module;
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +17,7 @@ import aabb.registry;
 import aabblab.conditions;
 import aabblab.figures;
 import aabblab.files;
+import aabblab.json;
 import aabblab.metrics;
 import aabblab.numbers;
 import aabblab.statistics;
@@ -31,15 +31,18 @@ namespace {
 using test_times = std::map<std::string, std::vector<std::vector<double>>>;
 
 void read_process(const std::filesystem::path& file, std::size_t process, test_times& times) {
-    const nlohmann::json results = nlohmann::json::parse(bytes_of_file(file), nullptr, false);
-    if (!results.is_object() || !results.contains("benchmarks"))
-        throw aabb::input_error(file.string() + " is not a result of Google Benchmark; remove it to measure again");
-    for (const nlohmann::json& one : results["benchmarks"]) {
-        if (one.value("run_type", "") != "iteration") continue;
-        const std::string unit = one.value("time_unit", "ns");
-        const double ns = one.value("cpu_time", 0.0) * (unit == "us" ? 1e3 : unit == "ms" ? 1e6 : 1);
+    const std::string otherwise = "is not a result of Google Benchmark (remove it to measure again)";
+    const json_value results(file.string(), bytes_of_file(file), otherwise);
+    if (!results.has("benchmarks")) throw aabb::input_error(file.string() + " " + otherwise);
+    for (const json_value& one : results.objects("benchmarks")) {
+        if (one.text("run_type") != "iteration") continue;
+        const std::string unit = one.text("time_unit").value_or("ns");
+        const json_value time = one.needed("cpu_time");
+        const double ns = time.number() * (unit == "us" ? 1e3 : unit == "ms" ? 1e6 : 1);
+        // Ratios are formed of it.
+        if (!(ns > 0)) time.fail("must be more than 0");
         // The names of repetitions end alike; "run_name" has none of that.
-        auto& processes = times[one.value("run_name", one.value("name", ""))];
+        auto& processes = times[one.needed(one.has("run_name") ? "run_name" : "name").text()];
         processes.resize(std::max(processes.size(), process + 1));
         processes[process].push_back(ns);
     }

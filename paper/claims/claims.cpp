@@ -25,10 +25,9 @@ namespace aabblab {
 
 namespace {
 
-/// Digits of a long number in groups; anything else as it is.
-std::string grouped_if_number(const std::string& text) {
-    if (text.size() < 5 || text.find_first_not_of("0123456789") != std::string::npos) return text;
-    return grouped(std::stoull(text));
+/// The same of a long number; others as they are.
+std::string grouped_if_long(const std::string& text) {
+    return text.size() < 5 ? text : number_text(text);
 }
 
 std::size_t count_of(std::span<const endpoint> all, support what) {
@@ -170,7 +169,7 @@ std::vector<column> place_columns::head() const {
 
 std::vector<std::string> place_columns::cells(const factors& place) const {
     std::vector<std::string> all;
-    for (const std::string& name : names_) all.push_back(grouped_if_number(value_of(place, name)));
+    for (const std::string& name : names_) all.push_back(grouped_if_long(value_of(place, name)));
     return all;
 }
 
@@ -283,7 +282,7 @@ std::string text_of(const factors& where) {
     std::string text;
     for (const auto& [name, value] : where)
         if (!value.empty())
-            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + grouped_if_number(value));
+            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + grouped_if_long(value));
     return text;
 }
 

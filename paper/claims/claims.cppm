@@ -226,6 +226,9 @@ inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, 
 inline const selection improved{
     {kind::sort, "shell"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 
+/// "10,000"; what is no whole number as it is.
+[[nodiscard]] std::string number_text(const std::string& value);
+
 [[nodiscard]] draft improved_search(const measurements& m);
 [[nodiscard]] draft linear_sort(const measurements& m);
 [[nodiscard]] draft shell_sort(const measurements& m);

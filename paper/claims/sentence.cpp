@@ -3,12 +3,15 @@ module;
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -123,11 +126,6 @@ std::string predicate_of(std::span<const endpoint> all, told_as how) {
     return "undecided" + of_what(compared);
 }
 
-/// "10,000"; what is no whole number as it is.
-std::string number_text(const std::string& value) {
-    return value.find_first_not_of("0123456789") == std::string::npos ? grouped(std::stoull(value)) : value;
-}
-
 /// "10,000 objects", "a displacement of 0.1".
 std::string place_text(const std::string& factor, const std::string& value) {
     if (factor == "objects") return number_text(value) + (value == "1" ? " object" : " objects");
@@ -196,6 +194,13 @@ std::string unordered_clause(std::vector<endpoint> line) {
 }
 
 }  // namespace
+
+std::string number_text(const std::string& value) {
+    std::uint64_t number = 0;
+    const char* const end = value.data() + value.size();
+    return std::from_chars(value.data(), end, number) == std::from_chars_result{end, std::errc{}} ? grouped(number)
+                                                                                                  : value;
+}
 
 std::string clause_of(std::span<const endpoint> all, const endpoint& one) {
     std::vector<endpoint> line;

@@ -1,8 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <filesystem>
 #include <span>
@@ -106,18 +104,15 @@ provenance provenance_of(const measurements& results, const reproduction& all) {
     for (const char* experiment : {"choices", "null_control"})
         if (std::filesystem::exists(folder / experiment / "manifest.json")) experiments.emplace_back(experiment);
     for (const std::string& experiment : experiments) {
-        // As the program wrote it, however it came here.
-        const auto manifest = nlohmann::ordered_json::parse(bytes_of_file(folder / experiment / "manifest.json"));
-        const std::string text = manifest.dump(2) + "\n";
-        const nlohmann::ordered_json& build = manifest["build"];
-        made.configs.push_back({experiment, manifest["config"].value("text", ""), text});
-        made.size = manifest["config"].value("quick", false) ? "quick" : "full";
-        made.date = std::max(made.date, manifest.value("date", "").substr(0, 10));
-        made.commit = build.value("commit", "unknown") + (build.value("dirty", false) ? " (changed)" : "");
-        made.compiler = build.value("compiler", "");
-        made.flags = build.value("flags", "");
-        made.cpu = build.value("cpu", "");
-        for (const std::string& note : manifest.value("notes", std::vector<std::string>{}))
+        const auto manifest = results.manifest(experiment);
+        made.configs.push_back({experiment, manifest.config, manifest.text});
+        made.size = manifest.quick ? "quick" : "full";
+        made.date = std::max(made.date, manifest.date.substr(0, 10));
+        made.commit = manifest.commit;
+        made.compiler = manifest.compiler;
+        made.flags = manifest.flags;
+        made.cpu = manifest.cpu;
+        for (const std::string& note : manifest.notes)
             if (std::ranges::find(made.notes, note) == made.notes.end()) made.notes.push_back(note);
         const extent_of_results extent = results.extent(experiment);
         made.rows += extent.rows;

@@ -2,14 +2,18 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
+#include <cmath>
 #include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "interrupted.hpp"
@@ -18,6 +22,7 @@
 
 import aabb;
 import aabb.registry;
+import aabblab.comparison;
 import aabblab.results;
 import aabblab.sha256;
 
@@ -166,8 +171,83 @@ TEST_CASE("A manifest that was altered is refused") {
     refused([](auto& m) { m["scenes"][0]["digest"] = "0000000000000000"; }, sentence);
     refused([](auto& m) { m["config"]["text"] = "name = \"sealed\"\n"; }, sentence);
     refused([](auto& m) { m["seal"]["results.csv"]["rows"] = 11; }, sentence);
-    refused([](auto& m) { m["seal"] = "none"; }, "is not a manifest of results");
-    refused([](auto& m) { m["seal"]["contenders"][0] = 1; }, "is not a manifest of results");
+    refused([](auto& m) { m["seal"] = "none"; }, "manifest.json: seal must be an object");
+    refused([](auto& m) { m["seal"]["contenders"][0] = 1; }, "manifest.json: seal.contenders[0] must be an object");
+    refused([](auto& m) { m["seal"]["results.csv"]["rows"] = -1; },
+            "manifest.json: seal.results.csv.rows must be a whole number");
+    refused([](auto& m) { m["scenes"][0]["parameters"]["objects"] = true; },
+            "manifest.json: scenes[0] must have parameters, an object of settings");
+}
+
+TEST_CASE("A manifest with a member of another type, or without one, is read or refused, sealed and unsealed") {
+    const finished_run run;
+    std::size_t refusals = 0;
+    for (const bool is_sealed : {true, false}) {
+        if (!is_sealed) unseal(run.out());
+        const nlohmann::ordered_json whole = run.manifest();
+        std::set<std::string> places;
+        for (const auto& [leaf, value] : whole.flatten().items())
+            for (nlohmann::json::json_pointer place(leaf); !place.empty(); place.pop_back())
+                places.insert(place.to_string());
+        for (const std::string& place : places)
+            for (const char* other : {"null", "1", "-1.5", "true", "\"x\"", "[1]", "{\"x\":[]}", "without"}) {
+                const nlohmann::ordered_json::json_pointer at(place);
+                nlohmann::ordered_json altered = whole;
+                if (std::string_view(other) == "without") {
+                    nlohmann::ordered_json& parent = altered[at.parent_pointer()];
+                    if (parent.is_array()) continue;
+                    parent.erase(at.back());
+                } else {
+                    altered[at] = nlohmann::ordered_json::parse(other);
+                }
+                run.write_manifest(altered);
+                CAPTURE(is_sealed, place, other);
+                try {
+                    (void)aabblab::read_manifest(run.out());
+                    (void)aabblab::verified_rows(run.out());
+                } catch (const aabb::input_error& refused) {
+                    ++refusals;
+                    CHECK_THAT(refused.what(), ContainsSubstring("/out/"));
+                } catch (const std::exception& error) {
+                    FAIL_CHECK(error.what());
+                }
+            }
+    }
+    CHECK(refusals > 100);
+}
+
+TEST_CASE("A row with a number that no run writes is compared or refused, and no time is none") {
+    const finished_run run;
+    const std::filesystem::path second = run.out().parent_path() / "second";
+    std::filesystem::copy(run.out(), second);
+    unseal(run.out());
+    const std::vector<std::string> lines = lines_of(run.table());
+    const auto columns = static_cast<std::size_t>(std::ranges::count(lines[0], ',')) + 1;
+    std::size_t refusals = 0;
+    for (const std::string number : {"", "-1", "nan", "inf", "1e300", "18446744073709551615", "1e999", "0", "x"})
+        for (std::size_t column = 0; column < columns; ++column) {
+            std::vector<std::string> altered = lines;
+            std::string& line = altered[2];
+            // One field of a row stands in quotes, and has commas.
+            const auto end_of = [&](std::size_t at) {
+                return std::min(line[at] == '"' ? line.find("\",", at) + 1 : line.find(',', at), line.size());
+            };
+            std::size_t at = 0;
+            for (std::size_t i = 0; i < column; ++i) at = end_of(at) + 1;
+            line.replace(at, end_of(at) - at, number);
+            run.write_table(joined_lines(altered, "\n"));
+            CAPTURE(number, column);
+            try {
+                const auto found = compare(aabblab::read_results(run.out()), aabblab::read_results(second),
+                                           aabblab::compared::ratios_and_times);
+                for (const aabblab::compared_scene& scene : found.scenes)
+                    for (const auto* all : {&scene.ratios, &scene.times})
+                        for (const aabblab::compared_time& time : *all) CHECK(std::isfinite(time.change));
+            } catch (const aabb::input_error&) {
+                ++refusals;
+            }
+        }
+    CHECK(refusals > 100);
 }
 
 TEST_CASE("A run that is not finished has no seal, and is read as it is") {

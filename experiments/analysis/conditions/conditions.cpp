@@ -90,9 +90,11 @@ std::string text_of(const selection& s) {
 condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(of)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
-        processes_ = std::max<std::size_t>(processes_, r->process + 1);
+        // Whatever number stands there.
+        if (std::ranges::find(processes_, r->process) == processes_.end()) processes_.push_back(r->process);
     }
     std::ranges::sort(seeds_);
+    std::ranges::sort(processes_);
 }
 
 double condition::triangles() const {
@@ -106,6 +108,10 @@ std::optional<double> condition::value(const selection& who, const row_value& of
 
 std::size_t condition::seed_index(const row& r) const {
     return static_cast<std::size_t>(std::ranges::find(seeds_, r.scene.seed) - seeds_.begin());
+}
+
+std::size_t condition::process_index(const row& r) const {
+    return static_cast<std::size_t>(std::ranges::find(processes_, r.process) - processes_.begin());
 }
 
 std::vector<const row*> condition::rows_of(const selection& who) const {
@@ -122,7 +128,7 @@ cells condition::log_ratios(const selection& arm, const selection& base, const r
         for (const row* b : against) {
             if (b->repeat != r.repeat || b->scene != r.scene) continue;
             if (const std::optional<double> other = of(*b); other.value_or(0) > 0)
-                to.add(r.process, seed_index(r), std::log(value / *other));
+                to.add(process_index(r), seed_index(r), std::log(value / *other));
         }
     });
     return all;
@@ -130,8 +136,9 @@ cells condition::log_ratios(const selection& arm, const selection& base, const r
 
 cells condition::logs(const selection& who, const row_value& of) const {
     cells all(processes(), seeds());
-    add_values(all, rows_of(who), of,
-               [&](cells& to, const row& r, double value) { to.add(r.process, seed_index(r), std::log(value)); });
+    add_values(all, rows_of(who), of, [&](cells& to, const row& r, double value) {
+        to.add(process_index(r), seed_index(r), std::log(value));
+    });
     return all;
 }
 
@@ -198,19 +205,27 @@ const std::vector<condition>& measurements::of(const std::string& experiment) co
     return read(experiment).conditions;
 }
 
+manifest_summary measurements::manifest(const std::string& experiment) const {
+    return read_manifest(folder_ / experiment);
+}
+
 extent_of_results measurements::extent(const std::string& experiment) const {
     extent_of_results all;
     std::set<contender_name> names;
     std::set<scene_choice> scenes;
     std::set<std::optional<std::uint64_t>> seeds;
+    std::set<std::uint64_t> processes;
+    std::set<std::uint64_t> repeats;
     for (const row& r : read(experiment).rows) {
         ++all.rows;
         names.insert(r.name);
         scenes.insert(r.scene);
         seeds.insert(r.scene.seed);
-        all.processes = std::max<std::size_t>(all.processes, r.process + 1);
-        all.repeats = std::max<std::size_t>(all.repeats, r.repeat + 1);
+        processes.insert(r.process);
+        repeats.insert(r.repeat);
     }
+    all.processes = processes.size();
+    all.repeats = repeats.size();
     all.compositions = names.size();
     all.scenes = scenes.size();
     all.seeds = seeds.size();

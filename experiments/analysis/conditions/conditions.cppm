@@ -1,4 +1,5 @@
 module;
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -64,7 +65,7 @@ public:
     [[nodiscard]] std::string experiment() const { return rows_.empty() ? "" : rows_.front()->experiment; }
     /// Scene and parameters without the seed.
     [[nodiscard]] const factors& of() const { return of_; }
-    [[nodiscard]] std::size_t processes() const { return processes_; }
+    [[nodiscard]] std::size_t processes() const { return std::max<std::size_t>(1, processes_.size()); }
     [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
     /// Triangles of its meshes, each counted once; 0 in a scene of boxes.
     [[nodiscard]] double triangles() const;
@@ -87,11 +88,12 @@ public:
 private:
     [[nodiscard]] std::vector<const row*> rows_of(const selection& who) const;
     [[nodiscard]] std::size_t seed_index(const row& r) const;
+    [[nodiscard]] std::size_t process_index(const row& r) const;
 
     factors of_;
     std::vector<const row*> rows_;
     std::vector<std::optional<std::uint64_t>> seeds_;
-    std::size_t processes_ = 1;
+    std::vector<std::uint64_t> processes_;
 };
 
 /// How large the results of an experiment are.
@@ -113,6 +115,7 @@ public:
     /// The conditions of an experiment in the order of its config; none where it has no results.
     [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const;
     [[nodiscard]] extent_of_results extent(const std::string& experiment) const;
+    [[nodiscard]] manifest_summary manifest(const std::string& experiment) const;
 
 private:
     struct experiment_results {

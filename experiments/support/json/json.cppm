@@ -1,0 +1,81 @@
+module;
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// JSON that anybody may have written or altered: each member is asked for by its type, and one of another type gets
+/// one sentence with the file and the way to it.
+export module aabblab.json;
+
+export namespace aabblab {
+
+/// A value in a file. Every function throws aabb::input_error where the value, or a member, is of another type than is
+/// asked for: "a.gltf: accessors[3].count must be a whole number".
+class json_value {
+public:
+    /// Where a file that is no JSON is said to be wrong: at a line, or at a byte of what has no lines.
+    enum class position { line, byte };
+
+    /// @param file its name, for messages
+    /// @param otherwise what is said of it where it is no JSON: "is not a manifest of results"
+    json_value(std::string file, std::string_view text, const std::string& otherwise, position where = position::line);
+
+    [[nodiscard]] std::string text() const;
+    [[nodiscard]] double number() const;
+    [[nodiscard]] std::size_t index() const;  ///< a whole number, not negative
+    [[nodiscard]] bool flag() const;
+    [[nodiscard]] bool is_null() const;
+    [[nodiscard]] std::vector<json_value> list() const;
+    [[nodiscard]] std::vector<std::string> texts() const;
+
+    // Members of an object.
+    [[nodiscard]] bool has(const std::string& key) const;
+    [[nodiscard]] json_value needed(const std::string& key) const;
+    [[nodiscard]] std::size_t needed_index(const std::string& key) const { return needed(key).index(); }
+
+    // The same, empty where there is no such member.
+    [[nodiscard]] std::optional<json_value> member(const std::string& key) const;
+    [[nodiscard]] std::optional<std::string> text(const std::string& key) const {
+        return typed(key, &json_value::text);
+    }
+    [[nodiscard]] std::optional<double> number(const std::string& key) const { return typed(key, &json_value::number); }
+    [[nodiscard]] std::optional<std::size_t> index(const std::string& key) const {
+        return typed(key, &json_value::index);
+    }
+    [[nodiscard]] std::optional<bool> flag(const std::string& key) const { return typed(key, &json_value::flag); }
+    [[nodiscard]] std::vector<json_value> objects(const std::string& key) const;
+    [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;
+    [[nodiscard]] std::vector<std::size_t> indices(const std::string& key) const;
+    [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key) const;
+    template <std::size_t Count>
+    [[nodiscard]] std::array<double, Count> numbers(const std::string& key, std::array<double, Count> fallback) const {
+        if (const auto found = member(key)) found->read_numbers(fallback.data(), Count);
+        return fallback;
+    }
+
+    /// "FILE: accessors[3] SENTENCE"
+    [[noreturn]] void fail(const std::string& sentence) const;
+
+private:
+    struct document;
+
+    json_value(std::shared_ptr<const document> in, const void* content, std::string place);
+    void require(bool holds, const std::string& expected) const;
+    void read_numbers(double* to, std::size_t count) const;
+
+    template <class T>
+    [[nodiscard]] std::optional<T> typed(const std::string& key, T (json_value::*as)() const) const {
+        const auto found = member(key);
+        return found ? std::optional<T>((*found.*as)()) : std::nullopt;
+    }
+
+    std::shared_ptr<const document> in_;
+    const void* content_;  // of the document
+    std::string place_;
+};
+
+}  // namespace aabblab
