@@ -11,6 +11,8 @@
 #include "output.hpp"
 
 #include "atlas_measuring.hpp"
+#include "reproduce_archive.hpp"
+#include "reproduce_measuring.hpp"
 
 import aabb.base;
 import aabblab.atlas;
@@ -23,23 +25,40 @@ namespace {
 
 struct atlas_request {
     std::optional<std::string> out;
+    std::optional<std::string> source;  ///< a folder or archive to judge, in place of the folder of `out`
     bool quick = false;
     bool judge = false;
 
     [[nodiscard]] std::filesystem::path folder() const {
-        return out.value_or(quick ? "results/atlas-quick" : "results/atlas");
+        if (out) return *out;
+        if (source) return "results/atlas-judged";
+        return quick ? "results/atlas-quick" : "results/atlas";
     }
 };
 
 int run(const atlas_request& request) {
     outlive_reader();
-    const std::filesystem::path folder = request.folder();
+    if (request.source && !request.judge)
+        throw aabb::input_error(*request.source + " is named, but only --judge takes results that are there");
+    const std::filesystem::path out = request.folder();
     std::vector<std::string> failures;
-    if (!request.judge) failures = measure_atlas(folder, request.quick);
-    const std::vector<atlas_scene> atlas = measured_atlas(folder);
-    if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + folder.string());
-    for (const std::string& missing : unfinished_parts(folder)) note(missing);
-    write_atlas(folder, atlas);
+    if (!request.judge) failures = measure_atlas(out, request.quick);
+    const std::vector<std::string> named(request.source ? 1 : 0, request.source.value_or(""));
+    source_list sources(named);
+    if (named.empty()) sources.add(out);
+    const results_source& source = sources.all().front();
+    std::vector<atlas_scene> atlas;
+    (void)sources.with_names_of_user([&] {
+        (void)verify_source(source.folder);
+        std::filesystem::path parts = source.folder;
+        atlas = measured_atlas(parts);
+        // Of a reproduction it is that of its report.
+        if (atlas.empty()) atlas = measured_atlas(parts = folder_of_atlas(source.folder));
+        if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + source.name);
+        for (const std::string& missing : unfinished_parts(parts)) note(missing);
+        return 0;
+    });
+    write_atlas(out, atlas);
     print(
         "Who is the fastest in how many scenes, of a frame after the first; shown where\n"
         "the second is slower beyond noise, and as fast where it may not be:\n" +
@@ -48,7 +67,7 @@ int run(const atlas_request& request) {
           to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
         print(wrapped(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source)) + "\n");
-    print("\nMaps, borders and every ratio are in " + visible((folder / "atlas.html").string()) + "\n");
+    print("\nMaps, borders and every ratio are in " + visible((out / "atlas.html").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 
@@ -61,8 +80,14 @@ void add_atlas(const command_parser& program, int& status) {
     command.add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
     command.add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
     command
+        .add_option(
+            "RESULTS", request->source,
+            "With --judge: an archive or a folder of results, also of reproduce, in place of the folder of --out")
+        .type_name("");
+    command
         .add_option("--out", request->out,
-                    "Folder of results and maps (default results/atlas; with --quick results/atlas-quick)")
+                    "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; of RESULTS "
+                    "results/atlas-judged)")
         .type_name("DIR");
     command.callback([request, &status] { status = run(*request); });
 }

@@ -12,6 +12,8 @@
 #include "commands.hpp"
 #include "output.hpp"
 
+#include "reproduce_archive.hpp"
+
 import aabblab.comparison;
 import aabblab.scenes;
 import aabblab.tables;
@@ -135,6 +137,7 @@ void print_numbers(const comparison& found) {
 }
 
 int compare_folders(const compare_request& request) {
+    for (const std::string& folder : {request.a, request.b}) (void)verify_source(folder);
     const run_results a = read_results(request.a);
     const run_results b = read_results(request.b);
     if (request.times) {

@@ -55,8 +55,7 @@ void require_sense(const reproduce_request& request) {
 measurements verified_measurements(const std::filesystem::path& folder, const std::string& name) {
     const std::vector<std::string> experiments = recorded_experiments(folder);
     if (experiments.empty()) throw aabb::input_error("there are no results of a reproduction in " + name);
-    verify_record(folder);
-    if (!is_sealed_record(folder)) note(name + ": " + unsealed_note);
+    if (!verify_source(folder)) note(name + ": " + unsealed_note);
     measurements results(folder, name);
     for (const std::string& experiment : experiments) (void)results.of(experiment);
     return results;

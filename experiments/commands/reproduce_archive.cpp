@@ -42,6 +42,11 @@ int source_list::with_names_of_user(const std::function<int()>& work) const {
     }
 }
 
+bool verify_source(const std::filesystem::path& folder) {
+    verify_record(folder);
+    return is_sealed_record(folder);
+}
+
 void archive_reproduction(const std::filesystem::path& folder, const std::filesystem::path& file) {
     write_archive(file, record_top, folder, archived_files(folder));
     const std::string bytes = bytes_of_file(file);

@@ -37,6 +37,11 @@ private:
     std::vector<results_source> all_;
 };
 
+/// Of results of `reproduce` that were finished: whatever is read of them is as the run left it.
+/// @returns false where they are not sealed, so that nothing shows that
+/// @throws aabb::input_error where it is not so.
+bool verify_source(const std::filesystem::path& folder);
+
 /// Packs what a judgement reads, and says how large it is and what its checksum is.
 void archive_reproduction(const std::filesystem::path& folder, const std::filesystem::path& file);
 

@@ -14,6 +14,7 @@
 
 import aabb.policy;
 import aabb.registry;
+import aabblab.archive;
 import aabblab.atlas;
 import aabblab.configs;
 import aabblab.scenes;
@@ -227,4 +228,21 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
         INFO(file);
         CHECK(std::filesystem::exists(folder / "map" / file));
     }
+    // As `reproduce --judge` takes them: another folder's, those of a reproduction, and of an archive of one.
+    std::filesystem::create_directories(folder / "run");
+    std::filesystem::copy(folder / "map/atlas", folder / "run/atlas/atlas", std::filesystem::copy_options::recursive);
+    aabblab::write_archive(folder / "run.tar.xz", "reproduction", folder / "run",
+                           std::vector<std::filesystem::path>{"atlas/atlas/manifest.json", "atlas/atlas/results.csv"});
+    for (const char* source : {"map", "run", "run.tar.xz"}) {
+        const program_result judged =
+            run_program({"atlas", "--judge", folder / source, "--out", (folder / "of" / source).string()});
+        CAPTURE(source, judged.err);
+        CHECK(judged.status == 0);
+        CHECK(bytes_of_file(folder / "of" / source / "cells.csv") == bytes_of_file(folder / "map/cells.csv"));
+    }
+    const program_result gone = run_program({"atlas", "--judge", folder / "gone"});
+    CHECK(gone.status == 2);
+    CHECK(gone.err == "aabblab: " + (folder / "gone").string() + " is not there\n");
+    CHECK(run_program({"atlas", folder / "map"}).err.find("only --judge takes results that are there") !=
+          std::string::npos);
 }

@@ -87,14 +87,16 @@ std::vector<outcome> outcomes_of(const measured& a, const measured& b) {
 
 std::string write_results(const std::filesystem::path& folder, const std::vector<row>& rows) {
     const aabblab::experiment e = aabblab::parse_experiment(
-        "name = \"test\"\n[[scene]]\nkind = \"brownian\"\nobjects = 10\nframes = 3\n[compose]\nsort = \"std\"\n",
+        "name = \"" + (rows.empty() ? "test" : rows.front().experiment) +
+            "\"\nseed = [1, 2, 3]\n[[scene]]\nkind = \"brownian\"\nobjects = 10\nframes = 3\n[compose]\nsort = "
+            "\"std\"\n",
         "test.toml", aabblab::experiment_size::full);
     aabblab::results_folder results(folder, record_of(e), aabblab::existing_results::refuse);
     for (const row& r : rows) results.add(r);
     return folder.string();
 }
 
-void change_processor(const std::filesystem::path& folder, const std::string& cpu) {
+void change_processor(const std::filesystem::path& folder, const nlohmann::ordered_json& cpu) {
     auto manifest = nlohmann::ordered_json::parse(bytes_of_file(folder / "manifest.json"));
     manifest["build"]["cpu"] = cpu;
     std::ofstream(folder / "manifest.json") << manifest.dump();
@@ -328,6 +330,12 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
     std::ofstream(folder / "torn/results.csv", std::ios::app) << "test,brownian\n";
     const std::string unsaid = write_results(folder / "unsaid", rows_of({}));
     std::filesystem::remove(folder / "unsaid/manifest.json");
+    const std::string typed = write_results(folder / "typed", rows_of({}));
+    change_processor(typed, nlohmann::ordered_json::array());
+    const std::string strange = write_results(folder / "strange", rows_of({}));
+    std::ofstream(folder / "strange/manifest.json") << R"({"build": {}, "config": {}, "experiment": "test",)"
+                                                       "\n"
+                                                       R"("scenes": })";
     write_results(folder / "twice/x", rows_of({}));
     write_results(folder / "twice/y", rows_of({}));
     const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
@@ -339,6 +347,8 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
         {{good, other}, "have no scene in common"},
         {{good, torn}, "results.csv:83: the column scene_parameters is missing"},
         {{unsaid, good}, "manifest.json is not there"},
+        {{good, typed}, "typed/manifest.json: build.cpu must be a string"},
+        {{strange, good}, "strange/manifest.json:2: is not a manifest of results: its JSON is malformed"},
         {{folder / "twice", good}, "both hold results of the experiment test"},
         {{good, good, "--tiems"}, "did you mean '--times'?"},
     };

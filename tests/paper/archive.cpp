@@ -124,6 +124,12 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
         CHECK(is_one_sentence(r.err));
         CHECK(r.err.find("altered/" + sentence) != std::string::npos);
         CHECK(!std::filesystem::exists(folder / "out/report.html"));
+        // Nor are they compared.
+        const program_result compared = run_program({"compare", whole.string(), altered.string()});
+        INFO(compared.err);
+        CHECK(compared.status == 2);
+        CHECK(is_one_sentence(compared.err));
+        CHECK(compared.err.find("altered/" + sentence) != std::string::npos);
     };
     const auto of_table = [](const std::function<void(std::vector<std::string>&)>& change) {
         return [=](const std::filesystem::path& results) { change_lines(results / "c3/results.csv", change); };
@@ -160,6 +166,10 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
         std::filesystem::copy(results / "c6/process-0.json", results / "c6/process-3.json");
     });
     refused("SHA256SUMS:1: expected a checksum", of_file("SHA256SUMS", "  ", " "));
+    // What is left of the last.
+    CHECK(run_program({"atlas", "--judge", (folder / "altered").string()}).err.find("expected a checksum") !=
+          std::string::npos);
+    CHECK(run_program({"compare", whole.string(), whole.string()}).status == 0);
 }
 
 TEST_CASE("Results that are not finished are judged, and the report says so") {

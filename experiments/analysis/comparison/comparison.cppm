@@ -26,7 +26,8 @@ struct run_results {
     std::vector<manifest_summary> manifests;  ///< one an experiment
 };
 /// From the folder of an experiment, or else from those of its sub-folders that hold a results.csv.
-/// @throws aabb::input_error where there are no results, or some cannot be read, or an experiment is there twice.
+/// @throws aabb::input_error where there are no results, or some cannot be read or were altered, or an experiment is
+/// there twice.
 [[nodiscard]] run_results read_results(const std::filesystem::path& folder);
 
 /// What made the results: "commit d27dba3, Clang 19.1.7, Intel Xeon". Several where experiments differ in it.

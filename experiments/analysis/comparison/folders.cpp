@@ -51,7 +51,7 @@ run_results read_results(const std::filesystem::path& folder) {
     run_results run{folder, {}, {}};
     std::map<std::string, std::filesystem::path> folder_of;  // by experiment
     for (const std::filesystem::path& one : folders_in(folder)) {
-        std::vector<row> rows = read_rows(one / "results.csv");
+        std::vector<row> rows = verified_rows(one);
         if (rows.empty()) continue;
         for (const row& r : rows)
             if (const auto& before = folder_of.emplace(r.experiment, one).first->second; before != one)
