@@ -1,18 +1,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <istream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "command_parser.hpp"
@@ -29,6 +22,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabblab.configs;
+import aabblab.files;
 import aabblab.pair_output;
 import aabblab.progress;
 
@@ -61,24 +55,20 @@ std::string answer_of(const aabb::triangle_test& test, const std::vector<std::st
 }
 
 /// Answers that stand before a line that is wrong are printed; the program writes them out with the sentence.
-void classify_lines(std::istream& lines, const std::string& name, std::uintmax_t size, const aabb::triangle_test& test,
-                    const classify_request& request) {
+void classify_lines(line_stream lines, const aabb::triangle_test& test, const classify_request& request) {
     std::optional<progress> shown;  // answers that go to the terminal are progress enough
-    if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", size);
-    std::size_t read = 0;
-    std::string line;
-    for (std::size_t number = 1; std::getline(lines, line); ++number) {
-        if (shown) shown->at(read += line.size() + 1);
+    if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", lines.size());
+    while (lines.next()) {
+        if (shown) shown->at(lines.bytes_read());
         try {
-            const std::vector<std::string> words = split_numbers(std::string_view(line).substr(0, line.find('#')));
+            const std::vector<std::string> words = split_numbers(lines.line().substr(0, lines.line().find('#')));
             if (words.empty()) continue;
             print(request.keep_doubles ? answer_of<double>(test, words, request.geometry)
                                        : answer_of<float>(test, words, request.geometry));
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(fmt::format("{}:{}: {}", name, number, error.what()));
+            lines.fail(error.what());
         }
     }
-    if (lines.bad()) throw aabb::input_error("cannot read " + name);
 }
 
 void classify(const classify_request& request) {
@@ -86,16 +76,7 @@ void classify(const classify_request& request) {
     const auto test = request.geometry ? constructing_test(choice, false) : triangle_test_named(choice);
     if (request.keep_doubles && !test->takes_double())
         throw aabb::input_error("--double: " + choice.name + " tests triangles of floats only");
-    if (request.file == "-") return classify_lines(std::cin, "standard input", 0, *test, request);
-    // A pipe under a name may be read, but has no size; a directory opens like a file.
-    std::error_code unknown;
-    const bool readable = !std::filesystem::is_directory(request.file, unknown);
-    std::ifstream file(request.file);
-    if (!readable || !file)
-        throw aabb::input_error("cannot read " + request.file + ": " +
-                                std::generic_category().message(readable ? errno : EISDIR));
-    const std::uintmax_t size = std::filesystem::file_size(request.file, unknown);
-    classify_lines(file, request.file, unknown ? 0 : size, *test, request);
+    classify_lines(request.file == "-" ? line_stream() : line_stream(request.file), *test, request);
 }
 
 }  // namespace

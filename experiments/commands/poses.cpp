@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -18,6 +17,8 @@ import aabblab.files;
 namespace aabblab {
 
 namespace {
+
+constexpr std::size_t most_poses = 10'000'000;  // as of a motion, for what a pipe may go on with
 
 aabb::pose parse_pose(std::string_view text) {
     const std::vector<std::string> words = split_numbers(text);
@@ -53,25 +54,20 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
 }
 
 poses_of_file read_poses(const std::string& file) {
-    const std::string text = bytes_of_file(file);
-    poses_of_file found;
-    std::size_t number = 0;
-    for (std::string_view rest = text; !rest.empty();) {
-        const std::size_t end = std::min(rest.find('\n'), rest.size());
-        std::string_view line = rest.substr(0, end);
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-        ++number;
-        line = line.substr(0, line.find('#'));
-        if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    poses_of_file read;
+    for (line_stream lines(file); lines.next();) {
+        const std::string_view line = lines.line().substr(0, lines.line().find('#'));
+        if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+        if (read.poses.size() == most_poses) lines.fail(fmt::format("there are more than {} poses", most_poses));
         try {
-            found.poses.push_back(parse_pose(line));
-            found.lines.push_back(number);
+            read.poses.push_back(parse_pose(line));
+            read.lines.push_back(lines.number());
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(fmt::format("{}:{}: {}", file, number, error.what()));
+            lines.fail(error.what());
         }
     }
-    if (found.poses.empty()) throw aabb::input_error(file + ": has no poses");
-    return found;
+    if (read.poses.empty()) throw aabb::input_error(file + ": has no poses");
+    return read;
 }
 
 }  // namespace aabblab

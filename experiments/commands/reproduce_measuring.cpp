@@ -102,11 +102,8 @@ void forget_altered_tests(const std::filesystem::path& folder) {
 
 std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     std::vector<std::string> failures;
-    std::ifstream in(file_of_failures(folder));
-    for (std::string line; std::getline(in, line);) {
-        if (line.ends_with('\r')) line.pop_back();
-        failures.push_back(line);
-    }
+    if (!std::filesystem::exists(file_of_failures(folder))) return failures;
+    for (line_stream lines(file_of_failures(folder)); lines.next();) failures.emplace_back(lines.line());
     return failures;
 }
 

@@ -14,6 +14,7 @@ import :document;
 import aabb.base;
 import aabb.costs;
 import aabb.simd;
+import aabblab.files;
 import aabblab.results;
 
 namespace aabblab {
@@ -101,7 +102,7 @@ kept_costs parse_costs(const std::string& text, const std::string& file) {
 }
 
 kept_costs read_costs(const std::filesystem::path& file) {
-    return parse_costs(text_of_file(file, longest_file, "a file of costs"), file.string());
+    return parse_costs(text_of_file(file), file.string());
 }
 
 }  // namespace aabblab

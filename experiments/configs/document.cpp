@@ -6,7 +6,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numeric>
 #include <set>
@@ -23,6 +22,7 @@ module aabblab.configs;
 import :document;
 import aabb.base;
 import aabb.policy;
+import aabblab.files;
 
 namespace aabblab {
 
@@ -239,12 +239,7 @@ std::string text_of_file(const std::filesystem::path& file, std::size_t most, st
         throw aabb::input_error(file.string() + " is not there; expected " + std::string(what));
     if (std::filesystem::is_directory(file))
         throw aabb::input_error(file.string() + " is a folder; expected " + std::string(what));
-    std::ifstream in(file, std::ios::binary);
-    std::string text(most + 1, ' ');
-    in.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    if (!in.good() && !in.eof()) throw aabb::input_error(file.string() + " cannot be read");
-    return text;
+    return text_of_file(file, most);
 }
 
 std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys) {

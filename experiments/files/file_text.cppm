@@ -1,18 +1,18 @@
 module;
 #include <algorithm>
-#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
+#include <utility>
 
 /// A whole file in memory, and how its words are quoted to the user.
 module aabblab.files:file_text;
 
 import aabb.base;
+import :text_decoder;
 
 namespace aabblab {
 
@@ -28,19 +28,14 @@ struct file_text {
     return "'" + std::string(word.substr(0, end)) + (end < word.size() ? "…'" : "'");
 }
 
-/// Refuses what is not a file with something in it.
+/// Refuses what is not a regular file.
 /// @return its size in bytes.
 /// @throws aabb::input_error that says what it is instead.
+[[nodiscard]] std::size_t size_of_file(const std::filesystem::path& file);
+
+/// Refuses what is not a file with something in it, as `size_of_file`.
 [[nodiscard]] inline std::size_t require_file(const std::filesystem::path& file) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        throw aabb::input_error(file.string() + ": no such file");
-    if (!status_known(status)) throw aabb::input_error(file.string() + ": cannot be read: " + error.message());
-    if (is_directory(status)) throw aabb::input_error(file.string() + ": is a folder, not a file");
-    if (!is_regular_file(status)) throw aabb::input_error(file.string() + ": is not a regular file");
-    const auto size = std::filesystem::file_size(file, error);
-    if (error) throw aabb::input_error(file.string() + ": cannot be read: " + error.message());
+    const std::size_t size = size_of_file(file);
     if (size == 0) throw aabb::input_error(file.string() + ": is empty");
     return size;
 }
@@ -51,18 +46,30 @@ struct close_file {
 using file_handle = std::unique_ptr<std::FILE, close_file>;
 
 /// @throws aabb::input_error when the file cannot be opened.
-[[nodiscard]] inline file_handle open_to_read(const std::filesystem::path& file) {
-    file_handle opened{std::fopen(file.c_str(), "rb")};
-    if (!opened)
-        throw aabb::input_error(file.string() +
-                                ": cannot be read: " + std::error_code(errno, std::generic_category()).message());
-    return opened;
-}
+[[nodiscard]] file_handle open_to_read(const std::filesystem::path& file);
 
 /// All of a file.
 /// @param size what `require_file` says
 /// @param times how many times as much memory as the text what is read from it takes at most, the text included
 /// @throws aabb::input_error when it cannot be read or does not fit into memory.
 [[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size, double times);
+
+/// The text that the bytes of a file are, see `text_decoder`.
+/// @throws aabb::input_error where they are none.
+[[nodiscard]] inline file_text as_text(file_text file) {
+    decoded_text text = decoded(std::move(file.text));
+    if (!text.problem.empty()) throw aabb::input_error(file.name + ": " + text.problem);
+    return {std::move(file.name), std::move(text.text)};
+}
+
+/// The line without what a carriage return before its line feed leaves at its end.
+/// @param fail is called with a sentence where one stands alone
+template <class Fail>
+[[nodiscard]] inline std::string_view line_without_return(std::string_view line, Fail fail) {
+    while (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.find('\r') != std::string_view::npos)
+        fail("some lines end in carriage returns alone, others in line feeds; expected one of the two");
+    return line;
+}
 
 }  // namespace aabblab

@@ -6,6 +6,7 @@ module;
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Files of the user: meshes, recordings of boxes, pairs. Everything wrong with one is an input_error whose sentence
@@ -19,13 +20,53 @@ export import :loaded_mesh;
 export namespace aabblab {
 
 /// Reads OFF, OBJ, PLY, STL (text or binary) or glTF, by the file's ending.
-/// @throws aabb::input_error on a file that is missing, empty, malformed, truncated or without triangles, with NaN,
-/// infinity or an index out of range.
+/// @throws aabb::input_error on a file that is missing, empty, malformed, truncated or without triangles, with NaN or
+/// infinity in a vertex that a face uses, or an index out of range.
 [[nodiscard]] loaded_mesh read_mesh(const std::filesystem::path& file);
 
-/// The bytes of a file.
-/// @throws aabb::input_error where it cannot be read.
+/// The bytes of a regular file, of which there may be none.
+/// @throws aabb::input_error where it is something else or cannot be read.
 [[nodiscard]] std::string bytes_of_file(const std::filesystem::path& file);
+
+/// The text of a file as `bytes_of_file` reads it. Every reader of text reads what programs of many systems write: a
+/// byte order mark is dropped, UTF-16 that begins with one is converted, carriage returns become line feeds where lines
+/// end in them alone, and NULs and Ctrl-Z at the end of the file are dropped.
+/// @throws aabb::input_error where it is no such text, too.
+[[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
+
+/// The same of a file that may be a pipe or a device: at most one byte more than it may have, which shows that it is
+/// too long.
+/// @throws aabb::input_error where nobody writes into a named pipe, too.
+[[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most);
+
+/// Lines of a file, a pipe, a device or standard input as they come, of which only some are held at a time: text as
+/// `text_of_file` reads it. All that reads throws aabb::input_error.
+class line_stream {
+public:
+    /// @param name for messages, in place of the file's
+    explicit line_stream(const std::filesystem::path& file, const std::string& name = {});
+    /// Of standard input.
+    line_stream();
+    line_stream(line_stream&&) noexcept;
+    ~line_stream();
+
+    /// Goes to the next line; false after the last.
+    bool next();
+    /// Without its end; as long as no other is asked for.
+    [[nodiscard]] std::string_view line() const noexcept;
+    /// From 1.
+    [[nodiscard]] std::size_t number() const noexcept;
+    /// "FILE:LINE: SENTENCE"
+    [[noreturn]] void fail(const std::string& sentence) const;
+
+    /// Of its bytes; 0 where that is not known.
+    [[nodiscard]] std::uintmax_t size() const noexcept;
+    [[nodiscard]] std::uintmax_t bytes_read() const noexcept;
+
+private:
+    struct state;
+    std::unique_ptr<state> state_;
+};
 
 /// Refuses work that does not fit into the machine's memory, before anything is allocated.
 /// @throws aabb::input_error that says what takes how many bytes.

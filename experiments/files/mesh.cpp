@@ -4,8 +4,10 @@ module;
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 module aabblab.files;
@@ -24,13 +26,27 @@ namespace {
 struct format {
     std::string_view ending;
     loaded_mesh (*read)(const file_text&);
+    bool (*is_text)(std::string_view bytes);
 };
-constexpr format formats[] = {{".off", read_off}, {".obj", read_obj},   {".ply", read_ply},
-                              {".stl", read_stl}, {".gltf", read_gltf}, {".glb", read_gltf}};
+constexpr auto always = [](std::string_view) { return true; };
+constexpr auto is_gltf_text = [](std::string_view bytes) { return !bytes.starts_with("glTF"); };
+constexpr format formats[] = {{".off", read_off, always},         {".obj", read_obj, always},
+                              {".ply", read_ply, is_text_ply},    {".stl", read_stl, is_text_stl},
+                              {".gltf", read_gltf, is_gltf_text}, {".glb", read_gltf, is_gltf_text}};
 
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
     return std::to_string(count) + " " + std::string(count == 1 ? one : many);
 }
+
+/// Sentences with commas between.
+class enumeration {
+public:
+    void add(const std::string& sentence) { text_ += (text_.empty() ? "" : ", ") + sentence; }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    std::string text_;
+};
 
 }  // namespace
 
@@ -46,17 +62,28 @@ std::vector<std::string> mesh_endings() {
     return endings;
 }
 
+std::string mesh_report::left_out() const {
+    enumeration all;
+    if (dropped) all.add(counted(dropped, "face", "faces") + " of fewer than three corners dropped");
+    if (stitches) all.add(counted(stitches, "triangle", "triangles") + " of strips that repeat a corner left out");
+    if (not_finite)
+        all.add(counted(not_finite, "vertex", "vertices") + " with NaN or infinity, which no face uses, put elsewhere");
+    if (animations) all.add(counted(animations, "animation", "animations") + " ignored");
+    if (hidden_meshes) all.add(counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
+    for (const auto& [what, name, count] : skipped)
+        all.add(counted(count, what, std::string(what) + "s") + " " + in_quotes(name) + " skipped");
+    if (skipped_others) all.add(std::to_string(skipped_others) + " of other names skipped");
+    return all.text();
+}
+
 std::string mesh_report::text() const {
-    std::string all;
-    const auto say = [&](const std::string& sentence) { all += (all.empty() ? "" : ", ") + sentence; };
-    if (polygons > concave) say(counted(polygons - concave, "polygon", "polygons") + " fanned");
-    if (concave) say(counted(concave, "concave polygon", "concave polygons") + " cut by ears");
-    if (zero_area) say(counted(zero_area, "triangle", "triangles") + " of zero area kept");
-    if (rounded) say(counted(rounded, "coordinate", "coordinates") + " rounded to float");
-    if (dropped) say(counted(dropped, "face", "faces") + " of fewer than three corners dropped");
-    if (animations) say(counted(animations, "animation", "animations") + " ignored");
-    if (hidden_meshes) say(counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
-    return all;
+    enumeration all;
+    if (polygons > concave) all.add(counted(polygons - concave, "polygon", "polygons") + " fanned");
+    if (concave) all.add(counted(concave, "concave polygon", "concave polygons") + " cut by ears");
+    if (zero_area) all.add(counted(zero_area, "triangle", "triangles") + " of zero area kept");
+    if (rounded) all.add(counted(rounded, "coordinate", "coordinates") + " rounded to float");
+    if (const std::string others = left_out(); !others.empty()) all.add(others);
+    return all.text();
 }
 
 loaded_mesh read_mesh(const std::filesystem::path& file) {
@@ -65,8 +92,12 @@ loaded_mesh read_mesh(const std::filesystem::path& file) {
     const auto found = std::ranges::find(formats, ending, &format::ending);
     if (found == std::end(formats))
         throw aabb::input_error(file.string() + ": " + aabb::unknown_name("mesh format", ending, mesh_endings()));
+    if (ending == ".stl")
+        if (std::optional<loaded_mesh> binary = read_binary_stl(file, size)) return *std::move(binary);
     // A mesh takes about as much again as its text.
-    return found->read(read_whole(file, size, 2));
+    file_text content = read_whole(file, size, 2);
+    if (found->is_text(content.text)) content = as_text(std::move(content));
+    return found->read(content);
 }
 
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {

@@ -1,4 +1,6 @@
 module;
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,8 +26,19 @@ class mesh_builder {
 public:
     explicit mesh_builder(std::string file) : file_(std::move(file)) {}
 
-    void add_vertex(const aabb::vec3f& p) { loaded_.mesh.vertices.push_back(p); }
+    /// Its coordinates need not be finite where no face uses it.
+    /// @param line of the file; 0 where it has none
+    void add_vertex(const aabb::vec3f& p, std::size_t line = 0) {
+        if (!aabb::is_finite(p)) not_finite_.push_back({loaded_.mesh.vertices.size(), line});
+        loaded_.mesh.vertices.push_back(p);
+    }
     [[nodiscard]] std::size_t vertices() const noexcept { return loaded_.mesh.vertices.size(); }
+    [[nodiscard]] const aabb::vec3f& vertex(std::size_t index) const { return loaded_.mesh.vertices[index]; }
+    /// Room for about so many.
+    void reserve(std::size_t vertices, std::size_t triangles) {
+        loaded_.mesh.vertices.reserve(vertices);
+        loaded_.mesh.triangles.reserve(triangles);
+    }
 
     /// A polygon becomes triangles when the mesh is finished, as vertices may come later; fewer than three corners are
     /// dropped.
@@ -48,6 +61,28 @@ public:
         loaded_.report.hidden_meshes = hidden_meshes;
     }
 
+    /// A triangle of a strip. One that repeats a corner only joins two parts of the strip, from one to the other
+    /// through space, and is left out.
+    void add_strip_triangle(const std::array<std::uint32_t, 3>& corners, std::size_t place) {
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+            ++loaded_.report.stitches;
+        else
+            add_face(corners, place);
+    }
+
+    /// Counts what the mesh is read without: `name` as the file has it.
+    void skip(std::string_view what, std::string_view name, std::size_t count) {
+        constexpr std::size_t most_names = 8;
+        auto& skipped = loaded_.report.skipped;
+        const auto known = std::ranges::find(skipped, name, &skipped_parts::name);
+        if (known != skipped.end())
+            known->count += count;
+        else if (skipped.size() < most_names)
+            skipped.push_back({what, std::string(name), count});
+        else
+            loaded_.report.skipped_others += count;
+    }
+
     /// The mesh, checked.
     /// @param before "FILE:" or "FILE: face ", what the place of a face is appended to
     /// @param first the number of the first vertex in this format: 0 or 1
@@ -59,10 +94,12 @@ public:
                                     std::to_string(greatest_ - 1 + first) + ", but there are " +
                                     std::to_string(m.vertices.size()) + " vertices" +
                                     (first == 0 ? ", counted from 0" : ", counted from 1"));
+        settle_vertices(first);
         try {
             aabb::require_valid(m);
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(file_ + ": " + error.what());
+            const std::string left_out = loaded_.report.left_out();
+            throw aabb::input_error(file_ + ": " + error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
         }
         cut_polygons(before);
         m.vertices.shrink_to_fit();
@@ -96,10 +133,34 @@ private:
         loaded_.report.polygons = polygons_.size();
     }
 
+    struct located_vertex {
+        std::size_t index;
+        std::size_t line;
+    };
+
+    /// Vertices that are not finite keep their numbers. Where no face uses them they go where a vertex is that some
+    /// face uses, so that no box of vertices has them in it.
+    void settle_vertices(std::size_t first) {
+        if (not_finite_.empty()) return;
+        aabb::mesh& m = loaded_.mesh;
+        std::vector<bool> is_used(m.vertices.size());
+        for (const auto& triangle : m.triangles)
+            for (const std::uint32_t corner : triangle) is_used[corner] = true;
+        for (const auto& [index, line] : not_finite_) {
+            if (is_used[index])
+                throw aabb::input_error(file_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": vertex " +
+                                        std::to_string(index + first) +
+                                        " has a coordinate that is not finite, and a face uses it");
+            if (!m.triangles.empty()) m.vertices[index] = m.vertices[m.triangles[0][0]];
+        }
+        loaded_.report.not_finite = not_finite_.size();
+    }
+
     std::string file_;
     loaded_mesh loaded_;
     std::vector<polygon> polygons_;  // of more than three corners
-    std::size_t greatest_ = 0;       // one more than the greatest corner so far
+    std::vector<located_vertex> not_finite_;
+    std::size_t greatest_ = 0;  // one more than the greatest corner so far
     std::size_t greatest_at_ = 0;
 };
 

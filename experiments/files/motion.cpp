@@ -106,7 +106,7 @@ private:
 class motion_scene final : public aabb::mesh_scene {
 public:
     motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> given) {
-        const file_text text = read_whole(file, require_file(file), 8);
+        const file_text text = as_text(read_whole(file, require_file(file), 8));
         motion_reader reader(text);
         steps_ = reader.read();
         meshes = std::move(given);

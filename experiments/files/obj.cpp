@@ -1,7 +1,9 @@
 module;
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -45,6 +47,13 @@ std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t 
     return static_cast<std::uint32_t>(index);
 }
 
+/// Statements without which the surface is the same: looks, names, groups, and what only says how a free-form curve or
+/// surface is meant, which is a statement of its own.
+constexpr std::string_view silent[] = {
+    "vt",     "vn",    "vp",       "g",        "o",    "s",    "mg",   "usemtl",     "mtllib",    "usemap",
+    "maplib", "bevel", "c_interp", "d_interp", "lod",  "end",  "parm", "shadow_obj", "trace_obj", "cstype",
+    "deg",    "bmat",  "step",     "trim",     "hole", "scrv", "sp",   "con",        "ctech",     "stech"};
+
 }  // namespace
 
 loaded_mesh read_obj(const file_text& file) {
@@ -53,18 +62,18 @@ loaded_mesh read_obj(const file_text& file) {
     std::vector<std::uint32_t> corners;
     while (in.next_line()) {
         const std::string_view statement = in.word();
+        const std::size_t line = in.line();
         if (statement == "v") {
             aabb::vec3f p{};
             for (int k = 0; k < 3; ++k) p[k] = in.coordinate(statement_word(in));
-            mesh.add_vertex(p);
-        } else if (statement == "f") {
-            const std::size_t line = in.line();
+            mesh.add_vertex(p, line);
+        } else if (statement == "f" || statement == "fo") {  // "fo" is what the first versions of the format had
             corners.clear();
             for (std::string_view word = statement_word(in); !word.empty(); word = statement_word(in))
                 corners.push_back(corner(in, word, mesh.vertices()));
             mesh.add_face(corners, line);
         } else {
-            if (statement == "l" || statement == "p") mesh.drop();
+            if (std::ranges::find(silent, statement) == std::end(silent)) mesh.skip("statement", statement, 1);
             while (!statement_word(in).empty()) continue;
         }
     }

@@ -1,12 +1,18 @@
 module;
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 module aabblab.files;
 
+import aabb.base;
+import aabb.geometry;
 import :file_text;
+import :loaded_mesh;
 import :mesh_builder;
 import :readers;
 import :text_scanner;
@@ -15,48 +21,145 @@ namespace aabblab {
 
 namespace {
 
+/// How numbers stand on lines. Behind the numbers of a vertex and the corners of a face may stand colours, as many as
+/// the writer liked, so that only the end of a line can tell where they end.
+enum class arrangement : std::uint8_t {
+    lines,       ///< each vertex and each face has a line of its own, with anything at its end
+    face_lines,  ///< lines mean nothing, but that each face begins one, which may end in colours
+    words        ///< lines mean nothing, and there are no colours of faces
+};
+
 /// "OFF", after any of ST, C, N: colours, normals and texture coordinates follow the position and are skipped.
-void read_keyword(text_scanner& in) {
+/// @returns how many numbers they are
+std::size_t read_keyword(text_scanner& in) {
     if (!in.next_line()) in.ends("before the keyword OFF");
     const std::string_view keyword = in.word();
     const std::size_t at = keyword.find("OFF");
     if (at == std::string_view::npos) in.expected("the keyword OFF", keyword);
     std::string_view before = keyword.substr(0, at);
-    for (const std::string_view mark : {"ST", "C", "N"})
-        if (before.starts_with(mark)) before.remove_prefix(mark.size());
+    std::size_t numbers = 0;
+    for (const auto& [mark, length] : {std::pair<std::string_view, std::size_t>{"ST", 2}, {"C", 4}, {"N", 3}})
+        if (before.starts_with(mark)) {
+            before.remove_prefix(mark.size());
+            numbers += length;
+        }
     if (before == "4" || before == "n" || before == "4n") in.fail("only OFF in three dimensions is read");
     if (!before.empty()) in.expected("the keyword OFF", keyword);
     // Some writers put the first count right behind the keyword.
     in.back_to(keyword.substr(at + 3));
+    return numbers;
+}
+
+class off_reader {
+public:
+    off_reader(const file_text& file, arrangement how)
+        : in_(file, '#'), name_(file.name), how_(how), mesh_(file.name) {}
+
+    /// @throws aabb::input_error with the line where the file is not so arranged.
+    [[nodiscard]] loaded_mesh read() {
+        const std::size_t numbers_behind = read_keyword(in_);
+        const auto before_counts = [] { return std::string("before the numbers of vertices and faces"); };
+        go_on(before_counts);
+        const auto vertices = in_.whole<std::uint64_t>("the number of vertices");
+        if (how_ != arrangement::lines) go_on(before_counts);
+        const auto faces = in_.whole<std::uint64_t>("the number of faces");
+        if (how_ != arrangement::lines) {
+            go_on([] { return std::string("before the number of edges"); });
+            static_cast<void>(in_.whole<std::uint64_t>("the number of edges"));
+        }
+        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, numbers_behind);
+        if (how_ == arrangement::face_lines && in_.more())
+            in_.expected("the end of the line after the last vertex", in_.word());
+        for (std::uint64_t f = 0; f < faces; ++f) read_face(f, faces);
+        if ((how_ == arrangement::words && in_.more()) || in_.next_line())
+            in_.fail("expected the end of the file after " + std::to_string(vertices) + " vertices and " +
+                     std::to_string(faces) + " faces, found " + in_quotes(in_.word()));
+        return mesh_.finish(in_.rounded(), name_ + ":", 0);
+    }
+
+    /// Whether a vertex was read.
+    [[nodiscard]] bool has_vertex() const { return mesh_.vertices() > 0; }
+
+private:
+    /// Goes to the next word.
+    template <class Where>
+    void go_on(Where where) {
+        if (!in_.more() && !in_.next_line()) in_.ends(where());
+    }
+
+    void read_vertex(std::uint64_t index, std::uint64_t count, std::size_t numbers_behind) {
+        const auto where = [&] {
+            return "after " + std::to_string(index) + " of " + std::to_string(count) + " vertices";
+        };
+        if (how_ == arrangement::lines && !in_.next_line()) in_.ends(where());
+        aabb::vec3f p{};
+        for (int k = 0; k < 3; ++k) {
+            if (how_ != arrangement::lines) go_on(where);
+            p[k] = in_.coordinate(in_.word());
+        }
+        if (how_ != arrangement::lines)
+            for (std::size_t i = 0; i < numbers_behind; ++i) {
+                go_on(where);
+                static_cast<void>(in_.word());
+            }
+        mesh_.add_vertex(p, in_.line());
+    }
+
+    void read_face(std::uint64_t index, std::uint64_t count) {
+        const auto where = [&] { return "after " + std::to_string(index) + " of " + std::to_string(count) + " faces"; };
+        if (how_ == arrangement::words)
+            go_on(where);
+        else if (!in_.next_line())
+            in_.ends(where());
+        const std::size_t line = in_.line();
+        const auto corners = in_.whole<std::uint32_t>("the number of corners of a face");
+        // A number that is missing or too many before would shift all the others, and smaller faces hide it.
+        if (how_ != arrangement::lines && corners < 3) in_.fail("expected at least three corners of a face");
+        corners_.clear();
+        for (std::uint32_t i = 0; i < corners; ++i) {
+            if (how_ != arrangement::lines) go_on(where);
+            corners_.push_back(in_.whole<std::uint32_t>("a face of " + std::to_string(corners) + " corners"));
+        }
+        mesh_.add_face(corners_, line);
+    }
+
+    text_scanner in_;
+    std::string name_;
+    arrangement how_;
+    mesh_builder mesh_;
+    std::vector<std::uint32_t> corners_;
+};
+
+struct attempt {
+    std::optional<loaded_mesh> loaded;
+    std::string refusal;
+    bool has_vertex = false;
+};
+attempt read_as(const file_text& file, arrangement how) {
+    off_reader reader(file, how);
+    try {
+        return {reader.read(), {}, true};
+    } catch (const aabb::input_error& error) {
+        return {{}, error.what(), reader.has_vertex()};
+    }
 }
 
 }  // namespace
 
+// The format is one of words (Geomview's manual, "OFF Files"), and writers nearly always give vertices and faces lines
+// of their own. Other arrangements are tried only where the file is not of such lines.
 loaded_mesh read_off(const file_text& file) {
-    text_scanner in(file, '#');
-    read_keyword(in);
-    if (!in.more() && !in.next_line()) in.ends("before the numbers of vertices and faces");
-    const auto vertices = in.whole<std::uint64_t>("the number of vertices");
-    const auto faces = in.whole<std::uint64_t>("the number of faces");
-
-    mesh_builder mesh(file.name);
-    for (std::uint64_t v = 0; v < vertices; ++v) {
-        if (!in.next_line()) in.ends("after " + std::to_string(v) + " of " + std::to_string(vertices) + " vertices");
-        mesh.add_vertex(in.point());
-    }
-    std::vector<std::uint32_t> corners;
-    for (std::uint64_t f = 0; f < faces; ++f) {
-        if (!in.next_line()) in.ends("after " + std::to_string(f) + " of " + std::to_string(faces) + " faces");
-        const auto count = in.whole<std::uint32_t>("the number of corners of a face");
-        corners.clear();
-        for (std::uint32_t i = 0; i < count; ++i)
-            corners.push_back(in.whole<std::uint32_t>("a face of " + std::to_string(count) + " corners"));
-        mesh.add_face(corners, in.line());
-    }
-    if (in.next_line())
-        in.fail("expected the end of the file after " + std::to_string(vertices) + " vertices and " +
-                std::to_string(faces) + " faces, found " + in_quotes(in.word()));
-    return mesh.finish(in.rounded(), file.name + ":", 0);
+    attempt lines = read_as(file, arrangement::lines);
+    if (lines.loaded) return *std::move(lines.loaded);
+    attempt face_lines = read_as(file, arrangement::face_lines);
+    attempt words = read_as(file, arrangement::words);
+    if (face_lines.loaded && words.loaded && face_lines.loaded->mesh.triangles != words.loaded->mesh.triangles)
+        throw aabb::input_error(file.name +
+                                ": can be read in two ways, as numbers behind the corners of a face are colours or "
+                                "more faces; expected each vertex and each face on a line of its own");
+    for (attempt* other : {&face_lines, &words})
+        if (other->loaded) return *std::move(other->loaded);
+    throw aabb::input_error(lines.has_vertex ? lines.refusal : words.refusal);
 }
 
 }  // namespace aabblab

@@ -39,10 +39,18 @@ public:
     }
     [[nodiscard]] float coordinate(scalar) { return in_.coordinate(in_.word()); }
     [[nodiscard]] std::uint32_t whole(scalar) { return in_.whole<std::uint32_t>("a whole number"); }
+    /// A corner, or -1 for the end of a strip.
+    [[nodiscard]] std::int64_t corner_or_end(scalar) {
+        const auto corner = in_.whole<std::int64_t>("a whole number");
+        if (corner < -1 || corner > std::numeric_limits<std::uint32_t>::max())
+            in_.fail("a strip has corner " + std::to_string(corner) + "; only -1 ends a part of one");
+        return corner;
+    }
     void skip(scalar) {
         if (in_.word().empty()) in_.expected("the value of a property", {});
     }
     [[nodiscard]] std::size_t place(std::uint64_t) const { return in_.line(); }
+    [[nodiscard]] std::size_t line() const { return in_.line(); }
     void end() {
         if (in_.next_line())
             in_.fail("expected the end of the file after the last element, found " + in_quotes(in_.word()));
@@ -66,17 +74,21 @@ public:
     }
     [[nodiscard]] float coordinate(scalar type) {
         const double fine = number(type);
-        if (!std::isfinite(fine)) fail("has a coordinate that is not finite");
-        if (std::abs(fine) > std::numeric_limits<float>::max() && std::isinf(static_cast<float>(fine)))
-            fail("has a coordinate that is too large for a float");
         const auto value = static_cast<float>(fine);
-        rounded_ += value != fine;
+        if (std::isfinite(fine) && std::isinf(value)) fail("has a coordinate that is too large for a float");
+        if (std::isfinite(fine)) rounded_ += value != fine;
         return value;
     }
     [[nodiscard]] std::uint32_t whole(scalar type) {
         const double value = number(type);
         if (value < 0) fail("has a negative length or corner");
         return static_cast<std::uint32_t>(value);
+    }
+    /// A corner, or -1 for the end of a strip.
+    [[nodiscard]] std::int64_t corner_or_end(scalar type) {
+        const double value = number(type);
+        if (value < -1) fail("has a negative corner; only -1 ends a part of a strip");
+        return static_cast<std::int64_t>(value);
     }
     void skip(scalar type) { static_cast<void>(number(type)); }
     [[nodiscard]] static std::size_t place(std::uint64_t face) { return face; }
@@ -86,6 +98,7 @@ public:
                                     " bytes after the last element that its header announces");
     }
     [[nodiscard]] std::size_t rounded() const { return rounded_; }
+    [[nodiscard]] static std::size_t line() { return 0; }
     static constexpr std::string_view before_place = ": face ";
 
 private:
@@ -126,16 +139,49 @@ private:
     std::size_t rounded_ = 0;
 };
 
+/// The triangles of a strip: each three neighbours in it, of which every other triangle is turned so that all face one
+/// way; -1 ends a part, behind which another begins anew.
+class strip_triangles {
+public:
+    strip_triangles(mesh_builder& mesh, std::size_t place) : mesh_(mesh), place_(place) {}
+
+    void add(std::int64_t corner) {
+        if (corner < 0) {
+            count_ = 0;
+            return;
+        }
+        const auto c = static_cast<std::uint32_t>(corner);
+        if (count_ >= 2) {
+            const bool is_turned = count_ % 2 != 0;
+            mesh_.add_strip_triangle({last_[is_turned ? 1 : 0], last_[is_turned ? 0 : 1], c}, place_);
+        }
+        last_ = {last_[1], c};
+        ++count_;
+    }
+
+private:
+    mesh_builder& mesh_;
+    std::size_t place_;
+    std::array<std::uint32_t, 2> last_{};
+    std::uint64_t count_ = 0;
+};
+
 template <class Values>
 loaded_mesh read_elements(const file_text& file, const header& h, Values values) {
     mesh_builder mesh(file.name);
     std::vector<std::uint32_t> corners;
-    for (const element& e : h.elements)
+    for (const element& e : h.elements) {
+        if (e.count > 0 && e.name != "vertex" && role_of_vertices(e) == role::none)
+            mesh.skip("element", e.name, e.count);
         for (std::uint64_t index = 0; index < e.count; ++index) {
             values.begin(e, index);
             aabb::vec3f point{};
             for (const property& p : e.properties) {
-                if (p.meaning == role::corners) {
+                if (p.meaning == role::strip) {
+                    strip_triangles strip(mesh, values.place(index));
+                    for (std::uint32_t left = values.whole(*p.count); left > 0; --left)
+                        strip.add(values.corner_or_end(p.type));
+                } else if (p.meaning == role::corners) {
                     corners.clear();
                     for (std::uint32_t left = values.whole(*p.count); left > 0; --left)
                         corners.push_back(values.whole(p.type));
@@ -147,19 +193,32 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
                         values.skip(p.type);
                 }
             }
-            if (e.name == "vertex") mesh.add_vertex(point);
+            if (e.name == "vertex") mesh.add_vertex(point, values.line());
         }
+    }
     values.end();
     return mesh.finish(values.rounded(), file.name + std::string(Values::before_place), 0);
 }
 
 }  // namespace
 
+// The header may be text of other systems before binary values, so that it is read alone.
 loaded_mesh read_ply(const file_text& file) {
+    const std::size_t end = std::min(end_of_header(file.text), file.text.size());
+    const file_text top = as_text({file.name, file.text.substr(0, end)});
+    text_scanner of_top(top, '\0');
+    const header h = read_header(of_top);
+    if (h.values != encoding::text)
+        return read_elements(
+            file, h, binary_values(file.name, std::string_view(file.text).substr(end), h.values == encoding::big));
     text_scanner in(file, '\0');
-    const header h = read_header(in);
-    if (h.values == encoding::text) return read_elements(file, h, text_values(in));
-    return read_elements(file, h, binary_values(file.name, in.rest(), h.values == encoding::big));
+    static_cast<void>(read_header(in));
+    return read_elements(file, h, text_values(in));
+}
+
+bool is_text_ply(std::string_view bytes) {
+    const std::size_t end = end_of_header(bytes);
+    return end == std::string_view::npos || bytes.substr(0, end).find("format binary_") == std::string_view::npos;
 }
 
 }  // namespace aabblab

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <optional>
@@ -33,7 +34,7 @@ inline constexpr scalar_name scalar_names[] = {
 }
 
 /// What a property is to a mesh.
-enum class role : std::uint8_t { none, x, y, z, corners };
+enum class role : std::uint8_t { none, x, y, z, corners, strip };
 
 struct property {
     role meaning;
@@ -46,6 +47,11 @@ struct element {
     std::uint64_t count;
     std::vector<property> properties;
 };
+
+/// What the vertices of an element are that a list of it names; none where they are nothing to a mesh.
+[[nodiscard]] inline role role_of_vertices(const element& e) {
+    return e.name == "face" ? role::corners : e.name == "tristrips" ? role::strip : role::none;
+}
 
 enum class encoding : std::uint8_t { text, little, big };
 
@@ -77,9 +83,9 @@ struct header {
         if (name == "x") p.meaning = role::x;
         if (name == "y") p.meaning = role::y;
         if (name == "z") p.meaning = role::z;
-    } else if (owner.name == "face" && p.count && (name == "vertex_indices" || name == "vertex_index")) {
-        if (!is_whole(p.type)) in.fail("the corners of a face must have a whole type");
-        p.meaning = role::corners;
+    } else if (p.count && (name == "vertex_indices" || name == "vertex_index")) {
+        p.meaning = role_of_vertices(owner);
+        if (p.meaning != role::none && !is_whole(p.type)) in.fail("the corners of a face must have a whole type");
     }
     return p;
 }
@@ -95,8 +101,24 @@ inline void require_roles(const text_scanner& in, const element& e) {
         require(role::y, "property y");
         require(role::z, "property z");
     }
-    if (e.name == "face") require(role::corners, "list property vertex_indices");
+    if (const role faces = role_of_vertices(e); faces != role::none) require(faces, "list property vertex_indices");
     if (e.properties.empty()) in.fail("the element " + in_quotes(e.name) + " has no properties");
+}
+
+/// Where the header ends and values begin; npos where there is no header, or none of single bytes. Behind a header
+/// whose lines end in carriage returns alone, a line feed is the first byte of binary values.
+[[nodiscard]] inline std::size_t end_of_header(std::string_view bytes) {
+    constexpr std::string_view last = "end_header";
+    const auto is_line_end = [&](std::size_t at) { return bytes[at] == '\n' || bytes[at] == '\r'; };
+    const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
+    const bool of_returns = bytes.substr(first_end, 1) == "\r" && bytes.substr(first_end + 1, 1) != "\n";
+    for (std::size_t at = bytes.find(last); at != std::string_view::npos; at = bytes.find(last, at + 1)) {
+        if (at == 0 || !is_line_end(at - 1)) continue;
+        const std::size_t end = bytes.find_first_not_of(" \t", at + last.size());
+        if (end == std::string_view::npos || !is_line_end(end)) continue;
+        return end + (!of_returns && bytes.substr(end).starts_with("\r\n") ? 2 : 1);
+    }
+    return std::string_view::npos;
 }
 
 /// @throws aabb::input_error with the line.

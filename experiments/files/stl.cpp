@@ -4,10 +4,14 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <vector>
 
 module aabblab.files;
 
@@ -16,6 +20,7 @@ import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :readers;
+import :text_decoder;
 import :text_scanner;
 
 namespace aabblab {
@@ -23,31 +28,62 @@ namespace aabblab {
 namespace {
 
 /// STL repeats a vertex for every triangle around it: vertices of the same bits become one, numbered in the order of
-/// their first appearance. Triangles keep the order of the file.
+/// their first appearance. Triangles keep the order of the file. The numbers stand in a hash table with open
+/// addressing.
 class vertex_merger {
 public:
-    explicit vertex_merger(mesh_builder& mesh) : mesh_(mesh) {}
+    /// @param triangles how many there are about; a closed mesh has half as many vertices
+    vertex_merger(mesh_builder& mesh, std::size_t triangles)
+        : mesh_(mesh), numbers_(std::bit_ceil(std::max<std::size_t>(triangles, 16)), none) {}
 
-    [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p) {
-        const auto bits = std::bit_cast<std::array<std::uint32_t, 3>>(p);
-        const auto [found, is_new] = numbers_.try_emplace(bits, static_cast<std::uint32_t>(mesh_.vertices()));
-        if (is_new) mesh_.add_vertex(p);
-        return found->second;
+    /// Asks for the part of the table in which the vertex is looked for, so that it is there when it is needed.
+    /// @returns what `index_of` takes
+    [[nodiscard]] std::size_t prefetch(const aabb::vec3f& p) const noexcept {
+        const std::size_t hash = hash_of(bits_of(p));
+        __builtin_prefetch(&numbers_[hash & (numbers_.size() - 1)]);
+        return hash;
     }
+    [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p, std::size_t hash) {
+        const auto bits = bits_of(p);
+        std::size_t place = hash & (numbers_.size() - 1);
+        for (; numbers_[place] != none; place = next(place))
+            if (bits_of(mesh_.vertex(numbers_[place])) == bits) return numbers_[place];
+        const auto number = static_cast<std::uint32_t>(mesh_.vertices());
+        mesh_.add_vertex(p);
+        numbers_[place] = number;
+        if (2 * mesh_.vertices() > numbers_.size()) grow();
+        return number;
+    }
+    [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p) { return index_of(p, prefetch(p)); }
 
 private:
-    struct mixed {
-        std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const noexcept {
-            std::uint64_t hash = 0;
-            for (const std::uint32_t b : bits) {
-                hash = (hash ^ b) * 0x9e3779b97f4a7c15U;
-                hash ^= hash >> 32;
-            }
-            return hash;
+    using bits_of_vertex = std::array<std::uint32_t, 3>;
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3f& p) noexcept {
+        return std::bit_cast<bits_of_vertex>(p);
+    }
+    /// Multiplication carries every bit upwards, and the shifts bring the upper ones down to where places are taken
+    /// from.
+    [[nodiscard]] static std::size_t hash_of(const bits_of_vertex& bits) noexcept {
+        constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio (Knuth, volume 3, 6.4)
+        std::uint64_t hash = (bits[0] | std::uint64_t{bits[1]} << 32U) * odd;
+        hash = (hash ^ hash >> 32U ^ bits[2]) * odd;
+        return hash ^ hash >> 32U;
+    }
+    [[nodiscard]] std::size_t next(std::size_t place) const noexcept { return (place + 1) & (numbers_.size() - 1); }
+
+    void grow() {
+        numbers_.assign(2 * numbers_.size(), none);
+        for (std::uint32_t number = 0; number < mesh_.vertices(); ++number) {
+            std::size_t place = hash_of(bits_of(mesh_.vertex(number))) & (numbers_.size() - 1);
+            while (numbers_[place] != none) place = next(place);
+            numbers_[place] = number;
         }
-    };
+    }
+
     mesh_builder& mesh_;
-    std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, mixed> numbers_;
+    std::vector<std::uint32_t> numbers_;  // a power of two of places, at most half of them taken
 };
 
 constexpr std::size_t header_bytes = 84;
@@ -59,26 +95,6 @@ std::uint32_t announced_triangles(std::string_view bytes) {
     return count;
 }
 
-loaded_mesh read_binary(const file_text& file) {
-    mesh_builder mesh(file.name);
-    vertex_merger merger(mesh);
-    const std::uint32_t count = announced_triangles(file.text);
-    for (std::uint32_t t = 0; t < count; ++t) {
-        // A normal, three vertices, two bytes of attributes.
-        std::array<aabb::vec3f, 3> points{};
-        std::memcpy(points.data(), file.text.data() + header_bytes + triangle_bytes * t + 12, sizeof points);
-        std::array<std::uint32_t, 3> corners{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (!aabb::is_finite(points[i]))
-                throw aabb::input_error(file.name + ": triangle " + std::to_string(t) +
-                                        " has a coordinate that is not finite");
-            corners[i] = merger.index_of(points[i]);
-        }
-        mesh.add_face(corners, t);
-    }
-    return mesh.finish(0, file.name + ": triangle ", 0);
-}
-
 /// Writers disagree about the case of keywords.
 bool is_keyword(std::string_view word, std::string_view keyword) {
     return std::ranges::equal(word, keyword, [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
@@ -87,7 +103,7 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
 loaded_mesh read_text(const file_text& file) {
     text_scanner in(file, '\0');
     mesh_builder mesh(file.name);
-    vertex_merger merger(mesh);
+    vertex_merger merger(mesh, 0);
     std::array<std::uint32_t, 3> corners{};
     std::size_t count = 0;
     bool in_solid = false;
@@ -96,6 +112,7 @@ loaded_mesh read_text(const file_text& file) {
         const std::string_view word = in.word();
         if (is_keyword(word, "vertex") && in_facet) {
             const aabb::vec3f p = in.point();
+            if (!aabb::is_finite(p)) in.fail("the vertex has a coordinate that is not finite");
             if (count == 3) in.fail("a facet has more than three vertices");
             corners[count++] = merger.index_of(p);
         } else if (is_keyword(word, "facet") && in_solid && !in_facet) {
@@ -117,24 +134,82 @@ loaded_mesh read_text(const file_text& file) {
     return mesh.finish(in.rounded(), file.name + ":", 0);
 }
 
+/// How many bytes a binary file has that announces so many triangles.
+std::uint64_t bytes_of_binary(std::uint64_t triangles) {
+    return header_bytes + triangle_bytes * triangles;
+}
+
+bool is_space(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
 }  // namespace
 
-// Binary files may begin with "solid" too, so the size decides first, then whether there is anything but text: one that
-// is cut off has no size to go by.
+// Binary files may begin with "solid" too, so the size decides. A file is several times as large as the mesh that it
+// holds, and is read in parts: memory that is touched for the first time takes most of the time of reading.
+std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size) {
+    if (size < header_bytes) return {};
+    const file_handle opened = open_to_read(file);
+    auto read = [&, done = std::size_t{0}](void* to, std::size_t bytes) mutable {
+        if (std::fread(to, 1, bytes, opened.get()) != bytes)
+            throw aabb::input_error(file.string() + ": cannot be read beyond byte " + std::to_string(done) + " of " +
+                                    std::to_string(size));
+        done += bytes;
+    };
+    std::array<char, header_bytes> header{};
+    read(header.data(), header.size());
+    const std::uint32_t count = announced_triangles({header.data(), header.size()});
+    if (size != bytes_of_binary(count)) return {};
+    require_memory(file.string() + ": reading it", static_cast<double>(size));
+    mesh_builder mesh(file.string());
+    mesh.reserve(count / 2, count);
+    vertex_merger merger(mesh, count);
+    constexpr std::uint32_t most_at_once = 64;
+    std::array<char, triangle_bytes * most_at_once> bytes{};
+    std::array<aabb::vec3f, 3 * most_at_once> points{};
+    std::array<std::size_t, 3 * most_at_once> hashes{};
+    for (std::uint32_t first = 0; first < count; first += std::min(most_at_once, count - first)) {
+        const std::uint32_t triangles = std::min(most_at_once, count - first);
+        read(bytes.data(), triangle_bytes * triangles);
+        for (std::size_t t = 0; t < triangles; ++t)
+            // A normal, three vertices, two bytes of attributes.
+            std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + 12, 3 * sizeof points[0]);
+        for (std::size_t i = 0; i < 3 * triangles; ++i) {
+            if (!aabb::is_finite(points[i]))
+                throw aabb::input_error(file.string() + ": triangle " + std::to_string(first + i / 3) +
+                                        " has a coordinate that is not finite");
+            hashes[i] = merger.prefetch(points[i]);
+        }
+        for (std::size_t t = 0; t < triangles; ++t) {
+            std::array<std::uint32_t, 3> corners{};
+            for (std::size_t i = 0; i < 3; ++i) corners[i] = merger.index_of(points[3 * t + i], hashes[3 * t + i]);
+            mesh.add_face(corners, first + t);
+        }
+    }
+    return mesh.finish(0, file.string() + ": triangle ", 0);
+}
+
+// What may stand before and behind a text does not count, see text_decoder. A binary file that is cut off is no text.
+bool is_text_stl(std::string_view bytes) {
+    if (text_encoding_of(bytes) != text_encoding::utf8) return true;
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+    const auto is_end = [](char c) { return is_space(c) || c == '\0' || c == '\x1a'; };
+    while (!bytes.empty() && is_space(bytes.front())) bytes.remove_prefix(1);
+    while (!bytes.empty() && is_end(bytes.back())) bytes.remove_suffix(1);
+    return is_keyword(bytes.substr(0, 5), "solid") &&
+           std::ranges::all_of(bytes, [](char c) { return is_space(c) || static_cast<unsigned char>(c) > ' '; });
+}
+
 loaded_mesh read_stl(const file_text& file) {
+    if (is_text_stl(file.text)) return read_text(file);
     const std::size_t size = file.text.size();
-    const bool has_count = size >= header_bytes;
-    if (has_count && size == header_bytes + triangle_bytes * announced_triangles(file.text)) return read_binary(file);
-    const auto is_text = [](unsigned char c) { return c >= ' ' || (c >= '\t' && c <= '\r'); };
-    if (is_keyword(std::string_view(file.text).substr(0, 5), "solid") && std::ranges::all_of(file.text, is_text))
-        return read_text(file);
-    if (!has_count)
+    if (size < header_bytes)
         throw aabb::input_error(file.name +
                                 ": is no STL file: it is neither text that begins with solid nor holds the 84 bytes of "
                                 "a binary header");
-    const std::uint64_t count = announced_triangles(file.text);
+    const std::uint32_t count = announced_triangles(file.text);
     throw aabb::input_error(file.name + ": its header announces " + std::to_string(count) + " triangles, which take " +
-                            std::to_string(header_bytes + triangle_bytes * count) + " bytes, but the file has " +
+                            std::to_string(bytes_of_binary(count)) + " bytes, but the file has " +
                             std::to_string(size));
 }
 

@@ -31,6 +31,7 @@ public:
             line_ = rest_.substr(0, end);
             rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
             ++number_;
+            line_ = line_without_return(line_, [this](const std::string& sentence) { fail(sentence); });
             if (comment_ != '\0') line_ = line_.substr(0, line_.find(comment_));
             skip_blanks();
             if (!line_.empty()) return true;
@@ -58,8 +59,6 @@ public:
     void back_to(std::string_view word) { line_ = std::string_view(word.begin(), line_.end()); }
 
     [[nodiscard]] std::size_t line() const noexcept { return number_; }
-    /// What comes after the line.
-    [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
 
     /// @throws aabb::input_error with the file, the line and the sentence.
     [[noreturn]] void fail(const std::string& sentence) const {
@@ -94,14 +93,14 @@ public:
         return value;
     }
 
-    /// Three coordinates, each correctly rounded to float.
+    /// Three coordinates, as `coordinate`.
     [[nodiscard]] aabb::vec3f point() {
         aabb::vec3f p{};
         for (int k = 0; k < 3; ++k) p[k] = coordinate(word());
         return p;
     }
 
-    /// One coordinate, correctly rounded to float.
+    /// One coordinate, correctly rounded to float; NaN or infinite only where the text says so.
     [[nodiscard]] float coordinate(std::string_view text) {
         // from_chars takes no plus sign.
         const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-"));
@@ -118,8 +117,7 @@ public:
         } else {
             std::from_chars(begin, end, fine);
         }
-        if (!std::isfinite(value)) fail("the coordinate " + in_quotes(text) + " is not finite");
-        rounded_ += fine != value;
+        if (std::isfinite(value)) rounded_ += fine != value;
         return value;
     }
 
@@ -127,9 +125,7 @@ public:
     [[nodiscard]] std::size_t rounded() const noexcept { return rounded_; }
 
 private:
-    [[nodiscard]] static bool is_blank(char c) noexcept {
-        return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-    }
+    [[nodiscard]] static bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
     void skip_blanks() {
         std::size_t blanks = 0;
         while (blanks < line_.size() && is_blank(line_[blanks])) ++blanks;

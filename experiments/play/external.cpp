@@ -10,7 +10,6 @@ module;
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,21 +62,22 @@ const std::filesystem::path& exchange_folder::recording() {
 }
 
 answer_table::answer_table(std::string what, const std::filesystem::path& file, std::string columns)
-    : what_(std::move(what)), columns_(std::move(columns)), in_(file) {
-    if (!in_) throw aabb::input_error(what_ + " are not there: it wrote no such file");
+    : what_(std::move(what)), columns_(std::move(columns)) {
+    if (!std::filesystem::exists(file)) throw aabb::input_error(what_ + " are not there: it wrote no such file");
     if (std::filesystem::is_directory(file)) throw aabb::input_error(what_ + " are a folder; expected a file");
-    if (!next() && line_ == 0) throw aabb::input_error(what_ + " are an empty file; expected the line " + columns_);
+    in_.emplace(file, what_);
+    if (!next()) throw aabb::input_error(what_ + " are an empty file; expected the line " + columns_);
     if (text_ != columns_) fail("expected the line " + columns_);
 }
 
 bool answer_table::next() {
     fields_.clear();
-    if (!std::getline(in_, text_)) return false;
-    ++line_;
-    if (text_.ends_with('\r')) text_.pop_back();
+    const bool is_there = in_->next();
+    text_ = is_there ? in_->line() : std::string_view();
+    if (!is_there) return false;
     for (std::size_t from = 0;;) {
         const std::size_t to = std::min(text_.find(',', from), text_.size());
-        fields_.push_back(std::string_view(text_).substr(from, to - from));
+        fields_.push_back(text_.substr(from, to - from));
         if (to == text_.size()) break;
         from = to + 1;
     }
@@ -104,16 +104,9 @@ double answer_table::milliseconds(std::size_t column) const {
 }
 
 void answer_table::fail(const std::string& sentence) const {
-    std::string row;
-    for (const char c : std::string_view(text_).substr(0, longest_quote)) {
-        // A sentence would end there.
-        if (c == 0)
-            row += "\\x00";
-        else
-            row += c;
-    }
+    std::string row(text_.substr(0, longest_quote));
     if (text_.size() > longest_quote) row += "…";
-    throw aabb::input_error(what_ + ", line " + std::to_string(line_) + ", '" + row + "': " + sentence);
+    throw aabb::input_error(what_ + ", line " + std::to_string(in_->number()) + ", '" + row + "': " + sentence);
 }
 
 external_search::external_search(const external_engine& who, exchange_folder& exchange, std::vector<told_times>& told)

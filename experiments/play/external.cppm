@@ -2,7 +2,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +17,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.pipeline;
 import aabblab.configs;
+import aabblab.files;
 import aabblab.processes;
 import aabblab.scenes;
 import :player;
@@ -64,9 +64,9 @@ public:
     [[noreturn]] void fail(const std::string& sentence) const;
 
 private:
-    std::string what_, columns_, text_;
-    std::ifstream in_;
-    std::size_t line_ = 0;
+    std::string what_, columns_;
+    std::optional<line_stream> in_;
+    std::string_view text_;
     std::vector<std::string_view> fields_;  // of text_
 };
 

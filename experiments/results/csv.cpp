@@ -50,6 +50,8 @@ private:
     void take_plain(std::string& field) {
         while (at_ < text_.size() && !next_is(",") && !next_is("\n") && !next_is("\r\n")) {
             if (next_is("\"")) fail("a quote stands in a field that does not begin with one");
+            if (next_is("\r") && at_ + 1 < text_.size())
+                fail("some lines end in carriage returns alone, others in line feeds; expected one of the two");
             field += text_[at_++];
         }
     }

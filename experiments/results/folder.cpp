@@ -23,11 +23,12 @@ namespace aabblab {
 
 namespace {
 
-/// A row that was cut off while it was written goes.
+/// A row that was cut off while it was written goes, and so does what another program made of the text, so that rows
+/// can be appended.
 void drop_torn_row(const std::filesystem::path& file) {
-    const std::string text = bytes_of_file(file);
-    const std::size_t complete = read_csv(text, file.string()).bytes;
-    if (complete != text.size()) std::filesystem::resize_file(file, complete);
+    const std::string text = text_of_file(file);
+    const std::string complete = text.substr(0, read_csv(text, file.string()).bytes);
+    if (complete != bytes_of_file(file)) write_file(file, complete);
 }
 
 }  // namespace

@@ -186,7 +186,7 @@ std::string line_of(const Row& r, Columns columns) {
 /// @param taken_in sees each row and the line that it begins in
 template <class Row, class Columns, class TakenIn>
 std::vector<Row> read_table(const std::filesystem::path& file, Columns columns, TakenIn taken_in) {
-    const std::string text = bytes_of_file(file);
+    const std::string text = text_of_file(file);
     const std::vector<csv_record> records = read_csv(text, file.string()).records;
     std::vector<Row> rows;
     if (records.empty()) return rows;

@@ -76,7 +76,7 @@ void sort_as_played(std::vector<row>& rows, const known_scenes& scenes, const st
 
 table_seal seal_of(const std::filesystem::path& table) {
     std::vector<std::string> lines;
-    for (const csv_record& record : read_csv(bytes_of_file(table), table.string()).records)
+    for (const csv_record& record : read_csv(text_of_file(table), table.string()).records)
         lines.push_back(csv_line(record.fields));
     std::ranges::sort(lines);
     std::string text;

@@ -40,7 +40,7 @@ sums sums_of(const std::filesystem::path& folder) {
 
 sums stated_sums(const std::filesystem::path& file) {
     sums all;
-    std::istringstream in(bytes_of_file(file));
+    std::istringstream in(text_of_file(file));
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;

@@ -39,6 +39,7 @@ public:
             [&](const std::string& path) { return arguments{"contacts", path, mesh_}; },
             [&](const std::string& path) { return arguments{"contacts", motion_, path}; },
             [&](const std::string& path) { return arguments{"classify", path}; },
+            [&](const std::string& path) { return arguments{"collide", mesh_, mesh_, "--poses", path}; },
             [&](const std::string& path) { return arguments{"compare", path, folder_.path()}; },
             [&](const std::string& path) { return arguments{"explain", path}; },
             [&](const std::string& path) { return arguments{"validate", path}; },
@@ -159,6 +160,78 @@ TEST_CASE("A pipe or a device where a file is expected is refused, not waited fo
                                          {"compare", path, path},
                                          {"scene", "mesh_pair", "--mesh", path, "--out", all.folder() / "x"}})
             require_refused(command, path);
+}
+
+TEST_CASE("A named pipe that nobody writes into ends what would wait for it") {
+    const inputs all;
+    const std::string pipe = all.folder() / "pipe.toml";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    const std::string mesh = all.folder() / "a.off";
+    for (const arguments& command :
+         {arguments{"classify", pipe}, {"run", pipe}, {"collide", mesh, mesh, "--poses", pipe}}) {
+        require_refused(command, pipe);
+        CHECK(run_program(command).err.ends_with("pipe.toml: is a pipe that nobody writes into\n"));
+    }
+    // Costs are read at the start of every command: nothing is waited for.
+    const std::filesystem::path costs = all.folder() / "aabblab/costs.toml";
+    std::filesystem::create_directory(all.folder() / "aabblab");
+    REQUIRE(mkfifo(costs.c_str(), 0600) == 0);
+    const program_result listed =
+        run_command({"env", "XDG_CONFIG_HOME=" + all.folder().path().string(), AABBLAB_UNDER_TEST, "list"});
+    CHECK(listed.status == 2);
+    CHECK(listed.err.find("costs.toml: is not a regular file; aabblab calibrate --reset removes it") !=
+          std::string::npos);
+}
+
+TEST_CASE("A pipe that is written into is read as a file is, however late the writer comes") {
+    const inputs all;
+    const std::string pipe = all.folder() / "pipe.txt";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    const auto shell = [&](const std::string& line) {
+        return run_command({"bash", "-c", line, AABBLAB_UNDER_TEST, pipe, all.folder() / "a.off"});
+    };
+    const std::string pair = "echo 0 0 0 1 0 0 0 1 0 .2 .2 -1 .2 .2 1 .3 .3 1";
+    CHECK(shell("(sleep 0.5; " + pair + " > \"$1\") & \"$0\" classify \"$1\"").out == "1\n");
+    CHECK(shell("(" + pair + " > \"$1\") & \"$0\" classify \"$1\"").out == "1\n");
+    CHECK(shell("(sleep 0.2; " + pair + "; sleep 0.2; " + pair + ") | \"$0\" classify -").out == "1\n1\n");
+    CHECK(shell("\"$0\" classify <(sleep 0.2; " + pair + ")").out == "1\n");
+    const program_result nothing = shell("\"$0\" classify <(true)");
+    CHECK(nothing.status == 0);
+    CHECK(nothing.out.empty());
+    CHECK(shell("\"$0\" collide \"$2\" \"$2\" --poses <(echo 1 0 0 0 0 1 0 0 0 0 1 0)").status == 0);
+}
+
+TEST_CASE("A file that cannot be read is refused in a sentence") {
+    const inputs all;
+    const temporary_folder& folder = all.folder();
+    const std::string unreadable = folder / "unreadable.toml";
+    std::filesystem::create_symlink("/proc/self/mem", unreadable);
+    const std::string mesh = folder / "a.off";
+    for (const arguments& command : {arguments{"classify", unreadable},
+                                     {"run", unreadable},
+                                     {"validate", unreadable},
+                                     {"collide", mesh, mesh, "--poses", unreadable}})
+        require_refused(command, "unreadable.toml");
+}
+
+TEST_CASE("A folder in the place of a file of results is refused in a sentence") {
+    const inputs all;
+    const temporary_folder& folder = all.folder();
+    const std::string config = folder / "c.toml";
+    const std::string out = folder / "out";
+    REQUIRE(run_program({"run", config, "--out", out}).status == 0);
+    for (const std::string name : {"results.csv", "manifest.json", "differences.csv"}) {
+        INFO(name);
+        const std::filesystem::path file = std::filesystem::path(out) / name;
+        const std::filesystem::path aside = folder / "aside";
+        const bool was_there = std::filesystem::exists(file);
+        if (was_there) std::filesystem::rename(file, aside);
+        std::filesystem::create_directory(file);
+        require_refused({"run", config, "--resume", "--out", out}, name);
+        if (name == "manifest.json") require_refused({"compare", out, out}, name);
+        std::filesystem::remove(file);
+        if (was_there) std::filesystem::rename(aside, file);
+    }
 }
 
 TEST_CASE("A name that is not UTF-8 names a file like any other, and is shown with its bytes") {

@@ -134,7 +134,7 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
         {"sed -i \"2s/.*/$(printf %070d 7)/\" \"$2\"\n",
          "the pairs of the external engine 'mine', line 2, '" + std::string(60, '0') + "…': expected frame,a,b"},
         {"sed -i '2s/.*/0\\x00,4/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '0\\x00,4': expected frame,a,b"},
+         "the pairs of the external engine 'mine': is no text: a NUL stands in line 2, and more follows"},
         {"sed -i '2s/.*/0,4/' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '0,4': expected frame,a,b"},
         {"sed -i '2s/.*//' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '': expected frame,a,b"},
         {"sed -i '2s/.*/0,1,x/' \"$2\"\n",

@@ -37,6 +37,10 @@ const std::string ply =
     "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
     "vertex_indices\nend_header\n";
 const std::string ply_text = "ply\nformat ascii 1.0\n" + ply;
+const std::string ply_strips = [] {
+    std::string text = ply_text;
+    return text.replace(text.find("element face"), 12, "element tristrips");
+}();
 const std::string ply_binary = "ply\nformat binary_little_endian 1.0\n" + ply;
 
 std::string ply_points(float last = 0) {
@@ -57,7 +61,8 @@ TEST_CASE("malformed text meshes are refused with the line") {
              {"a.off", "4OFF\n3 1 0\n", "a.off:1: only OFF in three dimensions is read"},
              {"a.off", "OFF BINARY\n", "a.off:1: expected the number of vertices, found 'BINARY'"},
              {"a.off", "OFF\n", "a.off: ends before the numbers of vertices and faces"},
-             {"a.off", "OFF\n3\n", "a.off:2: expected the number of faces, found the end of the line"},
+             {"a.off", "OFF\n3\n", "a.off: ends before the numbers of vertices and faces"},
+             {"a.off", "OFF\n3\n1\n", "a.off: ends before the number of edges"},
              {"a.off", "OFF\n-3 1 0\n", "a.off:2: expected the number of vertices, found '-3'"},
              {"a.off", "OFF\n99999999999999999999 1 0\n",
               "a.off:2: expected the number of vertices, found '99999999999999999999'"},
@@ -68,8 +73,10 @@ TEST_CASE("malformed text meshes are refused with the line") {
              {"a.off", "OFF\n3 1 0\n0 0 0x10\n", "a.off:3: expected three coordinates, found '0x10'"},
              {"a.off", "OFF\n3 1 0\n0 0 1,5\n", "a.off:3: expected three coordinates, found '1,5'"},
              {"a.off", "OFF\n3 1 0\n0 0 +-1\n", "a.off:3: expected three coordinates, found '+-1'"},
-             {"a.off", "OFF\n3 1 0\n0 0 nan\n", "a.off:3: the coordinate 'nan' is not finite"},
-             {"a.off", "OFF\n3 1 0\n0 -INF 0\n", "a.off:3: the coordinate '-INF' is not finite"},
+             {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n",
+              "a.off:4: vertex 1 has a coordinate that is not finite, and a face uses it"},
+             {"a.off", "OFF\n3 1 0\n0 -INF 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+              "a.off:3: vertex 0 has a coordinate that is not finite, and a face uses it"},
              {"a.off", "OFF\n3 1 0\n0 1e39 0\n", "a.off:3: the coordinate '1e39' is too large for a float"},
              {"a.off", "OFF\n3 1 0\n0 -1e999 0\n", "a.off:3: the coordinate '-1e999' is too large for a float"},
              {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 3\n",
@@ -77,12 +84,14 @@ TEST_CASE("malformed text meshes are refused with the line") {
              {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 -1\n", "a.off:6: expected a face of 3 corners, found '-1'"},
              {"a.off", "OFF\n3 1 0\n" + vertices + "4000000000 0 1 2\n",
               "a.off:6: expected a face of 4000000000 corners, found the end of the line"},
-             {"a.off", "OFF\n3 1 0\n" + vertices + "2 0 1\n", "a.off: the mesh has no triangles"},
+             {"a.off", "OFF\n3 1 0\n" + vertices + "2 0 1\n",
+              "a.off: the mesh has no triangles (1 face of fewer than three corners dropped)"},
              {"a.off", "OFF\n0 0 0\n", "a.off: the mesh has no triangles"},
              {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n3 2 1 0\n",
               "a.off:7: expected the end of the file after 3 vertices and 1 faces, found '3'"},
              {"a.obj", "v 0 0\n", "a.obj:1: expected three coordinates, found the end of the line"},
-             {"a.obj", "v 0 0 inf\n", "a.obj:1: the coordinate 'inf' is not finite"},
+             {"a.obj", "v 0 0 0\nv 0 0 inf\nf 1 2 1\n",
+              "a.obj:2: vertex 2 has a coordinate that is not finite, and a face uses it"},
              {"a.obj", "v 0 0 0\nf 1 1 0\n", "a.obj:2: a face uses vertex 0, but vertices are counted from 1"},
              {"a.obj", "v 0 0 0\nf 1 1 2\nv 1 1 1\nf 1 2 3\nf 1 2 2\n",
               "a.obj:4: a face uses vertex 3, but there are 2 vertices, counted from 1"},
@@ -91,7 +100,8 @@ TEST_CASE("malformed text meshes are refused with the line") {
               "a.obj:2: a face uses vertex 9999999999, but there are 1 vertices so far"},
              {"a.obj", "v 0 0 0\nf 1 x/1 1\n", "a.obj:2: expected the number of a vertex, found 'x/1'"},
              {"a.obj", "v 0 0 0\nf 1 1 \\\n", "a.obj: ends after a backslash"},
-             {"a.obj", "v 0 0 0\np 1\nl 1 1\n", "a.obj: the mesh has no triangles"},
+             {"a.obj", "v 0 0 0\np 1\nl 1 1\nl 1 1\n",
+              "a.obj: the mesh has no triangles (1 statement 'p' skipped, 2 statements 'l' skipped)"},
              {"a.ply", "plx\n", "a.ply:1: expected the word ply, found 'plx'"},
              {"a.ply", "ply\nformat ascii 1.0\n", "a.ply: ends inside the header"},
              {"a.ply", "ply\nend_header\n", "a.ply:2: the header has no format"},
@@ -111,6 +121,12 @@ TEST_CASE("malformed text meshes are refused with the line") {
               "a.ply:3: the corners of a face must have a whole type"},
              {"a.ply", "ply\nformat binary_little_endian 1.0\nelement dust 99999999999\nend_header\n",
               "a.ply:4: the element 'dust' has no properties"},
+             {"a.ply", ply_text + "0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n",
+              "a.ply:11: vertex 1 has a coordinate that is not finite, and a face uses it"},
+             {"a.ply", ply_strips + vertices + "3 0 1 -2\n",
+              "a.ply:13: a strip has corner -2; only -1 ends a part of one"},
+             {"a.ply", ply_strips + vertices + "3 0 1 4294967295\n",
+              "a.ply:13: a face uses vertex 4294967295, but there are 3 vertices, counted from 0"},
              {"a.ply", ply_text + "0 0 0\n1 0 0\n", "a.ply: ends after 2 of 3 elements 'vertex'"},
              {"a.ply", ply_text + "0 0 0\n1 0 0\n0 1\n",
               "a.ply:12: expected three coordinates, found the end of the line"},
@@ -131,7 +147,7 @@ TEST_CASE("malformed text meshes are refused with the line") {
               "a.stl:5: a facet has 2 vertices, not three"},
              {"a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n",
               "a.stl:6: a facet has more than three vertices"},
-             {"a.stl", "solid\nfacet\nvertex 0 0 nan\n", "a.stl:3: the coordinate 'nan' is not finite"},
+             {"a.stl", "solid\nfacet\nvertex 0 0 nan\n", "a.stl:3: the vertex has a coordinate that is not finite"},
          }) {
         CAPTURE(bytes);
         CHECK_THAT(error_of(folder.write(file, bytes)), EndsWith("/" + error));
@@ -152,7 +168,7 @@ TEST_CASE("malformed binary meshes are refused") {
              {"a.ply", lying + raw(1e300) + raw(1.0), "a.ply: vertex 0 has a coordinate that is too large for a float"},
              {"a.ply", ply_binary + ply_points().substr(1), "a.ply: ends in element 2 of 3 elements 'vertex'"},
              {"a.ply", ply_binary + ply_points(nan) + face + raw(2),
-              "a.ply: vertex 2 has a coordinate that is not finite"},
+              "a.ply: vertex 2 has a coordinate that is not finite, and a face uses it"},
              {"a.ply", ply_binary + ply_points() + face + raw(3),
               "a.ply: face 0: a face uses vertex 3, but there are 3 vertices, counted from 0"},
              {"a.ply", ply_binary + ply_points() + face + raw(-1), "a.ply: face 0 has a negative length or corner"},

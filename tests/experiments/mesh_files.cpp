@@ -1,7 +1,9 @@
 #include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh_bytes.hpp"
@@ -21,10 +23,10 @@ const std::vector<aabb::vec3f> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0
 using triangles = std::vector<std::array<std::uint32_t, 3>>;
 const triangles two = {{0, 1, 2}, {0, 2, 3}};
 
-void require_two_triangles(const aabblab::loaded_mesh& loaded) {
+void require_two_triangles(const aabblab::loaded_mesh& loaded, const std::string& report = {}) {
     REQUIRE(loaded.mesh.vertices == corners);
     REQUIRE(loaded.mesh.triangles == two);
-    REQUIRE(loaded.report.text().empty());
+    REQUIRE(loaded.report.text() == report);
 }
 
 std::string ply_header(const std::string& format, const std::string& coordinate, const std::string& list) {
@@ -75,6 +77,132 @@ TEST_CASE("OFF in its variants") {
     }
 }
 
+TEST_CASE("OFF is made of words, and lines mean something only where colours of faces end") {
+    for (const std::string& file : {
+             std::string("OFF 4 2 0 0 0 0 1 0 0 0 1 0 0 0 1 3 0 1 2 3 0 2 3"),
+             std::string("OFF\n4\n2\n# none\n0\n0\n0 0\n1 0 0 0\n1 0 0 0 1 3\n0 1 2 3 0\n2\n3\n"),
+             std::string("OFF\n4 2 0\n0 0 0 1 0 0 0 1 0 0 0 1\n3 0 1 2\n3 0 2 3\n"),
+             std::string("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0\n1 2\n3 0 2\n3\n"),
+             std::string("OFF\n4 2 0\n0 0\n0 1 0 0\n0 1 0 0 0 1\n3 0 1 2 255 0 0\n3 0\n2 3 0.5 0.5 0.5 1\n"),
+             std::string(
+                 "CNOFF 4 2 0\n0 0 0 9 9 9 9 0 0 1 1 0 0 9 9 9 9 0 0 1\n0 1 0 9 9 9 9 0 0 1 0 0 1 9 9 9 9 0 0 1\n"
+                 "3 0 1 2 3 0 2 3\n"),
+             std::string("STOFF\n4\n2 0\n0 0 0 .5 .5 1 0 0 .5 .5 0 1 0 .5 .5 0 0 1 .5 .5\n3 0 1 2 7\n3 0 2 3 7\n"),
+         }) {
+        CAPTURE(file);
+        require_two_triangles(read("a.off", file));
+    }
+    const auto error_of = [](const std::string& file) -> std::string {
+        try {
+            static_cast<void>(read("a.off", file));
+        } catch (const aabb::input_error& error) {
+            return std::string(error.what()).substr(std::string(error.what()).rfind('/') + 1);
+        }
+        return "no error";
+    };
+    // The 3 behind the first face is a colour and the next word a face of four corners, or it begins a face of three.
+    CHECK(error_of("OFF 5 2 0 0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n3 0 1 2 3\n3 0 2 3\n") == "no error");
+    CHECK(error_of("OFF 9 2 0 0 0 0 1 0 0 0 1 0 0 0 1 1 1 1 1 1 2 1 1 3 1 1 4 1 1 5\n3 0 1 2 7\n7 0 1 2 3 4 5 6\n") ==
+          "no error");
+    CHECK(error_of("OFF 9 2 0 0 0 0 1 0 0 0 1 0 0 0 1 1 1 1 1 1 2 1 1 3 1 1 4 1 1 5\n3 0 1 2 7\n3 0 1 2 4 5 6\n") ==
+          "a.off: can be read in two ways, as numbers behind the corners of a face are colours or more faces; expected "
+          "each vertex and each face on a line of its own");
+    // A number that is missing does not shift all others.
+    CHECK(error_of("OFF\n3 2 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n3 2 1 0\n") ==
+          "a.off:4: expected three coordinates, found the end of the line");
+    CHECK(error_of("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 3 1 2 0 0 0\n") ==
+          "a.off:4: expected three coordinates, found the end of the line");
+    CHECK(error_of("OFF 3 1 0 0 0 0 1 0 0 0 1 x 3 0 1 2") == "a.off:1: expected three coordinates, found 'x'");
+    CHECK(error_of("OFF 3 1 0\n0 0\n0 1 0\n0 0 1 0 2 0 1 2\n") == "a.off:4: expected at least three corners of a face");
+    CHECK(error_of("OFF 3 1 0\n0 0\n0 1 0\n0 0 1 0 3 0 1\n") == "a.off: ends after 0 of 1 faces");
+}
+
+TEST_CASE("OBJ: faces of its first versions are read, and statements that may make surface are told") {
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    require_two_triangles(read("a.obj", vertices + "f 1 2 3\nfo 1 3 4\n"));
+    require_two_triangles(
+        read("a.obj", vertices + "f 1 2 3\nf 1 3 4\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 \\\n3 4\nparm u 0 "
+                                 "1\nend\nl 1 2\nl 2 3\nF 1 2 4\n"),
+        "1 statement 'surf' skipped, 2 statements 'l' skipped, 1 statement 'F' skipped");
+    std::string many = vertices + "f 1 2 3\nf 1 3 4\n";
+    for (char name = 'a'; name < 'a' + 10; ++name) many += "x" + std::string(1, name) + " 1\n";
+    const std::string report = read("a.obj", many).report.text();
+    CHECK(report.ends_with("1 statement 'xh' skipped, 2 of other names skipped"));
+}
+
+TEST_CASE("A vertex that no face uses may be NaN or infinite, keeps its number and is in no box") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::string ply =
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    const std::string values = raw(nan) + raw(-infinity) + raw(0.0F) + raw(2.0F) + raw(3.0F) + raw(4.0F) + raw(5.0F) +
+                               raw(3.0F) + raw(4.0F) + raw(2.0F) + raw(5.0F) + raw(4.0F) + raw(std::uint8_t{3}) +
+                               raw(1) + raw(2) + raw(3);
+    const std::string rest = "2 3 4\n5 3 4\n2 5 4\n";
+    for (const auto& [name, bytes] : {
+             std::pair<std::string, std::string>{"a.off", "OFF\n4 1 0\nnan -inf 0\n" + rest + "3 1 2 3\n"},
+             {"b.off", "OFF 4 1 0 -nan(ind) INFINITY 0 " + rest + "3 1 2 3\n"},
+             {"a.obj", "v NaN nan NAN\nv 2 3 4\nv 5 3 4\nv 2 5 4\nf 2 3 4\n"},
+             {"a.ply", "ply\nformat ascii 1.0\n" + ply + "nan 0 +inf\n" + rest + "3 1 2 3\n"},
+             {"b.ply", "ply\nformat binary_little_endian 1.0\n" + ply + values},
+         }) {
+        INFO(name);
+        const aabblab::loaded_mesh loaded = read(name, bytes);
+        CHECK(loaded.mesh.triangles == triangles{{1, 2, 3}});
+        CHECK(loaded.mesh.vertices == std::vector<aabb::vec3f>{{2, 3, 4}, {2, 3, 4}, {5, 3, 4}, {2, 5, 4}});
+        CHECK(loaded.report.text() == "1 vertex with NaN or infinity, which no face uses, put elsewhere");
+    }
+}
+
+TEST_CASE("PLY: strips of triangles, told from faces by nothing but their form") {
+    const auto file = [](const std::string& elements, const std::string& values) {
+        return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+               elements + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + values;
+    };
+    const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+    const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    const auto triangles_of = [&](const std::string& elements, const std::string& values) {
+        return read("a.ply", file(elements, values)).mesh.triangles;
+    };
+    // All face one way: every other one is turned, beginning anew behind a -1.
+    CHECK(triangles_of(strips, "4 0 1 2 3\n") == triangles{{0, 1, 2}, {2, 1, 3}});
+    CHECK(triangles_of(strips, "8 0 1 2 3 -1 0 1 3\n") == triangles{{0, 1, 2}, {2, 1, 3}, {0, 1, 3}});
+    CHECK(triangles_of(strips, "9 -1 0 1 -1 0 1 2 -1 -1\n") == triangles{{0, 1, 2}});
+    CHECK(triangles_of(faces + strips, "3 3 2 1\n3 0 1 2\n") == triangles{{3, 2, 1}, {0, 1, 2}});
+    CHECK(triangles_of(strips + faces, "3 0 1 2\n3 3 2 1\n") == triangles{{0, 1, 2}, {3, 2, 1}});
+    // What joins two parts without a -1 is no surface, but counts for the turn.
+    const aabblab::loaded_mesh joined = read("a.ply", file(strips, "8 0 1 2 2 1 1 2 3\n"));
+    CHECK(joined.mesh.triangles == triangles{{0, 1, 2}, {2, 1, 3}});
+    CHECK(joined.report.text() == "4 triangles of strips that repeat a corner left out");
+    const std::string binary =
+        "ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+        strips + "end_header\n";
+    std::string values;
+    for (const aabb::vec3f& v : corners)
+        for (int k = 0; k < 3; ++k) values += raw(v[k], true);
+    values += raw(8, true);
+    for (const int corner : {0, 1, 2, 3, -1, 0, 1, 3}) values += raw(corner, true);
+    CHECK(read("a.ply", binary + values).mesh.triangles == triangles{{0, 1, 2}, {2, 1, 3}, {0, 1, 3}});
+}
+
+TEST_CASE("STL: however many vertices a text or binary file has, equal ones become one") {
+    constexpr int most = 3000;
+    std::string binary = stl_header(2 * most);
+    for (int turn = 0; turn < 2; ++turn)
+        for (int t = 0; t < most; ++t) {
+            const auto x = static_cast<float>(t);
+            binary += stl_triangle({x, 0, 0, x, 1, 0, 0, x, 1});
+        }
+    const aabb::mesh mesh = read("a.stl", binary).mesh;
+    REQUIRE(mesh.triangle_count() == 2 * most);
+    CHECK(mesh.vertices.size() == 3 * most);
+    for (std::uint32_t t = 0; t < most; ++t) {
+        CHECK(mesh.triangles[t] == mesh.triangles[t + most]);
+        CHECK(mesh.triangle(t)[2] == aabb::vec3f{0, static_cast<float>(t), 1});
+    }
+}
+
 TEST_CASE("OBJ: corners in all their forms, negative ones, other statements") {
     const std::string vertices = "v 0 0 0\nv 1 0 0 1.0\nv 0 1 0\nv 0 0 1 0.2 0.3 0.4\n";
     for (const std::string& file : {
@@ -91,15 +219,20 @@ TEST_CASE("OBJ: corners in all their forms, negative ones, other statements") {
 }
 
 TEST_CASE("PLY: text and binary, any scalar types, other properties and elements") {
+    const std::string camera = "1 element 'camera' skipped";
     require_two_triangles(
         read("a.ply", ply_header("ascii", "float", "uchar int vertex_indices") +
-                          "9 0 0 0 1 5\n9 1 0 0 0\n9 0 1 0 2 1 2\n9 0 0 1 0\n3 0 1 2 -7\n3 0 2 3 -7\n0.5\n"));
+                          "9 0 0 0 1 5\n9 1 0 0 0\n9 0 1 0 2 1 2\n9 0 0 1 0\n3 0 1 2 -7\n3 0 2 3 -7\n0.5\n"),
+        camera);
     require_two_triangles(read("a.ply", ply_header("binary_little_endian", "float32", "uint8 int32 vertex_index") +
-                                            ply_body<float, std::uint8_t, std::int32_t>(false)));
+                                            ply_body<float, std::uint8_t, std::int32_t>(false)),
+                          camera);
     require_two_triangles(read("a.ply", ply_header("binary_big_endian", "double", "int uint8 vertex_indices") +
-                                            ply_body<double, std::int32_t, std::uint8_t>(true)));
+                                            ply_body<double, std::int32_t, std::uint8_t>(true)),
+                          camera);
     require_two_triangles(read("a.ply", ply_header("binary_little_endian", "short", "ushort uint vertex_indices") +
-                                            ply_body<std::int16_t, std::uint16_t, std::uint32_t>(false) + "\r\n"));
+                                            ply_body<std::int16_t, std::uint16_t, std::uint32_t>(false) + "\r\n"),
+                          camera);
 }
 
 TEST_CASE("PLY: faces may come before vertices") {

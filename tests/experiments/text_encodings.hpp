@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+/// A text as another system or program writes it.
+struct encoded_text {
+    std::string how;
+    std::string bytes;
+};
+
+[[nodiscard]] inline std::string with_line_ends(const std::string& text, const std::string& end) {
+    std::string other;
+    for (const char c : text) other += c == '\n' ? end : std::string(1, c);
+    return other;
+}
+
+/// ASCII in two bytes a character, or four.
+[[nodiscard]] inline std::string widened(const std::string& ascii, std::size_t zeros_before, std::size_t zeros_behind) {
+    std::string wide;
+    for (const char c : ascii) wide += std::string(zeros_before, '\0') + c + std::string(zeros_behind, '\0');
+    return wide;
+}
+
+/// Ways to write a text, whose lines end in line feeds, that leave no doubt about what it says.
+[[nodiscard]] inline std::vector<encoded_text> unambiguous_encodings(const std::string& text) {
+    const std::string mark = "\xef\xbb\xbf";
+    return {
+        {"byte order mark", mark + text},
+        {"carriage returns and line feeds", with_line_ends(text, "\r\n")},
+        {"two carriage returns and a line feed", with_line_ends(text, "\r\r\n")},
+        {"carriage returns alone", with_line_ends(text, "\r")},
+        {"UTF-16, little-endian", "\xff\xfe" + widened(text, 0, 1)},
+        {"UTF-16, big-endian", "\xfe\xff" + widened(text, 1, 0)},
+        {"a NUL behind it", text + std::string(1, '\0')},
+        {"a block of NULs behind it", text + std::string(5000, '\0')},
+        {"Ctrl-Z behind it", text + "\x1a"},
+        {"a line with Ctrl-Z behind it", text + "\x1a\r\n"},
+        {"a mark, carriage returns and Ctrl-Z", mark + with_line_ends(text, "\r") + "\x1a"},
+        {"UTF-16 with carriage returns and a NUL behind it",
+         "\xff\xfe" + widened(with_line_ends(text, "\r") + std::string(1, '\0'), 0, 1)},
+    };
+}
