@@ -391,7 +391,8 @@ void add_collide(const command_parser& program, int& status) {
     auto request = std::make_shared<collide_request>();
     command
         .add_option("A", request->a,
-                    "Mesh file, or a shape as in torus_knot:triangles=20000; with :order=sah behind a file, or "
+                    "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; with "
+                    ":order=sah behind a file, or "
                     ",order=sah behind a shape's parameters, its triangles "
                     "stand in the order of a tree's leaves")
         .required()

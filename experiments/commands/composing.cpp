@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,6 +92,14 @@ void require_no_mesh(const std::string& out, const std::vector<std::string>& mes
     for (const std::string& name : names)
         if (std::filesystem::weakly_canonical(name) == std::filesystem::weakly_canonical(out))
             throw aabb::input_error(out + " is the name of a mesh that this command reads from the data folder");
+}
+
+void note_left_out(const std::vector<std::string>& names, const std::filesystem::path& folder) {
+    const std::vector<std::string> endings = mesh_endings();
+    for (const std::string& name : std::set(names.begin(), names.end()))
+        if (std::ranges::find(endings, mesh_ending_of(name_without_order(name, folder))) != endings.end())
+            if (const std::string left_out = make_mesh(name, folder).report.left_out(); !left_out.empty())
+                note(name + ": " + left_out);
 }
 
 std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names) {

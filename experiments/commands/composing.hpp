@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,10 @@ private:
 /// "median, mean, …", for help texts.
 [[nodiscard]] std::string names_in_line(aabb::strategy_kind kind);
 
-/// Meshes by the names that the user gave them; what was fanned, dropped or rounded is said.
+/// Reads those meshes that are files, and says what of each is left out. Names are looked for as scenes do.
+void note_left_out(const std::vector<std::string>& names, const std::filesystem::path& folder = {});
+
+/// Meshes by the names that the user gave them; what was done to them is said.
 [[nodiscard]] std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names);
 
 /// Refuses to write over a mesh that the same command reads, here or in the data folder.

@@ -201,7 +201,8 @@ void add_contacts(const command_parser& program, int&) {
         .type_name("");
     command
         .add_option("MESH", request->meshes,
-                    "Mesh files or shapes; object i is mesh i, from the first again when they run out")
+                    "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i is mesh i, from the first again when "
+                    "they run out")
         .required()
         .type_name("");
     request->global.add_to(command);

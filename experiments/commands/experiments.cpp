@@ -16,6 +16,8 @@
 #include "output.hpp"
 #include "process.hpp"
 
+// Imports, so they come last.
+#include "composing.hpp"
 #include "experiments.hpp"
 
 import aabb.policy;
@@ -160,6 +162,10 @@ std::vector<std::string> play_afresh(const experiment& e, const std::filesystem:
 experiment open_experiment(const std::string& config, bool quick) {
     experiment e = read_experiment(config, quick ? experiment_size::quick : experiment_size::full);
     for (const std::string& sentence : e.notes) note(sentence);
+    std::vector<std::string> meshes;
+    for (const scene_choice& scene : e.scenes) meshes.insert(meshes.end(), scene.meshes.begin(), scene.meshes.end());
+    // All scenes of a config have its folder.
+    note_left_out(meshes, e.scenes.front().folder);
     return e;
 }
 

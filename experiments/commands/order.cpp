@@ -60,7 +60,7 @@ void add_order(const command_parser& program, int&) {
     const command_parser command =
         program.add_command("order", "Write a mesh in the order of a tree's leaves, for smaller trees");
     auto request = std::make_shared<order_request>();
-    command.add_option("MESH", request->mesh, "Mesh file or shape").required().type_name("");
+    command.add_option("MESH", request->mesh, "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape").required().type_name("");
     command
         .add_option(
             "--build", request->build,

@@ -209,6 +209,7 @@ void write_scene(const scene_request& request) {
     std::optional<output_file> picture;
     if (request.picture) picture.emplace(*request.picture);
     surveyed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
+    note_left_out(choice.meshes);
     {
         progress shown("frames played", scene.frames());
         if (request.out) {
@@ -266,7 +267,9 @@ void add_scene(const command_parser& program, int&) {
     for (const std::string& name : scene_names()) names += (names.empty() ? "" : ", ") + name;
     command.add_option("NAME", request->kind, "One of " + names).required().type_name("");
     add_parameters(command, *request);
-    command.add_option("--mesh", request->meshes, "Mesh file or shape, for scenes of meshes; may be repeated")
+    command
+        .add_option("--mesh", request->meshes,
+                    "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape, for scenes of meshes; may be repeated")
         .one_value_at_a_time()
         .type_name("MESH");
     command.add_option("--seed", request->seed, "Whole number: the same seed gives the same scene (default 1)")

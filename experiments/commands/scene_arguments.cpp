@@ -5,7 +5,8 @@
 #include <system_error>
 #include <vector>
 
-// Imports, so it comes last.
+// Imports, so they come last.
+#include "composing.hpp"
 #include "scene_arguments.hpp"
 
 import aabb.base;
@@ -40,8 +41,11 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
             throw aabb::input_error("a recording is a scene of its own, so give " + first + " alone");
         return {"recording", {{"file", first}}, {}, std::nullopt, {}};
     }
-    if (!names_mesh(first) && arguments.size() > 1)
-        return {"motion", {{"file", first}}, {arguments.begin() + 1, arguments.end()}, std::nullopt, {}};
+    if (!names_mesh(first) && arguments.size() > 1) {
+        const std::vector<std::string> meshes(arguments.begin() + 1, arguments.end());
+        note_left_out(meshes);
+        return {"motion", {{"file", first}}, meshes, std::nullopt, {}};
+    }
     if (std::error_code ignored; !names_mesh(first) && std::filesystem::is_regular_file(first, ignored))
         throw aabb::input_error(first +
                                 " is neither a recording (.aabbs) nor a mesh; if it is a motion file, its "
@@ -51,6 +55,7 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
                                 " is a mesh");
     // Says what is wrong with a name that is neither a mesh nor anything else.
     for (const std::string& name : arguments) (void)make_mesh(name);
+    note_left_out(arguments);
     return {"mesh_pair", {{"normalise", "no"}}, arguments, 1, {}};
 }
 
