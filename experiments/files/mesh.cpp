@@ -18,6 +18,7 @@ import aabb.policy;
 import :file_text;
 import :loaded_mesh;
 import :readers;
+import :text_decoder;
 
 namespace aabblab {
 
@@ -29,7 +30,12 @@ struct format {
     bool (*is_text)(std::string_view bytes);
 };
 constexpr auto always = [](std::string_view) { return true; };
-constexpr auto is_gltf_text = [](std::string_view bytes) { return !bytes.starts_with("glTF"); };
+/// JSON, as far as a text with a mark at its start tells; what is neither that nor binary is refused by the reader.
+constexpr auto is_gltf_text = [](std::string_view bytes) {
+    const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    return text_encoding_of(bytes) != text_encoding::utf8 || bytes.starts_with("\xef\xbb\xbf") ||
+           bytes.substr(begin).starts_with('{');
+};
 constexpr format formats[] = {{".off", read_off, always},         {".obj", read_obj, always},
                               {".ply", read_ply, is_text_ply},    {".stl", read_stl, is_text_stl},
                               {".gltf", read_gltf, is_gltf_text}, {".glb", read_gltf, is_gltf_text}};
