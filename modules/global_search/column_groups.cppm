@@ -30,9 +30,10 @@ struct column_group {
 /// the threads.
 class column_groups {
 public:
-    /// So many groups, in the proportion of the columns; no more than those on their axes. Where they are too few, as
-    /// of boxes along a line, groups are cut along them instead of across the axis that has fewer.
-    [[nodiscard]] static column_plan coarser(column_plan plan, double groups) {
+    /// So many groups as are planned, in the proportion of the columns; no more than those on their axes. Where they
+    /// are too few, as of boxes along a line, groups are cut along them instead of across the axis that has fewer.
+    [[nodiscard]] static column_plan coarser(column_plan plan) {
+        const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
         const std::uint32_t most = plan.across[1 - fewer];
         const auto share = [](double n, std::uint32_t greatest) {
@@ -92,19 +93,31 @@ public:
 
     /// Boxes in groups, each as often as it is in one.
     [[nodiscard]] std::size_t copies() const noexcept { return starts_.back(); }
+    /// Pairs of boxes within groups, each box with itself, and in either order.
+    [[nodiscard]] double pairs() const noexcept {
+        double sum = 0;
+        for (std::size_t g = 0; g + 1 < starts_.size(); ++g) {
+            const auto n = static_cast<double>(starts_[g + 1] - starts_[g]);
+            sum += n * n;
+        }
+        return sum;
+    }
     /// Boxes in the group that has most.
     [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
 
-    /// The region of a group; what begins or ends beyond it, does so elsewhere.
-    [[nodiscard]] box region(std::uint32_t g) const noexcept {
-        box b = everywhere;
+    /// The region of a group of boxes that lie within these bounds; what begins or ends beyond it, does so elsewhere.
+    [[nodiscard]] box region(std::uint32_t g, const box& within) const noexcept {
+        box b = within;
         const std::uint32_t at[2] = {g % plan_.across[0], g / plan_.across[0]};
         for (std::size_t i = 0; i < 2; ++i) {
             const int k = plan_.axis_across(i);
             if (plan_.scale[k] <= 0) continue;
             const float width = 65'536.0F / static_cast<float>(plan_.across[i]) / plan_.scale[k];
-            if (at[i] > 0) b.min[k] = plan_.origin[k] + static_cast<float>(at[i]) * width;
-            if (at[i] + 1 < plan_.across[i]) b.max[k] = plan_.origin[k] + static_cast<float>(at[i] + 1) * width;
+            const auto border = [&](std::uint32_t i) {
+                return std::clamp(plan_.origin[k] + static_cast<float>(i) * width, within.min[k], within.max[k]);
+            };
+            if (at[i] > 0) b.min[k] = border(at[i]);
+            if (at[i] + 1 < plan_.across[i]) b.max[k] = border(at[i] + 1);
         }
         return b;
     }

@@ -1,7 +1,6 @@
 module;
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,7 +37,7 @@ public:
         block_ = {boxes, ids, {}, {}, plan.axis};
         plan_ = plan;
         const bool in_buckets = BucketSort<Sort> && !by_keys;
-        bucket_bits_ = in_buckets ? bits_for(boxes.size(), plan.columns()) : 0;
+        bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;
         if (const fill_result taken = take(most_copies); taken != fill_result::whole) return taken;
         const std::uint32_t all = make_room();
         distribute();
@@ -74,12 +73,6 @@ private:
         std::uint32_t index;  ///< with bits of `later_on`
         std::uint32_t buckets;
     };
-
-    /// About as many buckets as a column has boxes, and at least a vector of them.
-    [[nodiscard]] static std::uint32_t bits_for(std::size_t boxes, std::uint32_t columns) noexcept {
-        const auto each = static_cast<std::uint32_t>(std::max<std::size_t>(width, boxes / columns));
-        return std::min(16U, static_cast<std::uint32_t>(std::bit_width(each - 1)));
-    }
 
     /// A few boxes at a time, so that what is known of them is still in the nearest cache when they are counted.
     [[nodiscard]] fill_result take(std::size_t most_copies) {

@@ -1,6 +1,7 @@
 module;
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,6 +23,7 @@ struct column_plan {
     int axis = 0;                               ///< along which columns run
     std::array<std::uint32_t, 2> across{1, 1};  ///< how many columns on the next axis and the one after it
     std::uint32_t most_along = 1;               ///< how many boxes fit one behind the other along them
+    double groups = 1;  ///< of neighbours, about, into which boxes are put before each is cut for itself; 1: none
     vec3f origin{};
     vec3f scale{};  ///< to the whole numbers
 
@@ -30,12 +32,22 @@ struct column_plan {
     }
     [[nodiscard]] constexpr std::uint32_t columns() const noexcept { return across[0] * across[1]; }
 
-    /// Whole numbers over these bounds. Where an axis has no extent, or more than a float holds, all are 0.
+    /// About as many buckets as a column of so many boxes has of them, and at least a vector of them: 2 to this power.
+    [[nodiscard]] constexpr std::uint32_t bucket_bits(std::size_t boxes) const noexcept {
+        const auto each = static_cast<std::uint32_t>(std::max<std::size_t>(simd::width, boxes / columns()));
+        return std::min(16U, static_cast<std::uint32_t>(std::bit_width(each - 1)));
+    }
+
+    /// Whole numbers over these bounds. Where an axis has no extent all are 0.
     constexpr void fit(const box& bounds) noexcept {
         origin = bounds.min;
         for (int k = 0; k < 3; ++k) {
             const float extent = bounds.max[k] - bounds.min[k];
-            scale[k] = extent > 0 && extent <= std::numeric_limits<float>::max() ? 65'536.0F / extent : 0.0F;
+            // What overflows here does so where `whole` takes it for the last number, which is no less.
+            if (extent > std::numeric_limits<float>::max())
+                scale[k] = static_cast<float>(65'536 / (double{bounds.max[k]} - double{bounds.min[k]}));
+            else
+                scale[k] = extent > 0 ? 65'536.0F / extent : 0.0F;
         }
     }
 

@@ -63,8 +63,7 @@ public:
         if (is_anew) planned_bounds_ = bounds;
         planned_ = 0;
         age_ = is_anew ? 0 : age_ + 1;
-        const bool valid = is_grouped(n) ? distribute(is_anew, counters) : fill(is_anew, counters);
-        if (!valid) require_valid(boxes);
+        if (!cut(is_anew, counters)) require_valid(boxes);
         planned_ = n;
         add_up(counters);
     }
@@ -78,7 +77,7 @@ public:
         if (is_few_)
             few_.search(pairs, counters);
         else if (groups_.size() == 0)
-            workers_.front().own.sweep(partition_, present_, everywhere, plan_, pairs);
+            workers_.front().own.sweep(partition_, present_, everywhere, cut_.columns, pairs);
         else
             search_groups(pairs);
         add_up(counters);
@@ -88,13 +87,13 @@ public:
     /// Whether the boxes of the frame were so few that none was sorted or cut.
     [[nodiscard]] bool is_uncut() const noexcept { return is_few_; }
     /// Of the last frame that was cut: into groups of columns where there are any.
-    [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? group_plan_ : plan_.plan; }
+    [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? cut_.grid : cut_.columns.plan; }
     [[nodiscard]] bool is_in_groups() const noexcept { return groups_.size() > 0; }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
-        return bytes_of(partition_) + bytes_of(groups_) + bytes_of(group_plans_) + bytes_of(present_boxes_) +
+        return bytes_of(partition_) + bytes_of(groups_) + bytes_of(cut_) + bytes_of(present_boxes_) +
                bytes_of(present_ids_) + bytes_of(few_) + bytes_of(at_rest_) +
                sum_of([](const worker& w) { return w.own.column_bytes(); });
     }
@@ -136,8 +135,7 @@ private:
 
     [[nodiscard]] bool is_stale(std::size_t n) const noexcept {
         const std::size_t change = n > planned_ ? n - planned_ : planned_ - n;
-        return planned_ == 0 || age_ + 1 == frames_a_plan || 8 * change > planned_ ||
-               is_grouped(n) != (groups_.size() > 0);
+        return planned_ == 0 || age_ + 1 == frames_a_plan || 8 * change > planned_;
     }
 
     /// Of a few of the boxes, the same ones in every frame that has as many.
@@ -165,38 +163,28 @@ private:
         return false;
     }
 
-    [[nodiscard]] bool is_grouped(std::size_t n) const noexcept { return partition_.group(n) < n; }
-
-    [[nodiscard]] bool fill(bool is_anew, Counters& counters) {
+    /// @returns whether all boxes are valid.
+    [[nodiscard]] bool cut(bool is_anew, Counters& counters) {
+        const auto plan = [&] {
+            age_ = 0;
+            kept_plan planned = workers_.front().own.planned(partition_, present_, everywhere);
+            const std::size_t n = present_.boxes.size();
+            const double by_size = static_cast<double>(n) / static_cast<double>(partition_.group(n));
+            planned.plan.groups = std::max(planned.plan.groups, by_size);
+            return planned;
+        };
+        if (is_anew) {
+            cut_.columns = plan();
+            cut_.in_groups = false;
+        }
+        const fill_result result = put_into_groups(present_, cut_, plan, groups_, threads_);
+        if (result == fill_result::whole) counters.add(work::moves, groups_.copies());
+        if (result != fill_result::crowded) return result == fill_result::whole;
         groups_.clear();
         auto& own = workers_.front().own;
-        if (is_anew) plan_ = own.planned(partition_, present_, everywhere);
-        if (!own.fill(partition_, present_, everywhere, plan_)) return false;
-        if (plan_.plan.columns() > 1) counters.add(work::subset_copies, own.copies());
+        if (!own.fill(partition_, present_, everywhere, cut_.columns)) return false;
+        if (cut_.columns.plan.columns() > 1) counters.add(work::subset_copies, own.copies());
         return true;
-    }
-
-    /// Where groups that were planned before do not serve, by others; where those do not either, by none.
-    [[nodiscard]] bool distribute(bool is_anew, Counters& counters) {
-        for (;; is_anew = true) {
-            if (is_anew) plan_groups();
-            const std::size_t most = is_anew ? present_.boxes.size() : 2 * planned_fullest_ + 4096;
-            const fill_result result = groups_.distribute(present_.boxes, present_.ids, group_plan_, most, threads_);
-            if (result == fill_result::invalid) return false;
-            if (result == fill_result::whole) break;
-            if (is_anew) return fill(true, counters);
-        }
-        if (is_anew) planned_fullest_ = groups_.fullest();
-        counters.add(work::moves, groups_.copies());
-        return true;
-    }
-
-    void plan_groups() {
-        age_ = 0;
-        const std::size_t n = present_.boxes.size();
-        group_plan_ = column_groups::coarser(partition_.plan(present_.boxes, everywhere),
-                                             static_cast<double>(n) / static_cast<double>(partition_.group(n)));
-        group_plans_.assign(group_plan_.columns(), {});
     }
 
     void search_groups(std::vector<index_pair>& pairs) {
@@ -239,15 +227,7 @@ private:
     }
 
     void search_group(std::uint32_t g, worker& w, std::vector<index_pair>& pairs) {
-        const column_group group = groups_.group(g);
-        if (group.boxes.size() < 2) return w.own.count(1, group.boxes.size());
-        const box region = groups_.region(g);
-        kept_plan& kept = group_plans_[g];
-        if (kept.most_tests == 0) kept = w.own.planned(partition_, group, region);
-        // They are valid: `distribute` looked at them.
-        static_cast<void>(w.own.fill(partition_, group, region, kept));
-        w.own.sweep(partition_, group, region, kept, pairs);
-        if (groups_.size() > 1 || kept.plan.columns() > 1) w.own.count(0, w.own.copies());
+        w.own.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
     }
 
     void add_up(Counters& counters) {
@@ -277,11 +257,8 @@ private:
     std::vector<std::uint32_t> present_ids_;
     few_boxes few_;
     bool is_few_ = false;
-    kept_plan plan_;  // of all, where there are no groups
-    column_plan group_plan_;
-    std::size_t planned_fullest_ = 0;  // boxes in the fullest group when those were planned
+    kept_cut cut_;
     column_groups groups_;
-    std::vector<kept_plan> group_plans_;
     std::vector<pairs_of_group> found_;
     std::size_t planned_ = 0;  // boxes of the frame before; 0 without a plan
     unsigned age_ = 0;         // frames since the plan

@@ -2,6 +2,7 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -27,6 +28,61 @@ struct kept_plan {
     std::uint64_t most_tests = 0;  ///< of a vector, with which a sweep still serves; 0 before the first one
 };
 
+/// How boxes are cut that may be in groups, and how those of each group are.
+struct kept_cut {
+    kept_plan columns;  ///< where there are no groups
+    bool in_groups = false;
+    column_plan grid;         ///< of groups
+    std::size_t fullest = 0;  ///< how many boxes the fullest group had when the grid was planned
+    std::vector<kept_cut> groups;
+
+    [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.most_tests > 0; }
+
+    /// Forgets how groups were cut.
+    void begin_groups(std::size_t in_fullest) {
+        if (groups.size() < grid.columns()) groups.resize(grid.columns());
+        for (kept_cut& g : groups) g.columns = {}, g.in_groups = false;
+        in_groups = true;
+        fullest = in_fullest;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t sum = bytes_of(groups);
+        for (const kept_cut& g : groups) sum += bytes_of(g);
+        return sum;
+    }
+};
+
+/// Puts boxes into groups where these are planned; where earlier groups do not serve, into others.
+///
+/// Groups are put into groups in turn, so these must come to an end: of all pairs of boxes, at least an eighth are in
+/// no group together. Then there is no more to do, over all levels, than eight times what each against each would take.
+/// @returns crowded where there are no groups.
+template <class Plan>
+[[nodiscard]] fill_result put_into_groups(const column_group& boxes, kept_cut& kept, Plan plan, column_groups& groups,
+                                          worker_threads& threads) {
+    const auto distribute = [&](std::size_t most) {
+        return groups.distribute(boxes.boxes, boxes.ids, kept.grid, most, threads);
+    };
+    if (kept.in_groups) {
+        const fill_result result = distribute(2 * kept.fullest + 4096);
+        if (result != fill_result::crowded) return result;
+        kept.in_groups = false;
+        kept.columns = plan();
+    }
+    if (kept.columns.plan.groups <= 1) return fill_result::crowded;
+    kept.grid = column_groups::coarser(kept.columns.plan);
+    fill_result result = distribute(std::numeric_limits<std::size_t>::max());
+    if (result == fill_result::invalid) return result;
+    const auto n = static_cast<double>(boxes.boxes.size());
+    if (result == fill_result::whole && 8 * groups.pairs() > 7 * n * n) result = fill_result::crowded;
+    if (result == fill_result::whole)
+        kept.begin_groups(groups.fullest());
+    else
+        kept.columns.plan.groups = 1;
+    return result;
+}
+
 /// Cuts a group of boxes into columns and sweeps them: what one thread has for itself.
 ///
 /// A plan comes from a few boxes of an earlier frame. Whether it serves these is seen while it is used: once boxes have
@@ -41,6 +97,28 @@ public:
     /// What lies within the bounds counts, where a plan is made.
     [[nodiscard]] static kept_plan planned(const Partition& partition, const column_group& group, const box& within) {
         return {partition.plan(group.boxes, within), false, 0};
+    }
+
+    /// Finds the pairs of a group of valid boxes, by groups of its own where these are planned.
+    void search(const Partition& partition, const column_group& group, const box& within, kept_cut& kept,
+                std::vector<index_pair>& pairs, std::size_t depth = 0) {
+        if (group.boxes.size() < 2) return count(1, group.boxes.size());
+        const auto plan = [&] { return planned(partition, group, within); };
+        if (!kept.is_planned()) kept.columns = plan();
+        if (kept.in_groups || kept.columns.plan.groups > 1) {
+            while (levels_.size() <= depth) levels_.emplace_back();
+            column_groups& groups = levels_[depth];
+            worker_threads alone(1);
+            if (put_into_groups(group, kept, plan, groups, alone) == fill_result::whole) {
+                counters_.add(work::moves, groups.copies());
+                for (std::uint32_t g = 0; g < groups.size(); ++g)
+                    search(partition, groups.group(g), groups.region(g, within), kept.groups[g], pairs, depth + 1);
+                return;
+            }
+        }
+        static_cast<void>(fill(partition, group, within, kept.columns));
+        sweep(partition, group, within, kept.columns, pairs);
+        count(0, copies());
     }
 
     /// @returns whether all boxes are valid; if not, there is nothing to sweep.
@@ -93,7 +171,11 @@ public:
     [[nodiscard]] auto take_counters() { return std::exchange(counters_, {}); }
 
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return bytes_of(sort_); }
-    [[nodiscard]] std::size_t column_bytes() const noexcept { return bytes_of(columns_); }
+    [[nodiscard]] std::size_t column_bytes() const noexcept {
+        std::size_t sum = bytes_of(columns_);
+        for (const column_groups& groups : levels_) sum += bytes_of(groups);
+        return sum;
+    }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept { return bytes_of(sweep_); }
 
 private:
@@ -109,6 +191,7 @@ private:
     [[no_unique_address]] Counters counters_;
     column_lists columns_;
     bool is_filled_ = false;
+    std::deque<column_groups> levels_;  // of groups within groups
 };
 
 }  // namespace aabb

@@ -1,9 +1,11 @@
 module;
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
@@ -41,7 +43,8 @@ public:
         std::uint32_t few = 4 * simd::width;
         /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
         /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
-        /// be written in turn without much waiting.
+        /// be written in turn without much waiting. Any number of boxes is put into groups, and those into further
+        /// ones, where they lie in clumps so far apart that columns over all of them leave each clump in one place.
         std::optional<std::uint32_t> group;
         /// How many threads take groups.
         std::uint32_t threads = 1;
@@ -93,6 +96,9 @@ public:
         best.fit(seen.bounds);
         best.most_along =
             static_cast<std::uint32_t>(std::min(most(seen, best.axis, true) / columns_a_box, double{most_columns}));
+        // A group of fewer boxes than a plan looks at is not worth one of its own.
+        if (!config_.group && are_clumped(seen, best, boxes.size(), least))
+            best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
         return best;
     }
 
@@ -101,15 +107,17 @@ public:
     /// How many of so many boxes are cut into columns together, about.
     [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
         if (config_.group) return std::min(boxes, std::size_t{*config_.group});
-        return boxes <= 40'000 ? boxes : std::max(std::size_t{9'000}, boxes / 300);
+        return boxes <= 40'000 ? boxes : std::max(std::size_t{9'000}, boxes / std::size_t{most_groups});
     }
     [[nodiscard]] unsigned threads() const noexcept { return config_.threads; }
 
 private:
     static constexpr std::size_t samples = 256;
+    static constexpr std::size_t kept_samples = samples / 2;
     /// One of so many is left out on either side; none of 0.
     static constexpr std::array<std::size_t, 3> shares{0, 64, 8};
     static constexpr std::uint32_t most_columns = 16'384;
+    static constexpr std::uint32_t most_groups = 300;
     static constexpr double columns_a_box = 4;
     static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
                                                            20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
@@ -120,11 +128,33 @@ private:
         vec3d extent{};
         vec3d product{};  ///< of the other two
         double volume = 0;
-        vec3d per_width{};  ///< 1 / `width`; 0 without one
+        vec3d per_width{};                                      ///< 1 / `width`; 0 without one
+        std::array<std::array<float, kept_samples>, 6> ends{};  ///< of every second box: lower ones, then upper ones
+        std::size_t kept = 0;                                   ///< how many those are
 
+        void keep(const box& b) {
+            for (int k = 0; k < 3; ++k) {
+                ends[static_cast<std::size_t>(k)][kept] = b.min[k];
+                ends[static_cast<std::size_t>(3 + k)][kept] = b.max[k];
+            }
+            ++kept;
+        }
+        [[nodiscard]] box kept_box(std::size_t i) const {
+            return {{ends[0][i], ends[1][i], ends[2][i]}, {ends[3][i], ends[4][i], ends[5][i]}};
+        }
+        void add_extents(const box& b) {
+            vec3d e{};
+            for (int k = 0; k < 3; ++k) e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
+            for (int k = 0; k < 3; ++k) {
+                extent[k] += e[k];
+                product[k] += e[(k + 1) % 3] * e[(k + 2) % 3];
+            }
+            volume += e[0] * e[1] * e[2];
+        }
         [[nodiscard]] double width(int k) const { return double{bounds.max[k]} - double{bounds.min[k]}; }
         [[nodiscard]] bool varies(int k) const {
-            return width(k) > 1e-6 * std::max(std::abs(double{bounds.min[k]}), std::abs(double{bounds.max[k]}));
+            // By more than a few of the numbers that a float can hold there.
+            return width(k) > 0x1p-21 * std::max(std::abs(double{bounds.min[k]}), std::abs(double{bounds.max[k]}));
         }
     };
 
@@ -140,34 +170,41 @@ private:
             const std::size_t i = begin + (random >> 33U) % step;
             if (i >= boxes.size()) break;
             const box b = common(boxes[i], within);
-            vec3d e{};
             for (int k = 0; k < 3; ++k) {
                 ends[static_cast<std::size_t>(k)][count] = b.min[k];
                 ends[static_cast<std::size_t>(3 + k)][count] = b.max[k];
-                e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
             }
-            for (int k = 0; k < 3; ++k) {
-                seen.extent[k] += e[k];
-                seen.product[k] += e[(k + 1) % 3] * e[(k + 2) % 3];
-            }
-            seen.volume += e[0] * e[1] * e[2];
+            if (count % 2 == 0) seen.keep(b);
+            seen.add_extents(b);
             ++count;
         }
+        bool has_outliers = false;
         for (int k = 0; k < 3; ++k) {
-            seen.extent[k] /= static_cast<double>(count);
-            seen.product[k] /= static_cast<double>(count);
-            bound(seen.bounds, k, std::span(ends[static_cast<std::size_t>(k)]).first(count),
-                  std::span(ends[static_cast<std::size_t>(3 + k)]).first(count));
+            has_outliers |= bound(seen.bounds, k, std::span(ends[static_cast<std::size_t>(k)]).first(count),
+                                  std::span(ends[static_cast<std::size_t>(3 + k)]).first(count));
             seen.per_width[k] = seen.width(k) > 0 ? 1 / seen.width(k) : 0;
         }
-        seen.volume /= static_cast<double>(count);
+        if (has_outliers) {
+            // What lies outside, however large, is within a column at the border.
+            seen.extent = seen.product = {};
+            seen.volume = 0;
+            for (std::size_t i = 0; i < seen.kept; ++i) seen.add_extents(common(seen.kept_box(i), seen.bounds));
+            count = seen.kept;
+        }
+        const auto n = static_cast<double>(count);
+        for (int k = 0; k < 3; ++k) {
+            seen.extent[k] /= n;
+            seen.product[k] /= n;
+        }
+        seen.volume /= n;
         return seen;
     }
 
     /// From the first lower end to the last upper one, without a few that lie far from all others: what lies outside is
     /// in the columns at the border. Of 64 the outermost on either side are left out, or of 8, where that makes the
     /// rest four times as short.
-    static void bound(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
+    /// @returns whether any are
+    static bool bound(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
         const std::array<float, shares.size()> first = outermost(lower, std::ranges::less());
         const std::array<float, shares.size()> last = outermost(upper, std::ranges::greater());
         const auto length = [&](std::size_t i) { return double{last[i]} - double{first[i]}; };
@@ -176,6 +213,7 @@ private:
             if (4 * length(i) < length(chosen)) chosen = i;
         bounds.min[k] = first[chosen];
         bounds.max[k] = std::max(first[chosen], last[chosen]);
+        return chosen > 0;
     }
 
     /// What is outermost without each of the shares.
@@ -225,6 +263,75 @@ private:
         const double per_length = seen.per_width[p.axis];
         const double met = n * (per_length > 0 ? reach * per_length : entries) / columns;
         return entries * (ns.column_entry + ns.column_test * (1 + met / simd::width)) + ns.column * columns / n;
+    }
+
+    /// Boxes of a sample as a sweep has them, a vector of them.
+    struct sampled_entries {
+        simd::floats ends[6];
+        simd::words lower, upper;  ///< as in `column_entry`
+        simd::words first, last;   ///< columns, as whole numbers stand in `lower`
+        simd::words begin, end;    ///< buckets
+
+        void fill(const sample& seen, std::size_t at, const column_plan& plan, std::uint32_t bucket_bits) {
+            for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][at], sizeof ends[k]);
+            const int u = plan.axis_across(0);
+            const int v = plan.axis_across(1);
+            const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
+            lower = plan.whole(ends[u], u) | plan.whole(ends[v], v) << 16;
+            upper = plan.whole(ends[3 + u], u) | plan.whole(ends[3 + v], v) << 16;
+            first = simd::upper_products(lower, across);
+            last = simd::upper_products(upper, across);
+            begin = plan.whole(ends[plan.axis], plan.axis) >> (16 - bucket_bits);
+            end = plan.whole(ends[3 + plan.axis], plan.axis) >> (16 - bucket_bits);
+        }
+
+        /// Bit l is set where box l has a column, and a bucket in it, in common with another one.
+        [[nodiscard]] std::uint32_t met_by(const sampled_entries& others, std::size_t other) const {
+            return simd::bits(((simd::excess(first, simd::all(others.last[other])) |
+                                simd::excess(simd::all(others.first[other]), last)) == 0U) &
+                              (begin <= others.end[other]) & (end >= others.begin[other]));
+        }
+        /// Bit l is set where whole numbers across the columns do not tell, but box l does not overlap the other one.
+        [[nodiscard]] std::uint32_t rejected_late(const sampled_entries& others, std::size_t other) const {
+            simd::flags apart{};
+            for (int k = 0; k < 3; ++k)
+                apart |= (ends[k] > others.ends[3 + k][other]) | (ends[3 + k] < others.ends[k][other]);
+            return simd::bits(((simd::excess(lower, simd::all(others.upper[other])) |
+                                simd::excess(simd::all(others.lower[other]), upper)) == 0U) &
+                              apart);
+        }
+    };
+
+    /// Whether tests, of which pairs of a sample tell how many there are, cost more than all that is planned for evenly
+    /// spread boxes and than what groups would cost beside it. Who waits for that takes at most about twice as long as
+    /// who knows, whether groups serve or not.
+    [[nodiscard]] static bool are_clumped(const sample& seen, const column_plan& plan, std::size_t boxes,
+                                          double planned) {
+        const cost_model& ns = machine_costs();
+        // In nanoseconds for a box.
+        const double most = planned + ns.column_entry;
+        const auto cost = [&](double met, double rejected) { return ns.column_test * (met / simd::width + rejected); };
+        const auto n = static_cast<double>(boxes);
+        if (cost(n / 2, n / 2) <= most) return false;
+        std::array<sampled_entries, kept_samples / simd::width> entries;
+        for (std::size_t i = 0; i < seen.kept; i += simd::width)
+            entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));
+        int met = 0;
+        int rejected = 0;
+        for (std::size_t i = 0; i < seen.kept; ++i) {
+            const sampled_entries& others = entries[i / simd::width];
+            const std::size_t other = i % simd::width;
+            for (std::size_t first = i - other; first < seen.kept; first += simd::width) {
+                std::uint32_t some = simd::lanes_below(seen.kept - first);
+                if (first <= i) some &= ~simd::lanes_below(other + 1);
+                some &= entries[first / simd::width].met_by(others, other);
+                if (some == 0) continue;
+                met += std::popcount(some);
+                rejected += std::popcount(some & entries[first / simd::width].rejected_late(others, other));
+            }
+        }
+        const double pairs = static_cast<double>(seen.kept) * (static_cast<double>(seen.kept) - 1);
+        return cost(met * n / pairs, rejected * n / pairs) > most;
     }
 
     config config_;

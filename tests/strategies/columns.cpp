@@ -53,6 +53,43 @@ composition columns_with(const std::string& settings) {
 
 using search_by_columns = global_search<bucket_sort, columns_partition, simd_sweep, work_counters>;
 
+/// Of a world in which so many boxes of edge 1 have a few neighbours each.
+double side_of(std::size_t n) {
+    return 2 * std::cbrt(static_cast<double>(n));
+}
+
+/// Boxes that are spread evenly over clumps, whose corners are told; the further away, the larger, so that floats can
+/// tell them apart.
+template <class Corner>
+std::vector<box> clumps_of(std::size_t n, std::size_t clumps, Corner corner) {
+    std::vector<box> boxes = random_boxes(n, side_of(n / clumps), 1, 7);
+    for (std::size_t i = 0; i < n; ++i) {
+        double away = 0;
+        for (int k = 0; k < 3; ++k) away = std::max(away, std::abs(corner(i % clumps, k)));
+        const double scale = std::max(1.0, away / 1e6);
+        for (int k = 0; k < 3; ++k) {
+            boxes[i].min[k] = static_cast<float>(corner(i % clumps, k) + scale * double{boxes[i].min[k]});
+            boxes[i].max[k] = static_cast<float>(corner(i % clumps, k) + scale * double{boxes[i].max[k]});
+        }
+    }
+    return boxes;
+}
+
+/// Work of a frame, exact, and of what follows from it.
+double work_a_box(const std::vector<box>& boxes) {
+    search_by_columns search;
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) search.insert(id);
+    std::vector<index_pair> pairs;
+    search.update(boxes);
+    search.search(pairs);
+    std::ranges::sort(pairs);
+    CHECK(pairs == true_pairs(boxes));
+    std::uint64_t sum = 0;
+    for (const work what : {work::box_tests, work::moves, work::comparisons, work::subset_copies})
+        sum += search.counters()[what];
+    return static_cast<double>(sum) / static_cast<double>(boxes.size());
+}
+
 }  // namespace
 
 TEST_CASE("groups of any size find the same pairs, in an order that no number of threads changes") {
@@ -171,7 +208,8 @@ TEST_CASE("groups are in proportion to the columns, and cut along them where tho
         plan.axis = axis;
         plan.across = {u, v};
         plan.most_along = along;
-        return column_groups::coarser(plan, wanted);
+        plan.groups = wanted;
+        return column_groups::coarser(plan);
     };
     const auto on_axis = [](const column_plan& plan, int axis) {
         for (std::size_t i = 0; i < 2; ++i)
@@ -293,6 +331,102 @@ TEST_CASE("a few boxes far from all others do not spoil the columns of these") {
     CHECK(tests_with(1000, 1e6F) < 3 * without);
     CHECK(tests_with(100, 1e5F) < 3 * without);
     CHECK(tests_with(12, 1e5F) < 20 * without);
+}
+
+TEST_CASE("clumps cost about what they would side by side, however far apart") {
+    for (const std::size_t n : {std::size_t{600}, std::size_t{4000}}) {
+        const double even = work_a_box(random_boxes(n, side_of(n), 1, 1));
+        for (const std::size_t clumps : {2, 8, 30})
+            for (const double apart : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e9, 1e15, 1e30}) {
+                INFO(n << " boxes in " << clumps << " clumps, " << apart << " apart");
+                CHECK(work_a_box(clumps_of(n, clumps, [&](std::size_t c, int k) {
+                          return apart * std::sin(static_cast<double>(1 + 3 * c + static_cast<std::size_t>(k)));
+                      })) < 6 * even);
+            }
+    }
+}
+
+TEST_CASE("clumps of clumps, boxes parked far off, and some at the end of the world cost little more") {
+    const std::size_t n = 4000;
+    const double even = work_a_box(random_boxes(n, side_of(n), 1, 1));
+    for (const double apart : {1e2, 1e4, 1e6}) {
+        INFO(apart);
+        CHECK(work_a_box(clumps_of(n, 64, [&](std::size_t c, int k) {
+                  return apart * (apart * static_cast<double>(c / 8 >> k & 1) + static_cast<double>(c % 8 >> k & 1));
+              })) < 6 * even);
+        for (const int axis : {0, 1, 2})
+            CHECK(work_a_box(clumps_of(n, 2, [&](std::size_t c, int k) {
+                      return k == axis ? -apart * static_cast<double>(c) : 0.0;
+                  })) < 6 * even);
+    }
+    // A clump within a world that is evenly filled.
+    std::vector<box> core = random_boxes(n, 1e5, 1, 2);
+    std::ranges::copy(random_boxes(n / 2, side_of(n / 2), 1, 3), core.begin());
+    CHECK(work_a_box(core) < 6 * even);
+    for (const std::size_t every : {2, 3, 5, 10, 100, 1000}) {
+        INFO("one in " << every << " at the end");
+        std::vector<box> boxes = random_boxes(n, side_of(n), 1, 4);
+        for (std::size_t i = 0; i < n; i += every) {
+            const auto k = static_cast<int>(i / every % 3);
+            const float end = std::numeric_limits<float>::max() / 2 * (i / every % 2 == 0 ? 1.0F : -1.0F);
+            boxes[i].min[k] = boxes[i].max[k] = end;
+        }
+        CHECK(work_a_box(boxes) < 6 * even);
+    }
+}
+
+TEST_CASE("groups within groups end where boxes are in one place") {
+    for (const std::size_t places : {1, 2, 3, 50}) {
+        INFO(places);
+        const std::size_t n = 1500;
+        std::vector<box> boxes(n);
+        for (std::size_t i = 0; i < n; ++i)
+            for (int k = 0; k < 3; ++k) boxes[i].min[k] = boxes[i].max[k] = 1e6F * static_cast<float>(i % places);
+        // A vector at a time, each against each in the same place, and some on the way.
+        CHECK(work_a_box(boxes) < 2.0 * static_cast<double>(n) / static_cast<double>(places) + 200);
+    }
+}
+
+TEST_CASE("groups within groups are the same on any number of threads, and follow what moves") {
+    const std::vector<box> even = random_boxes(3000, side_of(3000), 1, 5);
+    const auto scattered = [](double by) {
+        return clumps_of(3000, 12, [=](std::size_t c, int k) {
+            return by * static_cast<double>((7 * c + 3 * static_cast<std::size_t>(k)) % 11) +
+                   by / 1e3 * static_cast<double>(c / 6);
+        });
+    };
+    const std::vector<std::vector<box>> frames{even, scattered(1e5), scattered(1.001e5), scattered(1e2), even, even};
+    std::vector<std::vector<index_pair>> first;
+    for (const std::uint32_t threads : {1U, 2U, 5U}) {
+        INFO(threads << " threads");
+        search_by_columns search({}, columns_partition({.threads = threads}), {});
+        for (std::uint32_t id = 0; id < even.size(); ++id) search.insert(id);
+        std::vector<std::vector<index_pair>> pairs(frames.size());
+        for (std::size_t f = 0; f < frames.size(); ++f) {
+            search.update(frames[f]);
+            search.search(pairs[f]);
+            CHECK(search.is_in_groups() == (f == 1 || f == 2));
+        }
+        if (first.empty()) first = pairs;
+        CHECK(pairs == first);
+        for (std::size_t f = 0; f < frames.size(); ++f) {
+            std::ranges::sort(pairs[f]);
+            CHECK(pairs[f] == true_pairs(frames[f]));
+        }
+    }
+}
+
+TEST_CASE("evenly spread boxes are in no groups, in however many dimensions") {
+    for (const std::size_t n : {std::size_t{100}, std::size_t{500}, std::size_t{5000}, std::size_t{40'000}})
+        for (const double world : {1.0, 2.0, 4.0, 16.0, 1e3})
+            for (const unsigned level_axes : {0U, 0b001U, 0b010U, 0b100U, 0b011U, 0b101U, 0b110U}) {
+                INFO(n << " boxes in " << world << " times the world, level on axes " << level_axes);
+                std::vector<box> boxes = random_boxes(n, world * side_of(n), 1, 8);
+                for (box& b : boxes)
+                    for (int k = 0; k < 3; ++k)
+                        if (level_axes >> k & 1U) b.min[k] = -1, b.max[k] = 1;
+                CHECK(columns_partition().plan(boxes, everywhere).groups == 1);
+            }
 }
 
 TEST_CASE("an invalid box is refused wherever it stands, and the next frame is whole") {
