@@ -183,6 +183,18 @@ TEST_CASE("cloud has the density, the sizes, the clouds and the motion that are 
     std::size_t moved = 0;
     for (std::size_t i = 0; i < some[0].boxes.size(); ++i) moved += some[3].boxes[i] == some[0].boxes[i] ? 0 : 1;
     CHECK(moved == some[0].boxes.size() / 4);
+    const auto parked = with({{"clouds", "3"}, {"parked", "0.5"}, {"apart", "1000"}});
+    const std::size_t half = parked[0].boxes.size() / 2;
+    const auto longest = [](const aabb::box& b) { return std::max({edge(b, 0), edge(b, 1), edge(b, 2)}); };
+    const double world = longest(world_of({parked[0]}));
+    const auto near = [&](std::size_t i, std::size_t j) {
+        return longest(aabb::merged(parked[0].boxes[i], parked[0].boxes[j])) < world / 100;
+    };
+    for (std::size_t i = 0; i < 2 * half; ++i) {
+        CHECK((parked[3].boxes[i] == parked[0].boxes[i]) == (i < half));
+        CHECK(near(0, i) == (i < half));
+        CHECK(near(half, i) == (i >= half && (i - half) % 3 == 0));
+    }
 }
 
 TEST_CASE("explosion creeps, flies and stands still, a third of the frames each") {
