@@ -32,7 +32,8 @@ public:
             }
         } while (skip(","));
         if (at_ == text_.size()) return false;
-        if (!skip("\n") && !skip("\r\n")) fail("expected a comma or the end of the line after a closing quote");
+        if (!is_at_line_end()) fail("expected a comma or the end of the line after a closing quote");
+        at_ = text_.find('\n', at_) + 1;
         ++line_;
         return true;
     }
@@ -41,6 +42,11 @@ public:
 
 private:
     [[nodiscard]] bool next_is(std::string_view what) const { return text_.substr(at_).starts_with(what); }
+    /// At a line feed, perhaps with carriage returns before it.
+    [[nodiscard]] bool is_at_line_end() const {
+        const std::size_t end = text_.find_first_not_of('\r', at_);
+        return end != std::string_view::npos && text_[end] == '\n';
+    }
     bool skip(std::string_view what) {
         const bool there = next_is(what);
         if (there) at_ += what.size();
@@ -48,9 +54,9 @@ private:
     }
 
     void take_plain(std::string& field) {
-        while (at_ < text_.size() && !next_is(",") && !next_is("\n") && !next_is("\r\n")) {
+        while (at_ < text_.size() && !next_is(",") && !is_at_line_end()) {
             if (next_is("\"")) fail("a quote stands in a field that does not begin with one");
-            if (next_is("\r") && at_ + 1 < text_.size())
+            if (next_is("\r"))
                 fail("some lines end in carriage returns alone, others in line feeds; expected one of the two");
             field += text_[at_++];
         }
