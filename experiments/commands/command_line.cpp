@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -33,7 +34,10 @@ public:
     std::string make_footer(const CLI::App* command) const override {
         std::istringstream lines(Formatter::make_footer(command));
         std::string text;
-        for (std::string line; std::getline(lines, line);) text += wrapped(line, output_width()) + "\n";
+        for (std::string line; std::getline(lines, line);) {
+            const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+            text += hanging(line.substr(0, indent), line.substr(indent)) + "\n";
+        }
         return text;
     }
 };

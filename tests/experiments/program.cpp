@@ -158,7 +158,7 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         {{"list", "nothing"}, "list: unknown kind 'nothing'; see aabblab list --help\n"},
         {{"nothing_at_all"}, "unknown command 'nothing_at_all'; see aabblab --help\n"},
         {{"scene", "brownian", "--xyzzyq", "3"}, "scene: unknown option '--xyzzyq'; see aabblab scene --help\n"},
-        {{"validate", "stiff", "a", "--xyzzyq"}, "see aabblab validate stiff --help\n"},
+        {{"validate", "stiff", "a", "--xyzzyq"}, "unknown option '--xyzzyq'; expected one of --help, --out, --quick\n"},
         {{"scene", "xyzzyq", "--out", "a.aabbs"}, "unknown scene 'xyzzyq'; aabblab list scenes has them\n"},
         {{"pairs", "x", "--engine", "xyzzyq"}, "unknown engine 'xyzzyq'; aabblab list engines has them\n"},
         {{"list", "--threads"}, "list: unknown option '--threads'; expected one of --help, --json\n"},
