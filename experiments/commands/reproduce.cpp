@@ -87,6 +87,28 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
+/// How verdicts compare with those of the published run of the same size; empty where it is not there, or damaged.
+std::string agreement_with_published(std::span<const measurements> runs, const reproduction& all) {
+    const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
+    const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
+    if (!std::filesystem::exists(archive)) return {};
+    const std::string published = "the published run, paper/archive/" + name;
+    try {
+        const std::string file = archive.string();
+        const source_list sources({&file, 1});
+        const results_source& source = sources.all().front();
+        const measurements results = verified_measurements(source.folder, source.name);
+        const auto is_published = [&](const measurements& run) {
+            return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
+        };
+        if (std::ranges::all_of(runs, is_published)) return "These results are " + published + ".";
+        return agreement_of(all.claims, judged(results).claims, published);
+    } catch (const aabb::input_error& error) {
+        note("verdicts are not compared with the published ones: " + std::string(error.what()));
+        return {};
+    }
+}
+
 /// Judges what was measured and writes the report.
 /// @returns the exit status
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
@@ -99,12 +121,15 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
                                     " are of different sizes, quick and full, and cannot be judged together");
     require_different(runs);
     const reproduction all = judged(runs);
-    write_reproduction(out, runs, all, sections_of_reproduction(first.folder(), is_quick(first.folder())), failures);
+    const std::string agreement = agreement_with_published(runs, all);
+    write_reproduction(out, runs, all, sections_of_reproduction(first.folder(), is_quick(first.folder())), failures,
+                       agreement);
     print(verdict_text(all));
     if (!failures.empty())
         print(fmt::format("\n{} answers were wrong; compositions among them have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
     print("\nThe report is " + visible((out / "report.html").string()) + "\n");
+    if (!agreement.empty()) print(wrapped(agreement) + "\n");
     return failures.empty() ? 0 : 1;
 }
 

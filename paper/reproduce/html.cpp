@@ -161,6 +161,7 @@ std::string html_of(const std::filesystem::path& folder, const reproduction& all
     out.raw("<h1>The paper, put to the test</h1>\n<div class=\"headline\">\n");
     for (const std::string& sentence : all.headline) out.paragraph(sentence);
     out.raw("</div>\n");
+    if (!made.agreement.empty()) out.paragraph(made.agreement);
     out.paragraph(
         fmt::format(
             "\"{}\": its table, its figures, its claims and one of the method that it follows (SMB, 2006): {} in all. "

@@ -18,6 +18,7 @@ std::string markdown_of(const reproduction& all, std::span<const report_section>
     for (const std::string& failure : failures) text += "**Wrong:** " + failure + ".\n\n";
     for (const std::string& sentence : all.headline)
         text += sentence + (&sentence == &all.headline.back() ? "\n\n" : " ");
+    if (!made.agreement.empty()) text += made.agreement + "\n\n";
     text += "\"" + std::string(paper_title) + "\", tested: " + made.date + ", commit " + made.commit + ", " +
             made.compiler + ", " + made.cpu + "; " + made.size + " size, " + std::to_string(made.rows) +
             " rows, up to " + std::to_string(made.processes) + " processes, up to " + std::to_string(made.seeds) +

@@ -127,10 +127,11 @@ provenance provenance_of(const measurements& results, const reproduction& all) {
 
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
-                        const std::vector<std::string>& failures) {
+                        const std::vector<std::string>& failures, const std::string& agreement) {
     reproduction all = judged_claims;
     all.figures.push_back(verdict_figure(all));
     provenance made = provenance_of(runs.front(), all);
+    made.agreement = agreement;
     for (const measurements& other : runs.subspan(1)) {
         const provenance its = provenance_of(other, all);
         made.notes.push_back("ratios and verdicts are of this run and of " + other.name() + " together (" + its.date +

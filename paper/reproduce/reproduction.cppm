@@ -34,10 +34,16 @@ struct report_section {
 /// @param runs what was judged; the report shows the first one's figures
 /// @param sections of the reports alone
 /// @param failures what validation found, a sentence each
+/// @param agreement how the verdicts compare with published ones; empty where they are compared with none
 /// @throws aabb::input_error where a file cannot be read or written, or figures cannot be drawn.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& all, std::span<const report_section> sections,
-                        const std::vector<std::string>& failures);
+                        const std::vector<std::string>& failures, const std::string& agreement = {});
+
+/// Of two judgements: how many verdicts are the same, and each claim whose verdict differs, a sentence.
+/// @param other what the other one is called: "the published run"
+[[nodiscard]] std::string agreement_of(std::span<const claim_result> here, std::span<const claim_result> there,
+                                       const std::string& other);
 
 }  // namespace aabblab
 
@@ -50,6 +56,7 @@ struct provenance {
     std::string size;  ///< "full" or "quick"
     std::size_t rows = 0, compositions = 0, scenes = 0, processes = 0, seeds = 0, repeats = 0;
     std::vector<std::string> notes;
+    std::string agreement;  ///< as `write_reproduction` was given it
 
     struct config {
         std::string experiment;

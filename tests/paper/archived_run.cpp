@@ -44,6 +44,7 @@ TEST_CASE("The archived run is whole, README says what is found in it, and so do
     INFO(judged.err);
     REQUIRE(judged.status == 0);
     CHECK(judged.err.find("not sealed") == std::string::npos);
+    CHECK(judged.out.ends_with("These results are the published run, paper/archive/full_run.tar.xz.\n"));
 
     const std::string report = bytes_of_file(folder / "report.md");
     const std::size_t from = report.find("\n|") + 1;

@@ -54,10 +54,10 @@ struct reports {
     std::string macros;
 };
 
-reports written(const aabblab::reproduction& all) {
+reports written(const aabblab::reproduction& all, const std::string& agreement = {}) {
     const temporary_folder folder;
     const aabblab::measurements none(folder.path());
-    write_reproduction(folder.path(), {&none, 1}, all, {}, {});
+    write_reproduction(folder.path(), {&none, 1}, all, {}, {}, agreement);
     return {bytes_of_file(folder / "report.html"), bytes_of_file(folder / "report.md"),
             bytes_of_file(folder / "macros.tex")};
 }
@@ -95,6 +95,21 @@ TEST_CASE("Reports begin with the headline, and before it with what disturbed th
         CHECK(told.find("What the paper says in") > before);
         CHECK(undisturbed.find(all.disturbance) == std::string::npos);
     }
+}
+
+TEST_CASE("Verdicts are compared with those of another run, and each that differs is told") {
+    const std::vector<claim_result> here = made_up().claims;
+    CHECK(agreement_of(here, here, "the other") == "5 of 5 verdicts are those of the other.");
+    std::vector<claim_result> there = here;
+    there[0].verdict = verdict_kind::in_part;
+    there[3].verdict = verdict_kind::does_not_hold;
+    there.pop_back();
+    CHECK(agreement_of(here, there, "the other") ==
+          "2 of 5 verdicts are those of the other: C1: here holds, there holds in part; C8: here no difference, there "
+          "does not hold; C9: here undecided, there none.");
+    const reports told = written(made_up(), "4 of 5 verdicts are those of the other.");
+    for (const std::string& report : {told.html, told.markdown})
+        CHECK(report.find("4 of 5 verdicts are those of the other.") != std::string::npos);
 }
 
 TEST_CASE("Every claim that was measured has its interval drawn in its row, beside its verdict in words") {
