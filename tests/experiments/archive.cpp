@@ -122,6 +122,10 @@ TEST_CASE("An archive that unpacks to more than any results is refused before it
     is_refused(bomb, "unpacks to more than 1 MiB, which no results have", limits);
     is_refused(packed(folder, {{"results/a"}, {"results/b"}, {"results/c"}, {"results/d"}}),
                "has more than 3 files, which no results have", limits);
+    // Also where the same folder comes again and again, as one of 40 million does.
+    const entry one_folder{"results/a/", "", AE_IFDIR};
+    is_refused(packed(folder, {one_folder, one_folder, one_folder, one_folder}),
+               "has more than 3 folders, which no results have", limits);
 }
 
 TEST_CASE("An archive that is cut off, damaged or of another kind is refused") {

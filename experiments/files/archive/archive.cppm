@@ -19,9 +19,9 @@ export namespace aabblab {
 void write_archive(const std::filesystem::path& archive, const std::string& top, const std::filesystem::path& folder,
                    std::span<const std::filesystem::path> files);
 
-/// How much an archive may hold, so that a small one cannot fill the disk.
+/// How much an archive may hold, so that a small one cannot fill the disk, nor take hours.
 struct archive_limits {
-    std::size_t files = 10'000;
+    std::size_t files = 10'000;  ///< and as many folders, each of which holds one at least
     std::uint64_t bytes = std::uint64_t{4} << 30U;
 };
 

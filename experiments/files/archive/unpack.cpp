@@ -58,6 +58,7 @@ public:
 
     void unpack(const std::string& top, const std::filesystem::path& into) {
         std::set<std::filesystem::path> places;
+        std::size_t folders = 0;
         archive_entry* entry = nullptr;
         while (has_next(entry)) {
             const char* name = archive_entry_pathname(entry);
@@ -65,7 +66,11 @@ public:
             const std::filesystem::path place = place_of(without_slash(name ? name : "", type), top, file_);
             if (archive_entry_hardlink(entry) || (type != AE_IFREG && type != AE_IFDIR))
                 fail("has an entry that is neither a file nor a folder: '" + place.string() + "'");
-            if (type == AE_IFDIR) continue;
+            if (type == AE_IFDIR) {
+                if (++folders > limits_.files)
+                    fail("has more than " + std::to_string(limits_.files) + " folders, which no results have");
+                continue;
+            }
             if (!places.insert(place).second) fail("has the file '" + place.string() + "' twice");
             if (places.size() > limits_.files)
                 fail("has more than " + std::to_string(limits_.files) + " files, which no results have");
