@@ -295,11 +295,11 @@ TEST_CASE("Where the first frames take too long, fewer are raced over") {
 
 TEST_CASE("Who gets stuck behind the first frames is not recommended where another comes to the end") {
     using namespace std::chrono_literals;
-    std::vector<racer> all{delayed("stuck",
-                                   [i = 0]() mutable {
-                                       if (i++ == 5) std::this_thread::sleep_for(10min);
-                                   }),
-                           delayed("ends", [] { std::this_thread::sleep_for(1ms); })};
+    // As fast as the other until then, so that it is not the other who is dropped.
+    std::vector<racer> all{
+        delayed("stuck",
+                [i = 0]() mutable { std::this_thread::sleep_for(i++ == 5 ? std::chrono::milliseconds(10min) : 10ms); }),
+        delayed("ends", [] { std::this_thread::sleep_for(10ms); })};
     const aabblab::race_result race = race_of(scene, std::move(all), 20);
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "ends");
