@@ -32,6 +32,7 @@ struct external_engine {
     std::string program;               ///< the first word of it, where it was found
     std::string place;                 ///< where the command stands in the config, "FILE:LINE"
     bool exact = true;                 ///< a difference from the exact answer is a failure, not a measurement
+    std::uint64_t timeout_s = 600;     ///< after which it is killed
 };
 
 /// What is asked of local detection, and timed.

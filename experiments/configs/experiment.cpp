@@ -86,7 +86,7 @@ std::string found_program(const document& doc, const std::string& name) {
 
 external_engine external_of(const document& doc, const node& table) {
     doc.require_table("external", table);
-    doc.require_keys(table, " of [[external]]", {"name", "command", "exact"});
+    doc.require_keys(table, " of [[external]]", {"name", "command", "exact", "timeout_s"});
     external_engine engine;
     const node* name = table.find("name");
     if (!name) doc.fail(table.line, "this [[external]] has no name; expected name = \"…\"");
@@ -106,6 +106,11 @@ external_engine external_of(const document& doc, const node& table) {
     if (const node* exact = table.find("exact")) {
         if (exact->kind != node_kind::boolean) doc.fail_type("exact", *exact, "true or false");
         engine.exact = exact->text == "true";
+    }
+    if (const node* timeout = table.find("timeout_s")) {
+        constexpr std::uint64_t most = 1'000'000;
+        engine.timeout_s = doc.integer_of("timeout_s", *timeout, 1);
+        if (engine.timeout_s > most) doc.fail(timeout->line, "timeout_s must be at most " + std::to_string(most));
     }
     return engine;
 }

@@ -5,6 +5,7 @@ module;
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -123,6 +124,8 @@ template <class Work>
 void external_search::in_place(Work work) const {
     try {
         work();
+    } catch (const engine_timeout& error) {
+        throw engine_timeout(place_ + error.what());
     } catch (const aabb::input_error& error) {
         throw aabb::input_error(place_ + error.what());
     }
@@ -139,8 +142,15 @@ void external_search::run(const external_engine& who, exchange_folder& exchange)
     std::vector<std::string> arguments(who.command.begin() + 1, who.command.end());
     for (const std::filesystem::path& file : {recording, pairs_file_, times_file_}) arguments.push_back(file.string());
     // Apart from the terminal it must not wait for what is typed there.
-    const child_result ended =
-        run_child(who.program, arguments, {.folder = {}, .input = "/dev/null", .errors = {}, .kept = true});
+    const child_result ended = run_child(who.program, arguments,
+                                         {.folder = {},
+                                          .input = "/dev/null",
+                                          .errors = {},
+                                          .kept = true,
+                                          .timeout = std::chrono::seconds(who.timeout_s)});
+    if (ended.timed_out)
+        throw engine_timeout("the " + name_ + " was killed: it had not ended after " + std::to_string(who.timeout_s) +
+                             " s, its timeout_s");
     if (ended.refused == ENOENT && who.program.find('/') == std::string::npos)
         throw aabb::input_error("the " + name_ + ": there is no program " + who.program + " in PATH; write ./" +
                                 who.program + " for one in the folder of the config");

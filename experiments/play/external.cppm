@@ -76,7 +76,8 @@ class external_search final : public aabb::global_stage {
 public:
     /// Runs the program.
     /// @param told gets its times, by frame
-    /// @throws aabb::input_error where it cannot be started or fails, and on times that are malformed
+    /// @throws engine_timeout, and aabb::input_error where it cannot be started or fails, and on times that are
+    /// malformed
     external_search(const external_engine& who, exchange_folder& exchange, std::vector<told_times>& told);
 
     void insert(std::uint32_t) override {}

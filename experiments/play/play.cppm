@@ -51,7 +51,7 @@ export namespace aabblab {
 /// What came out of playing a scene beside the exact answer, untimed.
 struct contender_validation {
     contender_name name;
-    std::string failure;  ///< the first difference where the contender must be exact; empty where there is none
+    std::string failure;  ///< the first difference where the contender must be exact, or that it took too long
     std::uint64_t candidates = 0;
     std::optional<std::uint64_t> contacts;
     std::string digest;

@@ -29,6 +29,12 @@ struct told_times {
     double search_ms = 0;
 };
 
+/// An external engine that took longer than it may, and was killed: nobody else is to suffer for that.
+class engine_timeout : public aabb::input_error {
+public:
+    using input_error::input_error;
+};
+
 /// A composition of ours or a reference system, ready to be made anew for each time it plays.
 struct contender {
     contender_name name;

@@ -27,7 +27,7 @@ namespace {
 struct timed_contender {
     const contender* who;
     row result;
-    bool strayed = false;
+    bool strayed = false;  ///< it is not repeated
 };
 
 row row_of(const experiment& e, const scene_choice& scene, const scene_validation& all, const contender& who,
@@ -223,7 +223,15 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
             turn.result.repeat = repeat;
             turn.result.process = process;
             if (turn.strayed || given_up.contains(turn.result.name) || results.has(turn.result)) continue;
-            const std::string failure = e.records(metric_group::time) ? time_into(scene, e.how, turn) : std::string();
+            std::string failure;
+            try {
+                if (e.records(metric_group::time)) failure = time_into(scene, e.how, turn);
+            } catch (const engine_timeout& error) {
+                // What it did before stays.
+                failures.emplace_back(error.what());
+                turn.strayed = true;
+                continue;
+            }
             if (failure.empty()) {
                 results.add(turn.result);
                 continue;

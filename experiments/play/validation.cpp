@@ -10,6 +10,7 @@ module;
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 module aabblab.play;
@@ -177,7 +178,17 @@ scene_validation validate_scene(const scene_choice& choice, scene_play& scene, s
     aabb::exact_answer exact(scene.objects(), scene.meshes());
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<validated_player> players;
-    for (const contender& who : contenders) players.emplace_back(who, choice, scene);
+    std::vector<contender_validation> results(contenders.size());
+    std::vector<std::size_t> places;  // of the players among the contenders
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        try {
+            players.emplace_back(contenders[i], choice, scene);
+            places.push_back(i);
+        } catch (const engine_timeout& error) {
+            results[i].name = contenders[i].name;
+            results[i].failure = error.what();
+        }
+    }
     std::optional<aabb::posed_boxes> world;
     if (scene.meshes()) world.emplace(*scene.meshes());
     progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
@@ -196,9 +207,8 @@ scene_validation validate_scene(const scene_choice& choice, scene_play& scene, s
         }
         scene.tell(exact.pairs(), exact.contacts());
     }
-    scene_validation result{scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), {}};
-    for (const validated_player& p : players) result.contenders.push_back(p.result());
-    return result;
+    for (std::size_t i = 0; i < players.size(); ++i) results[places[i]] = players[i].result();
+    return {scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), std::move(results)};
 }
 
 }  // namespace aabblab

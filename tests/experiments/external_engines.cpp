@@ -236,6 +236,31 @@ TEST_CASE("What an external engine leaves running is killed when it ends, whatev
     CHECK(has_ended(gone_astray));
 }
 
+TEST_CASE("An external engine that does not end is killed with what it started, and takes nobody with it") {
+    const temporary_folder folder;
+    const auto [waits, rows_of_engine] = GENERATE(table<std::string, std::size_t>({
+        {"sleep 1000 & cd \"${0%/*}\"; echo $! >began; wait\n", 0},
+        // A program that has closed its output is not waited for either.
+        {"exec >&-; sleep 1000 & cd \"${0%/*}\"; echo $! >began; wait\n", 0},
+        // Not before the second repeat.
+        {"cd \"${0%/*}\"; echo >>calls; [ $(wc -l <calls) -lt 3 ] || { sleep 1000 & echo $! >began; wait; }\n", 1},
+    }));
+    CAPTURE(waits);
+    const program_result result = run_with(folder, good + waits, "brownian", "timeout_s = 1\n");
+    CAPTURE(result.err, result.out);
+    REQUIRE(result.status == 1);
+    CHECK(result.err.find(":4: brownian (objects=150 frames=3 seed=1): the external engine 'mine' was killed: it had "
+                          "not ended after 1 s, its timeout_s\n") != std::string::npos);
+    const std::vector<aabblab::row> rows = aabblab::read_rows(folder / "out/results.csv");
+    CHECK(std::ranges::count_if(rows, [](const auto& r) { return r.name.engine.empty(); }) == 2);
+    CHECK(static_cast<std::size_t>(
+              std::ranges::count_if(rows, [](const auto& r) { return r.name.engine == "mine"; })) == rows_of_engine);
+    pid_t of_engine = 0;
+    std::ifstream(folder / "began") >> of_engine;
+    REQUIRE(of_engine > 0);
+    CHECK(comes_true([&] { return has_ended(of_engine); }));
+}
+
 TEST_CASE("An external engine that cannot be started gets one sentence and status 2") {
     const temporary_folder folder;
     folder.write("mine", good);  // which nobody may execute
@@ -287,6 +312,10 @@ TEST_CASE("External engines in a config are checked, and are part of its hash") 
         {"[[external]]\nname = \"a\"\ncommand = \"./no/such\"\n", ":4: ./no/such: no such file"},
         {"[[external]]\nname = \"a\"\ncommand = \"/usr/\"\n", ":4: /usr/ is a folder; expected a program"},
         {"[[external]]\nname = \"a\"\ncommand = \"ls\"\nexact = 1\n", ":5: exact is a number; expected true or false"},
+        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\ntimeout_s = 0\n",
+         ":5: timeout_s must be a whole number, at least 1, not 0"},
+        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\ntimeout_s = 1000001\n",
+         ":5: timeout_s must be at most 1000000"},
         {"[[external]]\nname = \"a\"\ncomand = \"ls\"\n", "did you mean 'command'?"},
         {"[[external]]\nname = \"a\"\ncommand = \"ls\"\n[[external]]\nname = \"a\"\ncommand = \"ls\"\n",
          ":5: two [[external]] have the name 'a'"},

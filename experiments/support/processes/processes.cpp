@@ -1,15 +1,22 @@
 module;
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -137,16 +144,42 @@ constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf 
     _exit(127);
 }
 
-std::string read_all(int input) {
+using clock = std::chrono::steady_clock;
+
+/// Whether there is something to be read, or nothing will come, before that time.
+bool is_ready(int input, const std::optional<clock::time_point>& end) {
+    pollfd one{input, POLLIN, 0};
+    while (end) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(*end - clock::now()).count();
+        if (left <= 0) return false;
+        constexpr std::int64_t longest = std::numeric_limits<int>::max();
+        if (poll(&one, 1, static_cast<int>(std::min<std::int64_t>(left, longest))) > 0) break;
+    }
+    return true;
+}
+
+/// What comes until the other end closes, or until that time.
+std::string read_all(int input, const std::optional<clock::time_point>& end = {}) {
     std::string all;
     std::array<char, 4096> part{};
     for (;;) {
+        if (!is_ready(input, end)) return all;
         const ssize_t got = read(input, part.data(), part.size());
         if (got > 0)
             all.append(part.data(), static_cast<std::size_t>(got));
         else if (got == 0 || errno != EINTR)
             return all;
     }
+}
+
+/// Whether a child ends before that time.
+bool ends_before(pid_t child, clock::time_point end) {
+    const int handle = pidfd_open(child, 0);
+    // Without a handle nobody tells.
+    if (handle < 0) return true;
+    const bool ended = is_ready(handle, end);
+    close(handle);
+    return ended;
 }
 
 }  // namespace
@@ -160,10 +193,10 @@ child_result run_child(const std::string& program, const std::vector<std::string
     pointers.push_back(nullptr);
     pipe_ends output;
     pipe_ends refusal;
-    if (!output.open() || !refusal.open()) return {errno, 0, {}};
+    if (!output.open() || !refusal.open()) return {errno, 0, false, {}};
     const pid_t parent = getpid();
     const pid_t child = fork();
-    if (child < 0) return {errno, 0, {}};
+    if (child < 0) return {errno, 0, false, {}};
     if (child == 0) {
         if (!where.kept) end_with(parent, SIGKILL);
         if (!where.kept || keep(output.ends[1], refusal.ends[1], parent))
@@ -177,7 +210,13 @@ child_result run_child(const std::string& program, const std::vector<std::string
     // Nothing comes where the program was started, which closes the other end.
     if (const std::string why = read_all(refusal.ends[0]); why.size() == sizeof result.refused)
         std::memcpy(&result.refused, why.data(), why.size());
-    result.printed = read_all(output.ends[0]);
+    std::optional<clock::time_point> end;
+    if (where.timeout.count() > 0) end = clock::now() + where.timeout;
+    result.printed = read_all(output.ends[0], end);
+    // A program may close its output, and go on.
+    result.timed_out = end && !ends_before(child, *end);
+    // Who keeps a program kills it, and all that it started.
+    if (result.timed_out) kill(child, where.kept ? SIGTERM : SIGKILL);
     while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
     return result;
 }

@@ -1,4 +1,5 @@
 module;
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,14 +13,16 @@ export namespace aabblab {
 struct surroundings {
     std::filesystem::path folder;
     std::filesystem::path input;
-    std::filesystem::path errors;  ///< appended to; /dev/stdout: they go where its output goes
-    bool kept = false;             ///< apart from the terminal, and killed at its end with all that it starts
+    std::filesystem::path errors;     ///< appended to; /dev/stdout: they go where its output goes
+    bool kept = false;                ///< apart from the terminal, and killed at its end with all that it starts
+    std::chrono::seconds timeout{0};  ///< after which it is killed; 0: never
 };
 
 /// What a program left.
 struct child_result {
-    int refused;  ///< errno where it could not be started, otherwise 0
-    int status;   ///< of waitpid
+    int refused;     ///< errno where it could not be started, otherwise 0
+    int status;      ///< of waitpid
+    bool timed_out;  ///< it was killed; what it started lives on, unless it was kept
     std::string printed;
 };
 
