@@ -186,7 +186,8 @@ TEST_CASE("A manifest with a member of another type, or without one, is read or 
         if (!is_sealed) unseal(run.out());
         const nlohmann::ordered_json whole = run.manifest();
         std::set<std::string> places;
-        for (const auto& [leaf, value] : whole.flatten().items())
+        const nlohmann::ordered_json leaves = whole.flatten();
+        for (const auto& [leaf, value] : leaves.items())
             for (nlohmann::json::json_pointer place(leaf); !place.empty(); place.pop_back())
                 places.insert(place.to_string());
         for (const std::string& place : places)
