@@ -96,6 +96,9 @@ class detector<Search, boxes_only> {
 public:
     detector() = default;
     explicit detector(Search search) : search_(std::move(search)) {}
+    // As every detector: what strategies keep from frame to frame would be lost in the one that is moved from.
+    detector(const detector&) = delete;
+    detector& operator=(const detector&) = delete;
 
     /// An object comes (its id must not be present) or goes (its id must be); ids are places in the frames, and stay.
     /// @throws input_error where it is present already, or is not.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,13 @@ static_assert(sizeof(cut_search) >= sizeof(bare_search) + sizeof(subset_lists));
 static_assert(sizeof(counted_detection) >= sizeof(bare_detection) + sizeof(work_counters));
 static_assert(sizeof(basic_pipeline<bare_search, bare_detection>) == sizeof(needed_by_pipeline));
 static_assert(sizeof(pipeline) >= sizeof(needed_by_pipeline) + sizeof(std::optional<divided_scene>));
+
+// None can be moved from and asked again, of whatever strategies.
+static_assert(!std::is_move_constructible_v<detector<cut_search>> && !std::is_move_assignable_v<detector<cut_search>>);
+static_assert(!std::is_move_constructible_v<detector<bare_search, bare_detection>> &&
+              !std::is_move_assignable_v<detector<bare_search, bare_detection>>);
+static_assert(!std::is_move_constructible_v<auto_detector> && !std::is_move_assignable_v<auto_detector>);
+static_assert(!std::is_move_constructible_v<global_stage> && !std::is_move_constructible_v<local_stage>);
 
 mesh tetrahedron(float edge) {
     return {{{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
