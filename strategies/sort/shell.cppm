@@ -45,37 +45,46 @@ public:
             for (std::size_t gap = list.size() / 2; gap > 0; gap /= 2) pass(list, gap, counters);
             return;
         }
-        const std::span<const std::size_t> gaps = ascending(config_.gaps);
+        const std::span<const std::uint32_t> gaps = ascending(config_.gaps);
         for (std::size_t i = gaps.size(); i-- > 0;)
             if (gaps[i] < list.size()) pass(list, gaps[i], counters);
     }
 
 private:
-    /// Ascending; the last gap is beyond half of any list of 2^32 entries.
-    using table = std::array<std::size_t, 28>;
+    /// Ascending; the last gap is beyond half of any list of 2^32 entries, and the next would not fit.
+    using table = std::array<std::uint32_t, 27>;
 
     static constexpr std::size_t ciura_published = 8;
     static constexpr table ciura = [] {
         table gaps{1, 4, 10, 23, 57, 132, 301, 701};
-        for (std::size_t i = ciura_published; i < gaps.size(); ++i) gaps[i] = gaps[i - 1] * 9 / 4;
+        for (std::size_t i = ciura_published; i < gaps.size(); ++i)
+            gaps[i] = static_cast<std::uint32_t>(gaps[i - 1] * std::uint64_t{9} / 4);
         return gaps;
     }();
 
     static constexpr table tokuda = [] {
         table gaps{};
         double exact = 1;
-        for (std::size_t& gap : gaps) {
-            gap = static_cast<std::size_t>(exact);
+        for (std::uint32_t& gap : gaps) {
+            gap = static_cast<std::uint32_t>(exact);
             if (static_cast<double>(gap) < exact) ++gap;
             exact = 2.25 * exact + 1;
         }
         return gaps;
     }();
     static_assert(tokuda[1] == 4 && tokuda[2] == 9 && tokuda[3] == 20 && tokuda[4] == 46 && tokuda[8] == 1182);
-    static_assert(ciura.back() >= std::size_t{1} << 31 && tokuda.back() >= std::size_t{1} << 31);
+    static_assert(ciura.back() >= std::uint32_t{1} << 31 && tokuda.back() >= std::uint32_t{1} << 31);
+
+    /// Each is about 9/4 of the one before; one that had overflowed, by 2^32, would be less than twice as large.
+    static constexpr auto more_than_double = [](const table& gaps) {
+        for (std::size_t i = 1; i < gaps.size(); ++i)
+            if (gaps[i] / 2 < gaps[i - 1]) return false;
+        return true;
+    };
+    static_assert(more_than_double(ciura) && more_than_double(tokuda));
 
     /// Of every sequence that does not hang on the length of the list.
-    [[nodiscard]] static constexpr std::span<const std::size_t> ascending(gap_sequence gaps) noexcept {
+    [[nodiscard]] static constexpr std::span<const std::uint32_t> ascending(gap_sequence gaps) noexcept {
         switch (gaps) {
             case gap_sequence::tokuda: return tokuda;
             case gap_sequence::ciura_eight: return std::span(ciura).first(ciura_published);
