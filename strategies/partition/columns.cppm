@@ -116,6 +116,8 @@ private:
     static constexpr std::size_t kept_samples = samples / 2;
     /// One of so many is left out on either side; none of 0.
     static constexpr std::array<std::size_t, 3> shares{0, 64, 8};
+    /// Of so many, one is asked which others it meets.
+    static constexpr std::size_t boxes_an_asked = 32;
     static constexpr std::uint32_t most_columns = 16'384;
     static constexpr std::uint32_t most_groups = 300;
     static constexpr double columns_a_box = 4;
@@ -316,21 +318,25 @@ private:
         std::array<sampled_entries, kept_samples / simd::width> entries;
         for (std::size_t i = 0; i < seen.kept; i += simd::width)
             entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));
+        // So that looking takes few boxes no longer than a fraction of their search, some are asked, across the sample.
+        const std::size_t asked = std::min(seen.kept, std::max<std::size_t>(boxes / boxes_an_asked, 1));
         int met = 0;
         int rejected = 0;
-        for (std::size_t i = 0; i < seen.kept; ++i) {
+        for (std::size_t k = 0; k < asked; ++k) {
+            const std::size_t i = k * seen.kept / asked;
             const sampled_entries& others = entries[i / simd::width];
             const std::size_t other = i % simd::width;
-            for (std::size_t first = i - other; first < seen.kept; first += simd::width) {
+            for (std::size_t first = 0; first < seen.kept; first += simd::width) {
                 std::uint32_t some = simd::lanes_below(seen.kept - first);
-                if (first <= i) some &= ~simd::lanes_below(other + 1);
+                if (first == i - other) some &= ~(std::uint32_t{1} << other);
                 some &= entries[first / simd::width].met_by(others, other);
                 if (some == 0) continue;
                 met += std::popcount(some);
                 rejected += std::popcount(some & entries[first / simd::width].rejected_late(others, other));
             }
         }
-        const double pairs = static_cast<double>(seen.kept) * (static_cast<double>(seen.kept) - 1);
+        // Each is met from either side.
+        const double pairs = 2 * static_cast<double>(asked) * (static_cast<double>(seen.kept) - 1);
         return cost(met * n / pairs, rejected * n / pairs) > most;
     }
 
