@@ -121,7 +121,8 @@ void print_engines() {
 void print_integrators() {
     for (const integrator_info& i : integrators()) print_entry(i.name, i.summary);
     for (const std::string_view name : left_out_integrators())
-        print_entry(name, "left out: its library was not found when this was built; ./aabblab validate stiff installs it");
+        print_entry(name,
+                    "left out: its library was not found when this was built; ./aabblab validate stiff installs it");
 }
 
 void print_pair_classes() {

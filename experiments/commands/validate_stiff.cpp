@@ -89,7 +89,8 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
     const std::vector<stiff_study> chosen = chosen_studies(studies);
     std::filesystem::create_directories(folder);
     for (const std::string_view name : left_out_integrators())
-        note("the integrator " + std::string(name) + " is left out of this build: its library was not found; ./aabblab validate stiff installs it");
+        note("the integrator " + std::string(name) +
+             " is left out of this build: its library was not found; ./aabblab validate stiff installs it");
     suite_report report;
     for (const stiff_study& study : chosen) {
         stiff_result result;

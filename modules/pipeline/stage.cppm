@@ -42,8 +42,8 @@ public:
     /// @throws input_error on meshes that `require_valid` refuses.
     [[nodiscard]] virtual mesh_division divide(const mesh_scene& /*scene*/) { return {}; }
 
-    /// How many frames there will be, so that nothing is prepared for more of them. Results do not depend on it, and there
-    /// may be more or fewer; without this call, nothing is known.
+    /// How many frames there will be, so that nothing is prepared for more of them. Results do not depend on it, and
+    /// there may be more or fewer; without this call, nothing is known.
     virtual void expect(std::size_t /*frames*/) {}
 
     /// An object comes (its id must not be present) or goes (its id must be). Boxes of others take no part.
