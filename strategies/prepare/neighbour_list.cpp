@@ -276,6 +276,8 @@ std::vector<std::string> neighbour_list_stage::left_out() const {
     if (from_ == source::search)
         absent.emplace_back(adapts() && objects_.size() < fewest_boxes_of_list
                                 ? "no list of neighbours: so few boxes are searched as soon as watched"
+                            : expected_ < fewest_frames_of_first_list
+                                ? "no list of neighbours: none repays its making in so few frames, as far as is seen"
                             : watches_
                                 ? "no list of neighbours: boxes are watched for how far they move"
                                 : "no list of neighbours: boxes move too far, or come too often, for one to pay");

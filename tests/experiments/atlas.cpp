@@ -229,7 +229,7 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
         CHECK(std::filesystem::exists(folder / "map" / file));
     }
     // As `reproduce --judge` takes them: another folder's, those of a reproduction, and of an archive of one.
-    std::filesystem::create_directories(folder / "run");
+    std::filesystem::create_directories(folder / "run/atlas");
     std::filesystem::copy(folder / "map/atlas", folder / "run/atlas/atlas", std::filesystem::copy_options::recursive);
     aabblab::write_archive(folder / "run.tar.xz", "reproduction", folder / "run",
                            std::vector<std::filesystem::path>{"atlas/atlas/manifest.json", "atlas/atlas/results.csv"});

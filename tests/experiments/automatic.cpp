@@ -182,11 +182,11 @@ void require_narrow(const std::string& text) {
 TEST_CASE("explain says of a recording what was measured, selected and saved") {
     const temporary_folder folder;
     const std::string file = (folder / "p.aabbs").string();
-    REQUIRE(run_program({"scene", "pile", "--n", "200", "--frames", "6", "--out", file}).status == 0);
+    REQUIRE(run_program({"scene", "pile", "--n", "200", "--frames", "80", "--out", file}).status == 0);
     const program_result told = run_program({"explain", file});
     REQUIRE(told.status == 0);
     for (const char* part :
-         {"objects       200\n", "frames        7, of which the first 4 are measured\n",
+         {"objects       200\n", "frames        81, of which the first 4 are measured\n",
           "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  frames follow",
           "    planned from what was seen\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
           "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
