@@ -232,7 +232,8 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
     std::filesystem::create_directories(folder / "run/atlas");
     std::filesystem::copy(folder / "map/atlas", folder / "run/atlas/atlas", std::filesystem::copy_options::recursive);
     aabblab::write_archive(folder / "run.tar.xz", "reproduction", folder / "run",
-                           std::vector<std::filesystem::path>{"atlas/atlas/manifest.json", "atlas/atlas/results.csv"});
+                           std::vector<std::filesystem::path>{"atlas/atlas/manifest.json", "atlas/atlas/results.csv",
+                                                              "atlas/atlas/differences.csv"});
     for (const char* source : {"map", "run", "run.tar.xz"}) {
         const program_result judged =
             run_program({"atlas", "--judge", folder / source, "--out", (folder / "of" / source).string()});

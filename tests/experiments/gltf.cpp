@@ -158,7 +158,7 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
         {&parts::nodes, R"({"mesh":0,"rotation":[1,1,1,1]})",
          "nodes[0] has a rotation that is not a quaternion of length 1"},
         {&parts::nodes, R"({"mesh":0,"scale":[1e300,1,1]})", "vertex 1 has a coordinate that is not finite"},
-        {&parts::nodes, "{}", "the mesh has no triangles"},
+        {&parts::nodes, "{}", "the mesh has no triangles (1 mesh outside the scene left out)"},
         {&parts::primitive, R"({"attributes":{"NORMAL":0}})", "meshes[0] has a primitive without positions"},
         {&parts::primitive, R"({"attributes":{"POSITION":0},"mode":7})",
          "meshes[0] has a primitive of mode 7; modes are 0 to 6"},
