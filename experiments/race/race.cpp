@@ -77,14 +77,13 @@ public:
 private:
     [[nodiscard]] double left() const { return limits_.to_play(); }
 
-    /// For how long one may play frames that the fastest so far takes so many seconds for: far longer, but not much of
-    /// all time, unless it stays within the margin.
+    /// For how long one may play frames that the fastest so far takes so many seconds for: far longer, but not so long
+    /// that a few take all time, unless it stays within the margin. The first of all has more.
     [[nodiscard]] double patience(double least, double margin) const {
         constexpr double far = 20;
-        constexpr double share = 0.25;
         const double to_begin = std::min(1.0, whole_ / 20);
-        return to_begin + (std::isfinite(least) ? std::min(far * least, std::max(share * whole_, margin * least))
-                                                : share * whole_);
+        return to_begin +
+               (std::isfinite(least) ? std::min(far * least, std::max(whole_ / 16, margin * least)) : whole_ / 4);
     }
 
     /// One plays the first frames; it is out where it does not come to their end, unless all time is over.
@@ -123,7 +122,13 @@ private:
             if (ends) least = std::min(least, one.seconds);
             shown.at(++done);
         }
-        if (!std::isfinite(least)) refuse_all();
+        if (!std::isfinite(least)) {
+            // Pairs that nobody found need not be compared: that time is the first one's, for a frame.
+            frames = 1;
+            racer& first = running_.front();
+            first.broken_off.reset();
+            if (!plays(first, frames, limits_.to_end(), limits_.to_end())) refuse_all();
+        }
         finish_round(frames, margin);
         return frames;
     }
@@ -133,7 +138,8 @@ private:
         for (const racer& r : running_)
             if (r.broken_off->end == ending::refused) throw aabb::input_error(r.broken_off->reason);
         throw aabb::input_error(
-            fmt::format("nobody plays even frame 0 of this scene in {:.2g} s; --seconds gives more time", whole_));
+            fmt::format("nobody plays even frame 0 of this scene in {:.2g} s; --seconds gives more time",
+                        running_.front().broken_off->seconds));
     }
 
     /// Plays the first frames with all; who takes far longer than the fastest so far is stopped. Where all time is over
@@ -322,14 +328,13 @@ std::vector<racer> starters(const scene_play& scene) {
     for (const aabb::engine_info& engine : aabb::engines())
         if (engine.exact && (meshes ? engine.collides_meshes : engine.searches_boxes))
             if (const auto who = contender_of(engine, meshes)) add(*who, text_of(who->name));
-    const auto first_composition = static_cast<std::ptrdiff_t>(all.size());
     const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
     for (const aabb::composition& c : aabb::every_composition(stage)) {
         if (!is_exact(c, stage) || (!meshes && !needs_meshes(c).empty())) continue;
         // It is the same twice.
         if (contender who = contender_of(c, meshes); who.name != automatic) add(who, text_of(who.name));
     }
-    std::shuffle(all.begin() + first_composition, all.end(), std::mt19937_64(1));
+    std::shuffle(all.begin() + 1, all.end(), std::mt19937_64(1));
     return all;
 }
 

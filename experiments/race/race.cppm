@@ -179,8 +179,8 @@ struct race_result {
     [[nodiscard]] bool is_validated() const { return validated > 0 && validated == final_frames; }
 };
 
-/// All that can play the scene: `auto`, every engine, every composition of the stage that matters there but the one
-/// that `auto` is; these in an order by chance, the same each time, since there may be no time for all.
+/// All that can play the scene: `auto`, then every engine, and every composition of the stage that matters there but
+/// the one that `auto` is, in an order by chance, the same each time, since there may be no time for all.
 [[nodiscard]] std::vector<racer> starters(const scene_play& scene);
 
 /// @throws aabb::input_error where the scene cannot be played, or nobody plays its first frame in time.

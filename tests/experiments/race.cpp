@@ -190,9 +190,9 @@ TEST_CASE("Who finds other pairs than the first of those who play in turn is kno
 TEST_CASE("As many finish a race as there is time for, but two") {
     std::vector<racer> all;
     for (const char* name : {"a", "b", "c"})
-        all.push_back(delayed(name, [] { std::this_thread::sleep_for(std::chrono::milliseconds(40)); }));
-    CHECK(race_of(short_scene, all, 8).finalists.size() == 3);
-    CHECK(race_of(short_scene, all, 0.5).finalists.size() == 2);
+        all.push_back(delayed(name, [] { std::this_thread::sleep_for(std::chrono::milliseconds(100)); }));
+    CHECK(race_of(short_scene, all, 20).finalists.size() == 3);
+    CHECK(race_of(short_scene, all, 4).finalists.size() == 2);
 }
 
 TEST_CASE("Each repeat of a race begins with another racer") {
@@ -279,9 +279,9 @@ TEST_CASE("Where the first frames take too long, fewer are raced over") {
             std::this_thread::sleep_for(i++ == frame ? std::chrono::milliseconds(10min) : delay);
         };
     };
-    std::vector<racer> all{delayed("never", stuck_in(0, 1ms)), delayed("early", stuck_in(2, 200ms)),
-                           delayed("fast", stuck_in(2, 5ms)), delayed("late", stuck_in(1, 1ms))};
-    const aabblab::race_result race = race_of(scene, std::move(all), 8);
+    std::vector<racer> all{delayed("early", stuck_in(2, 200ms)), delayed("fast", stuck_in(2, 5ms)),
+                           delayed("never", stuck_in(0, 1ms)), delayed("late", stuck_in(1, 1ms))};
+    const aabblab::race_result race = race_of(scene, std::move(all), 12);
     CHECK(race.final_frames == 2);
     REQUIRE_FALSE(race.finalists.empty());
     CHECK(race.finalists.front().name == "fast");
@@ -291,6 +291,16 @@ TEST_CASE("Where the first frames take too long, fewer are raced over") {
     const std::string use = aabblab::advice_of(race).front();
     CHECK(use.starts_with("Use fast: "));
     CHECK(use.find(" ms for the first 2 of 25 frames") != std::string::npos);
+}
+
+TEST_CASE("Where nobody ends a frame, the first one gets the time for comparing as well") {
+    using namespace std::chrono_literals;
+    std::vector<racer> all{delayed("slow", [] { std::this_thread::sleep_for(1500ms); }),
+                           delayed("slower", [] { std::this_thread::sleep_for(10min); })};
+    const aabblab::race_result race = race_of(scene, std::move(all), 3);
+    REQUIRE(race.finalists.size() == 1);
+    CHECK(race.finalists.front().name == "slow");
+    CHECK(race.final_frames == 1);
 }
 
 TEST_CASE("Who gets stuck behind the first frames is not recommended where another comes to the end") {
