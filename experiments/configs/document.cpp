@@ -68,6 +68,20 @@ node converted(const toml::node& value) {
     return result;
 }
 
+/// TOML knows one carriage return before a line feed; programs that convert text twice write two.
+std::string without_returns_at_ends(std::string_view text) {
+    std::string lines;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t end = std::min(text.find('\n', from), text.size());
+        std::size_t last = end;
+        while (end < text.size() && last > from && text[last - 1] == '\r') --last;
+        lines += text.substr(from, last - from);
+        if (end < text.size()) lines += '\n';
+        from = end + 1;
+    }
+    return lines;
+}
+
 std::string_view name_of(node_kind kind) {
     constexpr std::array<std::string_view, 7> names = {"a name",         "a number", "a number", "true or false",
                                                        "a date or time", "a list",   "a table"};
@@ -144,8 +158,9 @@ const node* node::find(std::string_view wanted) const {
     return found == items.end() ? nullptr : &*found;
 }
 
-document::document(const std::string& text, std::string file, std::size_t most, std::string_view what)
+document::document(const std::string& as_written, std::string file, std::size_t most, std::string_view what)
     : file_(std::move(file)) {
+    const std::string text = without_returns_at_ends(as_written);
     if (text.size() > most)
         throw aabb::input_error(file_ + " is longer than " + std::to_string(most) + " bytes, the most that " +
                                 std::string(what) + " may have");

@@ -44,7 +44,7 @@ expect 'the options of a command' 0 '^Usage: aabblab run ' checkout/aabblab run 
 expect 'of what it is given' 0 '^Usage: aabblab run ' checkout/aabblab run config.toml -h
 expect 'of a command within a command' 0 '^Usage: aabblab validate stiff ' checkout/aabblab validate stiff --help
 expect 'strategies' 0 '^  axial_cut ' checkout/aabblab list
-for heading in engines triangle\ tests integrators; do
+for heading in engines library_tests integrators; do
     expect "nobody knows which $heading" 0 "^$heading.*availability unknown" checkout/aabblab list
 done
 holds 'nothing was built for it' test ! -e checkout/build

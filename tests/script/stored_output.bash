@@ -10,6 +10,9 @@ trap 'rm -rf -- "$work"' EXIT
 printed=$work/stored_output
 # As it is where there is no terminal, however wide that of the caller is.
 unset COLUMNS
+# Scenes of real meshes are listed where they have been fetched.
+mkdir -- "$work/no_meshes"
+export AABBLAB_DATA=$work/no_meshes
 
 # store_help COMMAND…: the help of a command, and of those that it has.
 store_help() {
@@ -26,7 +29,7 @@ store_help
 
 # What hangs on libraries that are not here is left as it is stored; columns are as wide as what is in them.
 all_but_libraries() {
-    awk '/^[^ ]/ { skipped = /^(engines|triangle tests of engines|integrators)/ } !skipped' "$1" | tr -s ' \n' ' '
+    awk '/^[^ ]/ { skipped = /^(engines|library_tests|integrators)/ } !skipped' "$1" | tr -s ' \n' ' '
 }
 if grep -q 'left out:' "$printed/list.txt"; then
     echo "This build lacks libraries, so what list says of engines and integrators is not compared."
