@@ -391,8 +391,9 @@ TEST_CASE("groups within groups are the same on any number of threads, and follo
     const std::vector<box> even = random_boxes(3000, side_of(3000), 1, 5);
     const auto scattered = [](double by) {
         return clumps_of(3000, 12, [=](std::size_t c, int k) {
+            const std::size_t cluster = c / 6;
             return by * static_cast<double>((7 * c + 3 * static_cast<std::size_t>(k)) % 11) +
-                   by / 1e3 * static_cast<double>(c / 6);
+                   by / 1e3 * static_cast<double>(cluster);
         });
     };
     const std::vector<std::vector<box>> frames{even, scattered(1e5), scattered(1.001e5), scattered(1e2), even, even};
