@@ -318,7 +318,7 @@ private:
         std::array<sampled_entries, kept_samples / simd::width> entries;
         for (std::size_t i = 0; i < seen.kept; i += simd::width)
             entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));
-        // So that looking takes few boxes no longer than a fraction of their search, some are asked, across the sample.
+        // Some of them are asked, across the sample, so that looking at few boxes takes a small part of their search.
         const std::size_t asked = std::min(seen.kept, std::max<std::size_t>(boxes / boxes_an_asked, 1));
         int met = 0;
         int rejected = 0;
