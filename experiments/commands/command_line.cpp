@@ -79,7 +79,7 @@ std::string see_help_of(const CLI::App& command) {
     return "; see " + full_name(command) + " --help";
 }
 
-/// Where neither the nearest name nor all of them are told, the help has them.
+/// Where a message names neither the nearest name nor all of them, it refers to the help.
 std::string unknown_name(const std::string& what, const std::string& name, const std::vector<std::string>& known,
                          const CLI::App& command) {
     const std::string sentence = aabb::unknown_name(what, name, known);

@@ -84,7 +84,7 @@ void print_line(const std::string& line) {
     print(wrapped(line) + "\n");
 }
 
-/// Those who did not come to the end of a play, and why.
+/// The compositions that did not finish a run, and why.
 void print_unfinished(const std::vector<other_way>& all) {
     table t{{{"not finished", false}, {"", false}}, {}};
     for (const other_way& one : all)
