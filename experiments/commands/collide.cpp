@@ -22,6 +22,7 @@
 // Import, so they come last.
 #include "composing.hpp"
 #include "hit_geometry.hpp"
+#include "mesh_neighbours.hpp"
 #include "poses.hpp"
 
 import aabb.base;
@@ -69,9 +70,14 @@ struct found_pair {
     std::optional<aabb::triangle_intersection> common;  ///< with --geometry
 };
 
+/// Pairs of a mesh with itself: those that share a vertex, and those that do not.
+struct self_counts {
+    std::uint64_t neighbours = 0;
+    std::uint64_t others = 0;
+};
+
 struct detection_result {
     std::vector<std::uint32_t> triangles;          ///< of each mesh
-    std::vector<aabb::index_pair> pairs;           ///< at the last pose
     std::vector<std::uint64_t> counts;             ///< by pose, of a mesh with itself those that share no vertex
     std::optional<std::uint64_t> neighbours;       ///< of a mesh with itself: pairs that share a vertex
     std::vector<std::optional<found_pair>> first;  ///< by pose, with --first
@@ -126,12 +132,27 @@ private:
     std::size_t frame_ = 0;
 };
 
+/// Of a mesh with itself, pairs that share a vertex may be by far the most: around one of n triangles there are n²/2.
+/// They are kept only where they are wanted and an inexact method may have missed some; an exact one has found them
+/// all, so that they follow from the mesh.
+bool keeps_neighbours(const collide_request& request, const detection_method& method) {
+    return request.self == "together" && !method.exact && !request.count;
+}
+
+void query_self(player& who, const collide_request& request, const detection_method& method, const aabb::mesh& m,
+                std::vector<aabb::index_pair>& pairs, self_counts& counts) {
+    const bool neighbours_kept = keeps_neighbours(request, method);
+    who.each_self_pair(0, [&](aabb::index_pair pair) {
+        const bool neighbours = share_vertex(m, pair);
+        ++(neighbours ? counts.neighbours : counts.others);
+        if (neighbours ? neighbours_kept : !request.count) pairs.push_back(pair);
+    });
+}
+
 /// Answers in place of `detect`, or by it.
 /// @returns how many pairs there are, where those are not kept
 std::uint64_t query(player& who, const collide_request& request, std::vector<aabb::index_pair>& pairs) {
-    if (!request.self.empty()) {
-        who.find_self_pairs(0, pairs);
-    } else if (request.count) {
+    if (request.count) {
         return who.count_contacts();
     } else if (request.first) {
         if (const auto c = who.first_contact()) pairs.push_back({c->triangle_a, c->triangle_b});
@@ -139,15 +160,6 @@ std::uint64_t query(player& who, const collide_request& request, std::vector<aab
         who.detect();
     }
     return 0;
-}
-
-/// How many corners of one triangle lie where a corner of the other does.
-std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
-    const aabb::triangle3f s = m.triangle(pair.a);
-    const aabb::triangle3f t = m.triangle(pair.b);
-    std::uint32_t shared = 0;
-    for (int i = 0; i < 3; ++i) shared += s[i] == t[0] || s[i] == t[1] || s[i] == t[2];
-    return shared;
 }
 
 void set_bytes(detection_result& result, const player& who) {
@@ -161,43 +173,42 @@ void set_bytes(detection_result& result, const player& who) {
 }
 
 /// Brings the pairs of one pose into their order, and says which they are.
-/// @param pose its place in the file of poses; none where there is none
+/// @param pairs those that were kept
 /// @param table takes the pairs; null where they are not wanted
-/// @returns how many there are, of a mesh with itself those that share no vertex
-std::uint64_t take_pairs(const collide_request& request, detection_method& method, const scene_play& scene,
-                         std::optional<std::uint32_t> pose, detection_result& result, number_table* table) {
-    const std::vector<aabb::mesh>& meshes = scene.meshes()->meshes;
-    sort_rows(result.pairs);
-    require_each_once(result.pairs, method.name);
-    std::uint64_t neighbours = 0;
-    if (request.self == "apart")
-        neighbours = std::erase_if(result.pairs, [&](auto pair) { return shared_vertices(meshes[0], pair) > 0; });
+void take_pairs(const collide_request& request, detection_method& method, const scene_play& scene, std::uint32_t frame,
+                const self_counts& of_self, std::vector<aabb::index_pair>& pairs, detection_result& result,
+                aabb::digest& digest, number_table* table) {
+    sort_rows(pairs);
+    require_each_once(pairs, method.name);
+    const aabb::mesh& a = scene.meshes()->meshes.front();
     if (method.geometry)
-        method.geometry->take(meshes.front(), scene.poses().front(), meshes.back(), scene.poses().back());
+        method.geometry->take(a, scene.poses().front(), scene.meshes()->meshes.back(), scene.poses().back());
     if (request.first) result.first.emplace_back();
-    std::uint64_t count = 0;
-    for (const aabb::index_pair pair : result.pairs) {
-        if (request.first) result.first.back() = found_pair{pair, {}};
-        const std::uint32_t shared = request.self == "together" ? shared_vertices(meshes[0], pair) : 0;
-        std::string cells;
-        if (method.geometry) {
-            const aabb::triangle_intersection common = (*method.geometry)(pair);
-            if (request.first) result.first.back()->common = common;
-            if (table) cells = to_cells(common);
-        }
-        if (table) {
-            if (request.self == "together")
-                table->add({pair.a, pair.b, shared}, cells);
-            else if (pose)
-                table->add({*pose, pair.a, pair.b}, cells);
-            else
-                table->add({pair.a, pair.b}, cells);
-        }
-        count += shared == 0;
-        neighbours += shared > 0;
+    const auto take_one = [&](aabb::index_pair pair) {
+        std::optional<aabb::triangle_intersection> common;
+        if (method.geometry) common = (*method.geometry)(pair);
+        if (request.first) result.first.back() = found_pair{pair, common};
+        if (!table) return;
+        const std::string cells = common ? to_cells(*common) : "";
+        if (request.self == "together")
+            table->add({pair.a, pair.b, shared_vertices(a, pair)}, cells);
+        else if (request.poses_of_b)
+            table->add({frame, pair.a, pair.b}, cells);
+        else
+            table->add({pair.a, pair.b}, cells);
+    };
+    const auto take = [&](std::span<const aabb::index_pair> sorted) {
+        digest.add(frame, sorted);
+        if (table || method.geometry || request.first) std::ranges::for_each(sorted, take_one);
+    };
+    if (!keeps_neighbours(request, method) && request.self == "together") {
+        const std::uint64_t neighbours = for_each_with_neighbours(a, pairs, take);
+        if (neighbours != of_self.neighbours)
+            throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, and there are {}",
+                                     method.name, of_self.neighbours, neighbours));
+    } else {
+        take(pairs);
     }
-    if (!request.self.empty()) result.neighbours = neighbours;
-    return count;
 }
 
 /// Every two objects are candidates, since boxes in the world say nothing of meshes that were moved together, however
@@ -210,27 +221,37 @@ detection_result detect(const collide_request& request, detection_method& method
     std::optional<player> who;
     result.build_ms = milliseconds_of([&] { who.emplace(stages{nullptr, std::move(method.stage)}, scene); });
     for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
+    const aabb::mesh& a = scene.meshes()->meshes.front();
     const std::size_t poses = scene.frames() / request.repeats;
     aabb::digest digest;
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         const auto pose = request.poses_of_b ? std::optional(frame) : std::nullopt;
         std::vector<aabb::index_pair> pairs;
+        self_counts of_self;
         std::uint64_t count = 0;
         try {
             who->update();
             who->search();
-            result.query_ms.push_back(milliseconds_of([&] { count = query(*who, request, pairs); }));
+            result.query_ms.push_back(milliseconds_of([&] {
+                if (request.self.empty())
+                    count = query(*who, request, pairs);
+                else
+                    query_self(*who, request, method, a, pairs, of_self);
+            }));
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(fmt::format(
                 "{}{} against {}: {}", pose ? fmt::format("{}:{}: ", *request.poses_of_b, lines[frame % poses]) : "",
                 request.a, request.b.value_or("itself"), error.what()));
         }
         if (frame >= poses) continue;
-        result.pairs = std::move(pairs);
-        if (!request.count || !request.self.empty()) {
-            for (const aabb::contact& c : who->sorted_contacts()) result.pairs.push_back({c.triangle_a, c.triangle_b});
-            count = take_pairs(request, method, scene, pose, result, table);
-            digest.add(frame, result.pairs);
+        if (!request.count) {
+            for (const aabb::contact& c : who->sorted_contacts()) pairs.push_back({c.triangle_a, c.triangle_b});
+            count = pairs.size();
+            take_pairs(request, method, scene, frame, of_self, pairs, result, digest, table);
+        }
+        if (!request.self.empty()) {
+            count = of_self.others;
+            result.neighbours = of_self.neighbours;
         }
         result.counts.push_back(count);
     }

@@ -112,8 +112,8 @@ std::uint64_t player::count_contacts() {
     return pipeline_->count_contacts();
 }
 
-void player::find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs) {
-    made_.local->self_pairs(mesh, pairs);
+void player::each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take) {
+    made_.local->each_self_pair(mesh, take);
 }
 
 const std::vector<aabb::index_pair>& player::sorted_pairs() {

@@ -117,9 +117,9 @@ public:
     /// In place of `detect`, in scenes of meshes: any one contact of the frame, how many there are.
     [[nodiscard]] std::optional<aabb::contact> first_contact();
     [[nodiscard]] std::uint64_t count_contacts();
-    /// Appends the pairs of intersecting triangles of one mesh of the scene, which is not divided, with itself, in no
-    /// particular order.
-    void find_self_pairs(std::uint32_t mesh, std::vector<aabb::index_pair>& pairs);
+    /// Hands over the pairs of intersecting triangles a < b of one mesh of the scene, which is not divided, with
+    /// itself, in no particular order.
+    void each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take);
 
     /// Of the frame, by object; by piece where meshes are divided; empty without global search.
     [[nodiscard]] std::span<const aabb::box> boxes() const { return pipeline_ ? pipeline_->boxes() : scene_.boxes(); }

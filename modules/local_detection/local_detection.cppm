@@ -116,11 +116,15 @@ public:
 
     /// Appends every pair of intersecting triangles a < b of one mesh, neighbours that share a vertex included.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
-        append_whole(pairs, [&] {
-            walk_.within(triangle_, m, [&](std::span<const index_pair> found) {
-                for (const index_pair p : found) pairs.push_back(ordered_pair(p.a, p.b));
-                return false;
-            });
+        append_whole(pairs, [&] { each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); }); });
+    }
+
+    /// Hands over the same pairs, one after the other as they are found, and keeps none.
+    template <class Take>
+    void each_self_pair(const model<Tree>& m, const Take& take) {
+        walk_.within(triangle_, m, [&](std::span<const index_pair> found) {
+            for (const index_pair p : found) take(ordered_pair(p.a, p.b));
+            return false;
         });
     }
 

@@ -48,6 +48,10 @@ public:
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) {
         detection_.self_pairs(models_[model], pairs);
     }
+    template <class Take>
+    void each_self_pair(std::uint32_t model, const Take& take) {
+        detection_.each_self_pair(models_[model], take);
+    }
     void refit(std::uint32_t model) { models_[model].refit(refitted_); }
     [[nodiscard]] tree_survey survey(std::uint32_t model) const {
         return survey_of(models_[model].tree(), models_[model].triangles());

@@ -1,6 +1,7 @@
 module;
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -94,6 +95,14 @@ public:
     /// Appends every pair of intersecting triangles a < b of one model, each once, in no particular order. Neighbours
     /// are among them, since they meet in the vertices that they share.
     virtual void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) = 0;
+
+    /// Hands over the same pairs, one after the other, for whoever counts them or leaves some out: around a vertex of n
+    /// triangles there are n²/2. A stage that finds them one by one keeps none.
+    virtual void each_self_pair(std::uint32_t model, const std::function<void(index_pair)>& take) {
+        std::vector<index_pair> pairs;
+        self_pairs(model, pairs);
+        for (const index_pair pair : pairs) take(pair);
+    }
 
     /// Takes note that vertices of the model's mesh have moved. When it throws, queries of the model do too, until a
     /// refit succeeds.

@@ -89,6 +89,9 @@ TEST_CASE("local detection allocates nothing in steady state") {
                 if (!stage->first_pair(model, {}, model, moved)) std::abort();
                 if (stage->count_pairs(model, {}, model, moved) != pairs.size()) std::abort();
                 stage->self_pairs(model, pairs);
+                std::size_t handed = 0;
+                stage->each_self_pair(model, [&](index_pair) { ++handed; });
+                if (handed == 0) std::abort();
                 stage->refit(model);
             }
         }

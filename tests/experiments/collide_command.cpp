@@ -64,6 +64,44 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     REQUIRE(rows.find("\n" + row) != std::string::npos);
 }
 
+TEST_CASE("collide finds neighbours around a vertex of many triangles in the mesh itself") {
+    const temporary_folder folder;
+    constexpr int triangles = 200;
+    // Every third has a vertex of its own at the apex, and one triangle goes through some of the others.
+    std::string vertices = "0 0 0\n";
+    std::string faces;
+    int next = 1;
+    for (int i = 0; i < triangles; ++i) {
+        int apex = 0;
+        if (i % 3 == 0) {
+            vertices += "-0 0 0\n";
+            apex = next++;
+        }
+        vertices += std::to_string(i) + " 100 1\n" + std::to_string(i) + ".5 100 1\n";
+        faces += "3 " + std::to_string(apex) + " " + std::to_string(next) + " " + std::to_string(next + 1) + "\n";
+        next += 2;
+    }
+    vertices += "0 50 -9\n9 50 -9\n5 50 9\n";
+    faces += "3 " + std::to_string(next) + " " + std::to_string(next + 1) + " " + std::to_string(next + 2) + "\n";
+    const std::string mesh = folder.write("fan.off", "OFF\n" + std::to_string(next + 3) + " " +
+                                                         std::to_string(triangles + 1) + " 0\n" + vertices + faces);
+    const auto summary = [&](const std::vector<std::string>& more) {
+        return nlohmann::json::parse(run_program(joined({"collide", mesh, "--self", "--json"}, more)).out);
+    };
+    const auto exact = summary({"--out", folder / "exact.csv", "--engine", "brute_force"});
+    CHECK(exact["neighbours"] == triangles * (triangles - 1) / 2);
+    CHECK(exact["pairs"] > 0);
+    const auto found = summary({"--out", folder / "found.csv"});
+    // It stores them, since it need not find them all.
+    const auto inexact = summary({"--out", folder / "inexact.csv", "--triangle", "moller"});
+    for (const char* member : {"pairs", "neighbours", "digest"}) CHECK(found[member] == exact[member]);
+    CHECK(bytes_of_file(folder / "found.csv") == bytes_of_file(folder / "exact.csv"));
+    const std::string rows = bytes_of_file(folder / "inexact.csv");
+    CHECK(std::ranges::count(rows, '\n') ==
+          1 + inexact["pairs"].get<std::ptrdiff_t>() + inexact["neighbours"].get<std::ptrdiff_t>());
+    CHECK(summary({"--count"})["neighbours"] == exact["neighbours"]);
+}
+
 TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     const temporary_folder folder;
     // Two tetrahedra through each other, and a triangle that shares a corner with the first by position only.

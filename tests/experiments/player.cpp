@@ -228,7 +228,7 @@ TEST_CASE("A player without global search tries every two objects, and can be as
     CHECK(who.count_contacts() == contacts.size());
     CHECK(std::ranges::find(contacts, who.first_contact().value()) != contacts.end());
     std::vector<aabb::index_pair> neighbours;
-    who.find_self_pairs(0, neighbours);
+    who.each_self_pair(0, [&](aabb::index_pair pair) { neighbours.push_back(pair); });
     CHECK(neighbours.size() == 6);
 }
 
