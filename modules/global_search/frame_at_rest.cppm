@@ -21,7 +21,7 @@ class frame_at_rest {
 public:
     /// @returns whether all boxes are where they were in the frame that is kept, so that `pairs` has theirs
     [[nodiscard]] bool lasts(std::span<const box> boxes, const membership& objects) {
-        const bool same_objects = objects.arrivals().empty() && !objects.any_departures() && boxes.size() == size_;
+        const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
         if (!boxes_.empty()) {
             if (same_objects && are_same(boxes, boxes_)) {
                 pause_ = 0;

@@ -1,9 +1,7 @@
 module;
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +23,7 @@ public:
         if (contains(id)) refuse(id, " is inserted twice");
         // An object that leaves and comes back before the next frame never left.
         const bool comes = state_[id] == state::absent;
-        if (comes) arrivals_.push_back(id);
+        arrivals_ += comes;
         state_[id] = comes ? state::coming : state::known;
         ++size_;
     }
@@ -35,7 +33,7 @@ public:
         if (!contains(id)) refuse(id, " is removed but was never inserted");
         --size_;
         if (state_[id] == state::coming) {
-            std::erase(arrivals_, id);
+            --arrivals_;
             state_[id] = state::absent;
         } else {
             state_[id] = state::leaving;
@@ -48,10 +46,18 @@ public:
     [[nodiscard]] inline bool contains(std::uint32_t id) const noexcept {
         return id < state_.size() && (state_[id] == state::coming || state_[id] == state::known);
     }
-    [[nodiscard]] std::span<const std::uint32_t> arrivals() const noexcept { return arrivals_; }
+    /// How many came.
+    [[nodiscard]] std::size_t arrivals() const noexcept { return arrivals_; }
     [[nodiscard]] inline bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::coming; }
     [[nodiscard]] bool any_departures() const noexcept { return departures_; }
     [[nodiscard]] inline bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
+
+    /// Calls `take` with each that came, ascending.
+    void for_each_arrival(auto take) const {
+        if (arrivals_ == 0) return;
+        for (std::size_t id = 0; id < state_.size(); ++id)
+            if (state_[id] == state::coming) take(static_cast<std::uint32_t>(id));
+    }
 
     /// @throws input_error when an object that is present has no box, or when there are boxes but `insert` was never
     /// called: who forgets it would find no pair, without a word.
@@ -66,18 +72,13 @@ public:
 
     /// To be called when arrivals and departures have been taken note of.
     void settle() {
-        assert(std::ranges::all_of(arrivals_, [&](std::uint32_t id) { return is_arrival(id); }));
         if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
-        for (const std::uint32_t id : arrivals_) state_[id] = state::known;
+        if (arrivals_ > 0) std::ranges::replace(state_, state::coming, state::known);
         departures_ = false;
-        // Where all arrive at once, as in a first frame, so many will not again.
-        if (2 * arrivals_.size() > state_.size())
-            release(arrivals_);
-        else
-            arrivals_.clear();
+        arrivals_ = 0;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(state_) + bytes_of(arrivals_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(state_); }
 
 private:
     enum class state : std::uint8_t { absent, coming, known, leaving };
@@ -88,8 +89,8 @@ private:
     }
 
     std::vector<state> state_;  // by id
-    std::vector<std::uint32_t> arrivals_;
     std::size_t size_ = 0;
+    std::size_t arrivals_ = 0;
     bool departures_ = false;
 };
 

@@ -35,10 +35,10 @@ public:
             if (!has_axis(axes_, k)) continue;
             if (objects.any_departures())
                 std::erase_if(lists_[k], [&](const projection& p) { return objects.is_leaving(p.id); });
-            make_room(lists_[k], lists_[k].size() + objects.arrivals().size());
-            for (const std::uint32_t id : objects.arrivals()) lists_[k].push_back({0, id});
+            make_room(lists_[k], lists_[k].size() + objects.arrivals());
+            objects.for_each_arrival([&](std::uint32_t id) { lists_[k].push_back({0, id}); });
         }
-        arrivals_ += objects.arrivals().size();
+        arrivals_ += objects.arrivals();
     }
 
     /// Brings the lists of these axes up to the boxes of a frame, and drops the others.

@@ -140,10 +140,10 @@ private:
 
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         arriving_.clear();
-        for (const std::uint32_t id : objects.arrivals()) {
+        objects.for_each_arrival([&](std::uint32_t id) {
             arriving_.push_back(lower_end(boxes, id, axis));
             arriving_.push_back(upper_end(boxes, id, axis));
-        }
+        });
         sort_ends(arriving_);
         std::vector<interval_end>& list = ends_[axis];
         std::size_t known = list.size();
@@ -174,7 +174,7 @@ private:
                 return !overlaps(boxes[p.a], boxes[p.b]);
             });
         }
-        if (!objects.arrivals().empty())
+        if (objects.arrivals() > 0)
             find_pairs(boxes, longest_axis(separation), counters,
                        [&](std::uint32_t id) { return objects.is_arrival(id); });
     }

@@ -67,7 +67,7 @@ public:
         if (objects.any_departures()) forget_departures(objects);
         before_.resize(boxes.size());
         places_.resize(boxes.size());
-        const std::size_t known = objects.size() - objects.arrivals().size();
+        const std::size_t known = objects.size() - objects.arrivals();
         if (2 * known < objects.size() || objects.size() > 2 * planned_ || 2 * objects.size() < planned_) {
             start_anew(boxes, objects, counters);
         } else {

@@ -17,7 +17,7 @@ void box_engine::update(std::span<const box> boxes) {
     require_ieee_arithmetic();
     objects_.require_boxes_for_all(boxes.size());
     require_valid(boxes);
-    if (objects_.any_departures() || !objects_.arrivals().empty()) {
+    if (objects_.any_departures() || objects_.arrivals() > 0) {
         ids_.clear();
         for (std::uint32_t id = 0; id < boxes.size(); ++id)
             if (is_present(id)) ids_.push_back(id);
