@@ -59,3 +59,13 @@ TEST_CASE("The archived run is whole, README says what is found in it, and so do
     CHECK(again.status == 0);
     CHECK(again.out.ends_with("of 14 claims recomputed, 0 differences\n"));
 }
+
+TEST_CASE("The archived quick run is whole, and what quick runs are compared with") {
+    const temporary_folder folder;
+    const program_result judged = run_program(
+        {"reproduce", "--judge", (root / "paper/archive/quick_run.tar.xz").string(), "--out", folder.path().string()});
+    INFO(judged.err);
+    REQUIRE(judged.status == 0);
+    CHECK(judged.err.find("not sealed") == std::string::npos);
+    CHECK(judged.out.ends_with("These results are the published run, paper/archive/quick_run.tar.xz.\n"));
+}
