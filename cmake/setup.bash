@@ -164,13 +164,14 @@ run_apt() {
 
 # A source that we do not need may be out of reach; but then there is no long wait for the others.
 update_apt() {
-    run_apt asking -o APT::Update::Error-Mode=any -o Acquire::Retries=0 update || patience=(-o Acquire::Retries=0)
+    run_apt 'updating package lists' -o APT::Update::Error-Mode=any -o Acquire::Retries=0 update || patience=(-o Acquire::Retries=0)
 }
 
-# Says how much apt-get is about to install for `wanted`, with all that these depend on.
+# Says how much apt-get is about to install for `wanted`, with all that these depend on. Where it can't, installing tells
+# why.
 say_how_much() {
     local plan versions sizes
-    plan=$(LC_ALL=C apt-get -s install --no-install-recommends "${wanted[@]}" 2>>"$apt_log") || explain_apt
+    plan=$(LC_ALL=C apt-get -s install --no-install-recommends "${wanted[@]}" 2>/dev/null) || return 0
     mapfile -t versions < <(sed -nE 's/^Inst ([^ ]+) (\[[^]]*\] )?\(([^ ]+) .*/\1=\3/p' <<<"$plan")
     ((${#versions[@]} > 0)) || return 0
     sizes=$(apt-cache show "${versions[@]}" 2>>"$apt_log" | awk '
@@ -184,9 +185,11 @@ install_wanted() { run_apt installing "${patience[@]}" install -y --no-install-r
 
 # Does what is left to do where installing was cut short, by a signal or by a power cut.
 repair_packages() {
-    grep -q '^E: dpkg was interrupted' "$apt_log" || return 1
-    say 'packages were being installed when that was cut short; repairing it with dpkg --configure -a'
-    logged repairing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive dpkg --configure -a
+    grep -qE '^E: (dpkg was interrupted|Unmet dependencies)' "$apt_log" || return 1
+    say 'packages were being installed when that was cut short; repairing it with dpkg --configure -a and apt-get -f install'
+    # What waits for packages that are not there yet cannot be configured.
+    logged repairing "$apt_log" "${as_root[@]}" DEBIAN_FRONTEND=noninteractive dpkg --configure -a || true
+    run_apt repairing "${patience[@]}" -f install -y
 }
 
 # install_missing PACKAGE…: installs what is missing of these.

@@ -11,11 +11,11 @@ for folder in modules strategies validation/engines paper experiments/stepping t
 done
 cp -r "$root/experiments/stored_output" checkout/experiments/
 sed -i "s|/etc/os-release|$work/os-release|g; s|/etc/apt/sources.list.d|$work/sources|g" checkout/cmake/setup.bash
-sed -i "s|/var/lib/dpkg/status|$work/packages|g" checkout/aabblab
+sed -i "s|/var/lib/dpkg/status|$work/packages|g" checkout/cmake/build.bash
 touch packages
 holds 'the system is made up' grep -q "$work/os-release" checkout/cmake/setup.bash
 holds 'so are its package sources' grep -q "$work/sources" checkout/cmake/setup.bash
-holds 'and what is installed on it' grep -q "$work/packages" checkout/aabblab
+holds 'and what is installed on it' grep -q "$work/packages" checkout/cmake/build.bash
 for tool in awk bash cat chmod chown cp cut dirname env find flock grep ln mkdir mkfifo mv readlink rm sed sh sleep sort tail tee timeout touch true uniq wc; do
     ln -s "$(type -P "$tool")" bin/
 done

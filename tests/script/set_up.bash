@@ -34,13 +34,22 @@ echo "$*" >>"$WORK/calls"
 case "$*" in
 indextargets*) cat "$WORK/targets" ;;
 -s*)
+    if [ -e "$WORK/unmet" ]; then
+        echo 'E: Unmet dependencies. Try apt --fix-broken install with no packages (or specify a solution).'
+        exit 100
+    fi
     for name; do
         case $name in -* | install) ;; *) echo "Inst ${name%/*} (1-2 Debian:12.15/oldstable [amd64])" ;; esac
     done
     echo 'Inst libgmp10 [1-1] (1:2-3 Debian:12.15/oldstable [amd64])'
     echo 'Conf libgmp10 (1:2-3 Debian:12.15/oldstable [amd64])'
     ;;
+*'-f install'*) rm -f "$WORK/unmet" ;;
 *install*)
+    if [ -e "$WORK/unmet" ]; then
+        echo 'E: Unmet dependencies. Try apt --fix-broken install with no packages (or specify a solution).'
+        exit 100
+    fi
     if [ -e "$WORK/cut_short" ]; then
         echo "E: dpkg was interrupted, you must manually run 'dpkg --configure -a' to correct the problem. "
         exit 100
@@ -199,11 +208,16 @@ expect 'and how much that is, before it installed' 0 "^$amount$" grep -m 1 ' ins
 # Killed while it installed.
 on ID=debian VERSION_ID=13 VERSION_CODENAME=trixie
 touch cut_short
-expect 'it is repaired' 2 '^aabblab: packages were being installed when that was cut short; repairing it with dpkg --configure -a$' \
-    aabblab pairs
+repairing='^aabblab: packages were being installed when that was cut short; repairing it with dpkg --configure -a and apt-get -f install$'
+expect 'it is repaired' 2 "$repairing" aabblab pairs
 holds 'by dpkg' grep -qx 'dpkg --configure -a' calls
 holds 'and installed then' test "$(tail -n 1 calls)" = "-o DPkg::Lock::Timeout=300 install -y --no-install-recommends $all"
 holds 'as a whole' test "$(wc -w <installed)" -ge "$(wc -w <<<"$all")"
+: >installed
+touch unmet
+expect 'where dependencies are missing, it is repaired, too' 2 "$repairing" aabblab pairs
+holds 'by apt-get' grep -qx -e '-o DPkg::Lock::Timeout=300 -f install -y' calls
+holds 'and then all is installed' test "$(wc -w <installed)" -ge "$(wc -w <<<"$all")"
 
 # ---- The paper ----
 
