@@ -61,7 +61,7 @@ void classify_lines(line_stream lines, const aabb::triangle_test& test, const cl
     while (lines.next()) {
         if (shown) shown->at(lines.bytes_read());
         try {
-            const std::vector<std::string> words = split_numbers(lines.line().substr(0, lines.line().find('#')));
+            const std::vector<std::string> words = split_numbers(without_comment(lines.line()));
             if (words.empty()) continue;
             print(request.keep_doubles ? answer_of<double>(test, words, request.geometry)
                                        : answer_of<float>(test, words, request.geometry));

@@ -56,7 +56,7 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
 poses_of_file read_poses(const std::string& file) {
     poses_of_file read;
     for (line_stream lines(file); lines.next();) {
-        const std::string_view line = lines.line().substr(0, lines.line().find('#'));
+        const std::string_view line = without_comment(lines.line());
         if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
         if (read.poses.size() == most_poses) lines.fail(fmt::format("there are more than {} poses", most_poses));
         try {

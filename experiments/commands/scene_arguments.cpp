@@ -53,8 +53,6 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     if (arguments.size() > 2)
         throw aabb::input_error("more than two meshes move by a motion file, which comes first; " + first +
                                 " is a mesh");
-    // Says what is wrong with a name that is neither a mesh nor anything else.
-    for (const std::string& name : arguments) (void)make_mesh(name);
     note_left_out(arguments);
     return {"mesh_pair", {{"normalise", "no"}}, arguments, 1, {}};
 }

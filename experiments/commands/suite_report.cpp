@@ -134,7 +134,7 @@ void keep_report(const std::filesystem::path& file, const suite_report& report) 
 }
 
 suite_report kept_report(const std::filesystem::path& file) {
-    const json_value all(file.string(), bytes_of_file(file), "is not the report of a suite of validate");
+    const json_value all(file.string(), text_of_file(file), "is not the report of a suite of validate");
     suite_report report;
     report.paragraphs = all.needed("paragraphs").texts();
     report.failures = all.needed("failures").texts();

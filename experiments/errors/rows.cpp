@@ -97,7 +97,7 @@ table error_rows(std::span<const error_point> points) {
 }
 
 std::vector<error_point> read_error_rows(const std::filesystem::path& file) {
-    const std::vector<csv_record> records = read_csv(text_of_file(file), file.string()).records;
+    const std::vector<csv_record> records = whole_records_of(text_of_file(file), file.string());
     std::vector<std::string> header;
     for (const column& c : columns()) header.push_back(c.name);
     if (records.empty() || records[0].fields != header)

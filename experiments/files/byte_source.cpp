@@ -67,7 +67,7 @@ void byte_source::wait_for_writer() {
         const ssize_t got = ::read(descriptor_, first.data(), first.size());
         if (got > 0) ahead_ = first[0];
         if (got != 0) return;  // something to read, or a writer that has not written yet
-        if (std::chrono::steady_clock::now() > end) fail("is a pipe that nobody writes into");
+        if (std::chrono::steady_clock::now() > end) fail("is a named pipe with no writer");
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
 }

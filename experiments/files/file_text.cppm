@@ -28,6 +28,13 @@ struct file_text {
     return "'" + std::string(word.substr(0, end)) + (end < word.size() ? "…'" : "'");
 }
 
+/// "1 vertex", "3 vertices"
+/// @param many where it is not `one` and an s
+[[nodiscard]] inline std::string counted(std::size_t count, std::string_view one, std::string_view many = {}) {
+    const std::string several = many.empty() ? std::string(one) + "s" : std::string(many);
+    return std::to_string(count) + " " + (count == 1 ? std::string(one) : several);
+}
+
 /// Refuses what is not a regular file.
 /// @return its size in bytes.
 /// @throws aabb::input_error that says what it is instead.

@@ -15,6 +15,7 @@ export module aabblab.files;
 
 import aabb.geometry;
 import aabb.pipeline;
+export import :comment;
 export import :loaded_mesh;
 
 export namespace aabblab {

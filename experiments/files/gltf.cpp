@@ -165,14 +165,14 @@ private:
                const std::string& mesh) const {
         const auto is_zero = [](double weight) { return weight == 0; };
         if (weights.size() != primitive.targets.size() && !std::ranges::all_of(weights, is_zero))
-            fail(mesh + " has a primitive of " + std::to_string(primitive.targets.size()) + " morph targets, but " +
-                 std::to_string(weights.size()) + " weights for them");
+            fail(mesh + " has a primitive of " + counted(primitive.targets.size(), "morph target") + ", but " +
+                 counted(weights.size(), "weight"));
         for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
             if (!primitive.targets[t] || weights[t] == 0) continue;
             const std::vector<double> moves = positions(*primitive.targets[t], true);
             if (moves.size() != points.size())
-                fail(mesh + " has a morph target of " + std::to_string(moves.size() / 3) + " vertices, but " +
-                     std::to_string(points.size() / 3) + " positions");
+                fail(mesh + " has a morph target for a number of vertices other than its own: " +
+                     std::to_string(moves.size() / 3) + ", not " + std::to_string(points.size() / 3));
             for (std::size_t i = 0; i < points.size(); ++i) points[i] += weights[t] * moves[i];
         }
     }
@@ -218,8 +218,8 @@ private:
                 if (weight == 0) continue;
                 const auto joint = static_cast<std::size_t>(set.joints[i]);
                 if (joint >= joints.size())
-                    fail(mesh + " has a vertex of joint " + std::to_string(joint) + ", but its skin has " +
-                         std::to_string(joints.size()) + ", counted from 0");
+                    fail(mesh + " has a vertex that refers to joint " + std::to_string(joint) +
+                         ", counted from 0, but its skin has " + counted(joints.size(), "joint"));
                 const aabb::vec3d at = moved(joints[joint], p);
                 for (int k = 0; k < 3; ++k) sum[k] += weight * at[k];
                 weights += weight;
@@ -250,11 +250,7 @@ private:
             const aabb::vec3d p = {points[3 * v], points[3 * v + 1], points[3 * v + 2]};
             // A skinned mesh stands where its joints are, wherever its node is.
             const aabb::vec3d at = node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(place, p);
-            const aabb::vec3f rounded = {static_cast<float>(at[0]), static_cast<float>(at[1]),
-                                         static_cast<float>(at[2])};
-            if (!aabb::is_finite(rounded))
-                fail("vertex " + std::to_string(mesh_.vertices()) + " has a coordinate that is not finite");
-            mesh_.add_vertex(rounded);
+            mesh_.add_vertex({static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])});
         }
         return count;
     }
@@ -306,10 +302,13 @@ private:
                 drop(count % 3 == 0 ? 0 : 1);
                 break;
             case gltf_mode::triangle_strip:  // every other one is turned, so that all face one way
-                for (std::size_t i = 2; i < count; ++i) add(i - 2, i - (i + 1) % 2, i - i % 2);
+                for (std::size_t i = 2; i < count; ++i)
+                    mesh_.add_strip_triangle({corners[i - 2], corners[i - (i + 1) % 2], corners[i - i % 2]}, faces_++);
+                drop(count == 1 || count == 2 ? 1 : 0);
                 break;
             case gltf_mode::triangle_fan:
                 for (std::size_t i = 2; i < count; ++i) add(0, i - 1, i);
+                drop(count == 1 || count == 2 ? 1 : 0);
                 break;
         }
     }

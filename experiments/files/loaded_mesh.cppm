@@ -20,7 +20,7 @@ struct skipped_parts {
 /// What reading a mesh did to it.
 struct mesh_report {
     std::size_t polygons = 0;   ///< faces of more than three corners
-    std::size_t concave = 0;    ///< those of them that were cut by ears; the others were fanned
+    std::size_t concave = 0;    ///< those of them that were ear-clipped; the others were fan-triangulated
     std::size_t zero_area = 0;  ///< triangles of zero area, exactly: kept
     /// Coordinates that are not floats: rounded to nearest. Text counts when it differs from the float as far as a
     /// double can tell, so "0.1" does.

@@ -40,10 +40,6 @@ constexpr format formats[] = {{".off", read_off, always},         {".obj", read_
                               {".ply", read_ply, is_text_ply},    {".stl", read_stl, is_text_stl},
                               {".gltf", read_gltf, is_gltf_text}, {".glb", read_gltf, is_gltf_text}};
 
-std::string counted(std::size_t count, std::string_view one, std::string_view many) {
-    return std::to_string(count) + " " + std::string(count == 1 ? one : many);
-}
-
 /// Sentences with commas between.
 class enumeration {
 public:
@@ -70,24 +66,24 @@ std::vector<std::string> mesh_endings() {
 
 std::string mesh_report::left_out() const {
     enumeration all;
-    if (dropped) all.add(counted(dropped, "face", "faces") + " of fewer than three corners dropped");
-    if (stitches) all.add(counted(stitches, "triangle", "triangles") + " of strips that repeat a corner left out");
+    if (dropped) all.add(counted(dropped, "face") + " of fewer than three corners dropped");
+    if (stitches) all.add(counted(stitches, "triangle") + " of strips skipped, which repeat a corner");
     if (not_finite)
-        all.add(counted(not_finite, "vertex", "vertices") + " with NaN or infinity, which no face uses, put elsewhere");
-    if (animations) all.add(counted(animations, "animation", "animations") + " ignored");
+        all.add(counted(not_finite, "vertex", "vertices") +
+                " with NaN or infinity, which no face uses, moved onto another");
+    if (animations) all.add(counted(animations, "animation") + " ignored");
     if (hidden_meshes) all.add(counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
-    for (const auto& [what, name, count] : skipped)
-        all.add(counted(count, what, std::string(what) + "s") + " " + in_quotes(name) + " skipped");
+    for (const auto& [what, name, count] : skipped) all.add(counted(count, what) + " " + in_quotes(name) + " skipped");
     if (skipped_others) all.add(std::to_string(skipped_others) + " of other names skipped");
     return all.text();
 }
 
 std::string mesh_report::text() const {
     enumeration all;
-    if (polygons > concave) all.add(counted(polygons - concave, "polygon", "polygons") + " fanned");
-    if (concave) all.add(counted(concave, "concave polygon", "concave polygons") + " cut by ears");
-    if (zero_area) all.add(counted(zero_area, "triangle", "triangles") + " of zero area kept");
-    if (rounded) all.add(counted(rounded, "coordinate", "coordinates") + " rounded to float");
+    if (polygons > concave) all.add(counted(polygons - concave, "polygon") + " fan-triangulated");
+    if (concave) all.add(counted(concave, "concave polygon") + " ear-clipped");
+    if (zero_area) all.add(counted(zero_area, "triangle") + " of zero area kept");
+    if (rounded) all.add(counted(rounded, "coordinate") + " rounded to float");
     if (const std::string others = left_out(); !others.empty()) all.add(others);
     return all.text();
 }

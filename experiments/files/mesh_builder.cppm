@@ -44,11 +44,7 @@ public:
     /// dropped.
     /// @param place where it stands in the file, for errors: a line or a face
     void add_face(std::span<const std::uint32_t> corners, std::size_t place) {
-        for (const std::uint32_t corner : corners)
-            if (corner >= greatest_) {
-                greatest_ = std::size_t{corner} + 1;
-                greatest_at_ = place;
-            }
+        for (const std::uint32_t corner : corners) use(corner, place);
         if (corners.size() < 3) return drop();
         if (corners.size() > 3) polygons_.push_back({loaded_.mesh.triangles.size(), corners.size(), place});
         for (std::size_t i = 2; i < corners.size(); ++i)
@@ -59,6 +55,13 @@ public:
     void ignore(std::size_t animations, std::size_t hidden_meshes) {
         loaded_.report.animations = animations;
         loaded_.report.hidden_meshes = hidden_meshes;
+    }
+
+    /// Has the vertex be there when the mesh is finished.
+    void use(std::uint32_t corner, std::size_t place) {
+        if (corner < greatest_) return;
+        greatest_ = std::size_t{corner} + 1;
+        greatest_at_ = place;
     }
 
     /// A triangle of a strip. One that repeats a corner only joins two parts of the strip, from one to the other
@@ -125,8 +128,7 @@ private:
                 throw aabb::input_error(std::string(before) + std::to_string(p.place) + ": the boundary of a face of " +
                                         std::to_string(p.corners) + " corners " + sentence);
             };
-            if (shape == polygon_shape::no_normal)
-                fail("has no normal, as it encloses no area or as much in either direction");
+            if (shape == polygon_shape::no_normal) fail("has no normal, as its signed area is zero");
             if (shape == polygon_shape::crosses_itself) fail("crosses itself");
             loaded_.report.concave += static_cast<std::size_t>(shape == polygon_shape::concave);
         }

@@ -22,15 +22,29 @@ namespace aabblab {
 
 namespace {
 
-/// The next word of a statement, which a backslash at the end of a line carries on to the next line.
-std::string_view statement_word(text_scanner& in) {
-    std::string_view word = in.word();
-    while (word == "\\" && !in.more()) {
-        if (!in.next_line()) in.ends("after a backslash");
-        word = in.word();
+/// The words of a statement, which a backslash at the end of a line carries on to the next line.
+class statement_words {
+public:
+    explicit statement_words(text_scanner& in) : in_(in) {}
+
+    /// Empty behind the last.
+    [[nodiscard]] std::string_view next() {
+        for (;;) {
+            if (goes_on_ && !in_.next_line()) in_.ends("after a backslash");
+            std::string_view word = in_.word();
+            goes_on_ = word.ends_with('\\') && !in_.more();
+            if (goes_on_) word.remove_suffix(1);
+            if (!word.empty() || !goes_on_) return word;
+        }
     }
-    return word;
-}
+    void skip() {
+        while (!next().empty()) continue;
+    }
+
+private:
+    text_scanner& in_;
+    bool goes_on_ = false;
+};
 
 /// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Numbers count from 1, negative ones from the last
 /// vertex so far.
@@ -42,8 +56,8 @@ std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t 
     if (value == 0) in.fail("a face uses vertex 0, but vertices are counted from 1");
     const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(vertices) + value;
     if (index < 0 || index > std::numeric_limits<std::uint32_t>::max())
-        in.fail("a face uses vertex " + std::string(number) + ", but there are " + std::to_string(vertices) +
-                " vertices so far");
+        in.fail("a face uses vertex " + std::string(number) + ", with " + counted(vertices, "vertex", "vertices") +
+                " before it");
     return static_cast<std::uint32_t>(index);
 }
 
@@ -61,20 +75,22 @@ loaded_mesh read_obj(const file_text& file) {
     mesh_builder mesh(file.name);
     std::vector<std::uint32_t> corners;
     while (in.next_line()) {
-        const std::string_view statement = in.word();
+        statement_words words(in);
         const std::size_t line = in.line();
+        const std::string_view statement = words.next();
         if (statement == "v") {
             aabb::vec3f p{};
-            for (int k = 0; k < 3; ++k) p[k] = in.coordinate(statement_word(in));
+            for (int k = 0; k < 3; ++k) p[k] = in.coordinate(words.next());
             mesh.add_vertex(p, line);
+            words.skip();                                    // a weight, or a colour
         } else if (statement == "f" || statement == "fo") {  // "fo" is what the first versions of the format had
             corners.clear();
-            for (std::string_view word = statement_word(in); !word.empty(); word = statement_word(in))
+            for (std::string_view word = words.next(); !word.empty(); word = words.next())
                 corners.push_back(corner(in, word, mesh.vertices()));
             mesh.add_face(corners, line);
         } else {
             if (std::ranges::find(silent, statement) == std::end(silent)) mesh.skip("statement", statement, 1);
-            while (!statement_word(in).empty()) continue;
+            words.skip();
         }
     }
     return mesh.finish(in.rounded(), file.name + ":", 1);

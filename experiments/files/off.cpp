@@ -72,13 +72,16 @@ public:
             in_.expected("the end of the line after the last vertex", in_.word());
         for (std::uint64_t f = 0; f < faces; ++f) read_face(f, faces);
         if ((how_ == arrangement::words && in_.more()) || in_.next_line())
-            in_.fail("expected the end of the file after " + std::to_string(vertices) + " vertices and " +
-                     std::to_string(faces) + " faces, found " + in_quotes(in_.word()));
+            in_.fail("expected the end of the file after " + counted(vertices, "vertex", "vertices") + " and " +
+                     counted(faces, "face") + ", found " + in_quotes(in_.word()));
+        is_so_arranged_ = true;
         return mesh_.finish(in_.rounded(), name_ + ":", 0);
     }
 
     /// Whether a vertex was read.
     [[nodiscard]] bool has_vertex() const { return mesh_.vertices() > 0; }
+    /// Whether the end was come to, so that what is wrong is not how numbers stand on lines.
+    [[nodiscard]] bool is_so_arranged() const { return is_so_arranged_; }
 
 private:
     /// Goes to the next word.
@@ -126,6 +129,7 @@ private:
     text_scanner in_;
     std::string name_;
     arrangement how_;
+    bool is_so_arranged_ = false;
     mesh_builder mesh_;
     std::vector<std::uint32_t> corners_;
 };
@@ -134,13 +138,14 @@ struct attempt {
     std::optional<loaded_mesh> loaded;
     std::string refusal;
     bool has_vertex = false;
+    bool is_so_arranged = false;
 };
 attempt read_as(const file_text& file, arrangement how) {
     off_reader reader(file, how);
     try {
-        return {reader.read(), {}, true};
+        return {reader.read(), {}, true, true};
     } catch (const aabb::input_error& error) {
-        return {{}, error.what(), reader.has_vertex()};
+        return {{}, error.what(), reader.has_vertex(), reader.is_so_arranged()};
     }
 }
 
@@ -159,6 +164,8 @@ loaded_mesh read_off(const file_text& file) {
                                 "more faces; expected each vertex and each face on a line of its own");
     for (attempt* other : {&face_lines, &words})
         if (other->loaded) return *std::move(other->loaded);
+    for (const attempt* one : {&lines, &face_lines, &words})
+        if (one->is_so_arranged) throw aabb::input_error(one->refusal);
     throw aabb::input_error(lines.has_vertex ? lines.refusal : words.refusal);
 }
 

@@ -6,6 +6,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,6 +50,9 @@ public:
     void skip(scalar) {
         if (in_.word().empty()) in_.expected("the value of a property", {});
     }
+    void end_element() {
+        if (in_.more()) in_.expected("the end of the line after the last property", in_.word());
+    }
     [[nodiscard]] std::size_t place(std::uint64_t) const { return in_.line(); }
     [[nodiscard]] std::size_t line() const { return in_.line(); }
     void end() {
@@ -91,6 +95,7 @@ public:
         return static_cast<std::int64_t>(value);
     }
     void skip(scalar type) { static_cast<void>(number(type)); }
+    static void end_element() {}
     [[nodiscard]] static std::size_t place(std::uint64_t face) { return face; }
     void end() const {
         if (bytes_.find_first_not_of(" \t\r\n") != std::string_view::npos)
@@ -140,23 +145,26 @@ private:
 };
 
 /// The triangles of a strip: each three neighbours in it, of which every other triangle is turned so that all face one
-/// way; -1 ends a part, behind which another begins anew.
+/// way; -1 ends a part, behind which another begins anew. A part of fewer than three corners is dropped.
 class strip_triangles {
 public:
     strip_triangles(mesh_builder& mesh, std::size_t place) : mesh_(mesh), place_(place) {}
 
     void add(std::int64_t corner) {
-        if (corner < 0) {
-            count_ = 0;
-            return;
-        }
+        if (corner < 0) return end_part();
         const auto c = static_cast<std::uint32_t>(corner);
+        mesh_.use(c, place_);
         if (count_ >= 2) {
             const bool is_turned = count_ % 2 != 0;
             mesh_.add_strip_triangle({last_[is_turned ? 1 : 0], last_[is_turned ? 0 : 1], c}, place_);
         }
         last_ = {last_[1], c};
         ++count_;
+    }
+
+    void end_part() {
+        if (count_ == 1 || count_ == 2) mesh_.drop();
+        count_ = 0;
     }
 
 private:
@@ -181,6 +189,7 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
                     strip_triangles strip(mesh, values.place(index));
                     for (std::uint32_t left = values.whole(*p.count); left > 0; --left)
                         strip.add(values.corner_or_end(p.type));
+                    strip.end_part();
                 } else if (p.meaning == role::corners) {
                     corners.clear();
                     for (std::uint32_t left = values.whole(*p.count); left > 0; --left)
@@ -193,6 +202,7 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
                         values.skip(p.type);
                 }
             }
+            values.end_element();
             if (e.name == "vertex") mesh.add_vertex(point, values.line());
         }
     }
@@ -218,7 +228,16 @@ loaded_mesh read_ply(const file_text& file) {
 
 bool is_text_ply(std::string_view bytes) {
     const std::size_t end = end_of_header(bytes);
-    return end == std::string_view::npos || bytes.substr(0, end).find("format binary_") == std::string_view::npos;
+    if (end == std::string_view::npos) return true;
+    for (std::string_view rest = bytes.substr(0, end); !rest.empty();) {
+        const std::size_t line_end = rest.find_first_of("\r\n");
+        std::istringstream line{std::string(rest.substr(0, line_end))};
+        std::string keyword;
+        std::string values;
+        if (line >> keyword >> values; keyword == "format") return !values.starts_with("binary_");
+        rest.remove_prefix(line_end + 1);
+    }
+    return true;
 }
 
 }  // namespace aabblab

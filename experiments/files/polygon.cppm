@@ -34,7 +34,7 @@ enum class polygon_shape : std::uint8_t {
 };
 
 /// A polygon is looked at along the dominant axis of its Newell normal (the first one of equals), where it bounds what
-/// its boundary winds around. Convex, it is fanned from its first corner. Concave, it is cut by ears: corners whose
+/// its boundary winds around. Convex, it is fan-triangulated from its first corner. Concave, it is ear-clipped: corners whose
 /// triangle with their neighbours lies in what is left, which then loses this triangle. The result depends on the cycle
 /// of corners, not on the first of them; the reversed polygon gets the same triangles, reversed.
 ///

@@ -108,25 +108,36 @@ loaded_mesh read_text(const file_text& file) {
     std::size_t count = 0;
     bool in_solid = false;
     bool in_facet = false;
+    const auto require_end_of_line = [&] {
+        if (in.more()) in.expected("the end of the line", in.word());
+    };
     while (in.next_line()) {
         const std::string_view word = in.word();
         if (is_keyword(word, "vertex") && in_facet) {
             const aabb::vec3f p = in.point();
+            require_end_of_line();
             if (!aabb::is_finite(p)) in.fail("the vertex has a coordinate that is not finite");
             if (count == 3) in.fail("a facet has more than three vertices");
             corners[count++] = merger.index_of(p);
         } else if (is_keyword(word, "facet") && in_solid && !in_facet) {
             in_facet = true;
             count = 0;
+            // Its normal follows from its vertices.
+            for (int i = 0; i < 4; ++i) static_cast<void>(in.word());
+            require_end_of_line();
         } else if (is_keyword(word, "endfacet") && in_facet) {
             if (count < 3) in.fail("a facet has " + std::to_string(count) + " vertices, not three");
             mesh.add_face(corners, in.line());
             in_facet = false;
+            require_end_of_line();
         } else if (is_keyword(word, "solid") && !in_solid) {
             in_solid = true;
         } else if (is_keyword(word, "endsolid") && in_solid && !in_facet) {
             in_solid = false;
-        } else if (!(is_keyword(word, "outer") || is_keyword(word, "endloop")) || !in_facet) {
+        } else if (in_facet && (is_keyword(word, "outer") || is_keyword(word, "endloop"))) {
+            if (is_keyword(word, "outer")) static_cast<void>(in.word());
+            require_end_of_line();
+        } else {
             in.expected(in_facet ? "a vertex or endfacet" : in_solid ? "facet or endsolid" : "solid", word);
         }
     }

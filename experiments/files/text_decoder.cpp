@@ -93,7 +93,9 @@ void text_decoder::finish(std::string& text) {
         add(std::exchange(start_, {}), text);
     }
     if (!problem_.empty()) return;
-    if (half_ || high_surrogate_ != 0) take_character(replacement, text);
+    // What may stand behind a text may do so in one byte.
+    const bool is_cut_off = half_ && !is_padding(static_cast<char>(*half_));
+    if (is_cut_off || high_surrogate_ != 0) take_character(replacement, text);
     // Nothing follows those that wait, so that they end a line.
     text.append(std::exchange(returns_, 0), '\n');
 }
@@ -168,8 +170,8 @@ void text_decoder::take_byte(char c, std::string& text) {
     }
     if (padding_ != ' ') {
         if (is_blank(c)) return;
-        problem_ = std::string("is no text: ") + (padding_ == ctrl_z ? "Ctrl-Z" : "a NUL") + " stands in line " +
-                   std::to_string(line_) + ", and more follows";
+        problem_ = std::string("is not text: ") + (padding_ == ctrl_z ? "Ctrl-Z" : "a NUL byte") + " in line " +
+                   std::to_string(line_) + ", with more behind it";
         return;
     }
     if (ends_ == line_end::unknown) {

@@ -15,6 +15,7 @@ module aabblab.files:text_scanner;
 
 import aabb.base;
 import aabb.geometry;
+import :comment;
 import :file_text;
 
 namespace aabblab {
@@ -32,7 +33,7 @@ public:
             rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
             ++number_;
             line_ = line_without_return(line_, [this](const std::string& sentence) { fail(sentence); });
-            if (comment_ != '\0') line_ = line_.substr(0, line_.find(comment_));
+            if (comment_ != '\0') line_ = without_comment(line_, comment_);
             skip_blanks();
             if (!line_.empty()) return true;
         }

@@ -108,4 +108,11 @@ csv_text read_csv(std::string_view text, const std::string& file) {
     return all;
 }
 
+std::vector<csv_record> whole_records_of(std::string_view text, const std::string& file) {
+    csv_text all = read_csv(text, file);
+    if (all.bytes < text.size())
+        throw aabb::input_error(file + ": its last row is cut off: expected a line feed behind it");
+    return std::move(all.records);
+}
+
 }  // namespace aabblab

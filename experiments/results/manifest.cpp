@@ -124,7 +124,7 @@ struct read_in {
 read_in read_json(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         throw aabb::input_error(file.string() + " is not there; results without it cannot be used");
-    const std::string text = bytes_of_file(file);
+    const std::string text = text_of_file(file);
     const char* const otherwise = "is not a manifest of results";
     json_value content(file.string(), text, otherwise);
     if (!content.has("build") || !content.has("config")) throw aabb::input_error(file.string() + " " + otherwise);

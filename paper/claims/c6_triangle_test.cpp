@@ -32,7 +32,7 @@ using test_times = std::map<std::string, std::vector<std::vector<double>>>;
 
 void read_process(const std::filesystem::path& file, std::size_t process, test_times& times) {
     const std::string otherwise = "is not a result of Google Benchmark (remove it to measure again)";
-    const json_value results(file.string(), bytes_of_file(file), otherwise);
+    const json_value results(file.string(), text_of_file(file), otherwise);
     if (!results.has("benchmarks")) throw aabb::input_error(file.string() + " " + otherwise);
     for (const json_value& one : results.objects("benchmarks")) {
         if (one.text("run_type") != "iteration") continue;

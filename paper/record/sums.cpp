@@ -44,7 +44,7 @@ sums stated_sums(const std::filesystem::path& file) {
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;
-        if (line.ends_with('\r')) line.pop_back();
+        while (line.ends_with('\r')) line.pop_back();
         if (line.size() < 67 || line.substr(64, 2) != "  ")
             throw aabb::input_error(
                 fmt::format("{}:{}: expected a checksum of 64 digits, two blanks and a file", file.string(), number));

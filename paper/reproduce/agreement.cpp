@@ -25,7 +25,7 @@ std::string agreement_of(std::span<const claim_result> here, std::span<const cla
             differing +=
                 fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id, text_of(c), verdict);
     }
-    return fmt::format("{} of {} verdicts are those of {}{}.", same, here.size(), other, differing);
+    return fmt::format("{} of {} verdicts agree with {}{}.", same, here.size(), other, differing);
 }
 
 }  // namespace aabblab

@@ -59,5 +59,9 @@ TEST_CASE("Whatever is written as CSV is read back, and a record that is cut off
         const auto left = read_csv(text.substr(0, cut), "t.csv");
         RC_ASSERT(left.records.size() == complete);
         RC_ASSERT(left.bytes == ends[complete]);
+        if (left.bytes < cut)
+            RC_ASSERT_THROWS_AS((void)aabblab::whole_records_of(text.substr(0, cut), "t.csv"), aabb::input_error);
+        else
+            RC_ASSERT(aabblab::whole_records_of(text.substr(0, cut), "t.csv").size() == complete);
     }));
 }

@@ -93,6 +93,15 @@ TEST_CASE("glTF: a buffer beside the file, in it, or in a .glb file") {
     CHECK(read(file, "a.glb").mesh.vertices[3] == aabb::vec3f{0, 0, 1});
 }
 
+TEST_CASE("A vertex of glTF that no face uses may be anywhere") {
+    const aabblab::loaded_mesh loaded =
+        read(parts{.nodes = R"({"mesh":0,"scale":[1,1,1e300]})",
+                   .indices = R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"})"}
+                 .text());
+    CHECK(loaded.mesh.triangles == triangles{{0, 1, 2}});
+    CHECK(loaded.report.not_finite == 1);
+}
+
 TEST_CASE("glTF: every mode of primitives, every type of indices, with a stride or without indices") {
     const auto mode = [](int number, const std::string& indices) {
         parts p;
@@ -100,6 +109,16 @@ TEST_CASE("glTF: every mode of primitives, every type of indices, with a stride 
         return p;
     };
     CHECK(read(mode(5, "").text()).mesh.triangles == triangles{{0, 1, 2}, {1, 3, 2}});
+    // Its third triangle has a corner twice: it joins two parts of the strip.
+    const aabblab::loaded_mesh strip = read(mode(5, R"(,"indices":1)").text());
+    CHECK(strip.mesh.triangles == triangles{{0, 1, 2}, {1, 0, 2}, {0, 3, 2}});
+    CHECK(strip.report.stitches == 1);
+    for (const int number : {5, 6}) {
+        parts few = mode(number, R"(,"indices":1)");
+        few.indices = R"({"bufferView":1,"componentType":5123,"count":2,"type":"SCALAR"})";
+        few.primitive += "," + mode(4, "").primitive;
+        CHECK(read(few.text()).report.dropped == 2);
+    }
     CHECK(read(mode(6, "").text()).mesh.triangles == triangles{{0, 1, 2}, {0, 2, 3}});
     CHECK(read(mode(4, "").text()).mesh.triangles == triangles{{0, 1, 2}});
     for (const auto& [number, dropped] : {std::pair{0, 6}, {1, 3}, {2, 6}, {3, 5}}) {
@@ -157,7 +176,8 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
          "nodes[0] has a matrix whose last row is not 0 0 0 1"},
         {&parts::nodes, R"({"mesh":0,"rotation":[1,1,1,1]})",
          "nodes[0] has a rotation that is not a quaternion of length 1"},
-        {&parts::nodes, R"({"mesh":0,"scale":[1e300,1,1]})", "vertex 1 has a coordinate that is not finite"},
+        {&parts::nodes, R"({"mesh":0,"scale":[1e300,1,1]})",
+         "vertex 1 has a coordinate that is not finite, and a face uses it"},
         {&parts::nodes, "{}", "the mesh has no triangles (1 mesh outside the scene left out)"},
         {&parts::primitive, R"({"attributes":{"NORMAL":0}})", "meshes[0] has a primitive without positions"},
         {&parts::primitive, R"({"attributes":{"POSITION":0},"mode":7})",
@@ -199,8 +219,7 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
          "accessors[0].sparse.indices is missing"},
         {&parts::positions, R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","normalized":1})",
          "accessors[0].normalized must be true or false"},
-        {&parts::nodes, R"({"mesh":0,"weights":[1]})",
-         "meshes[0] has a primitive of 0 morph targets, but 1 weights for them"},
+        {&parts::nodes, R"({"mesh":0,"weights":[1]})", "meshes[0] has a primitive of 0 morph targets, but 1 weight"},
         {&parts::nodes, R"({"mesh":0,"weights":["x"]})", "nodes[0].weights must be a list of numbers"},
         {&parts::nodes, R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}})",
          "nodes[0] has the extension 'EXT_mesh_gpu_instancing', which is not supported"},
@@ -351,9 +370,9 @@ TEST_CASE("glTF: morph targets move vertices by the weights of the node, or else
     CHECK(at("", R"("weights":[1,1],)", R"({"NORMAL":1},{"POSITION":3})") == rest);
 
     CHECK_THAT(error_of(morphed("", R"("weights":[1],)", both)),
-               EndsWith("/a.gltf: meshes[0] has a primitive of 2 morph targets, but 1 weights for them"));
+               EndsWith("/a.gltf: meshes[0] has a primitive of 2 morph targets, but 1 weight"));
     CHECK_THAT(error_of(morphed("", R"("weights":[1],)", R"({"POSITION":4})")),
-               EndsWith("/a.gltf: meshes[0] has a morph target of 1 vertices, but 3 positions"));
+               EndsWith("/a.gltf: meshes[0] has a morph target for a number of vertices other than its own: 1, not 3"));
     CHECK_THAT(error_of(morphed("", R"("weights":[1],)", R"({"POSITION":9})")),
                EndsWith("/a.gltf: accessors[9] is used, but is not there"));
 }
@@ -393,7 +412,7 @@ TEST_CASE("glTF: a skinned mesh stands where its joints are") {
         {{.weights = {0.5F, 0, 0, 0, 0, 1, 0, 0, 0.5F, 0.5F, 0, 0}},
          "meshes[0] has a vertex whose weights of joints add up to 0.5, not to 1"},
         {{.joints = {7, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}},
-         "meshes[0] has a vertex of joint 7, but its skin has 2, counted from 0"},
+         "meshes[0] has a vertex that refers to joint 7, counted from 0, but its skin has 2 joints"},
         {{.joint_type = 5120}, "accessors[1] must be of whole numbers and VEC4, as it has joints"},
         {{.joints = {0, 0, 0, 0}}, "meshes[0] has 3 positions, but joints of 1 and weights of 3 vertices"},
         {{.members = R"("joints":[1,9])"}, "nodes[9] is used, but is not there"},

@@ -80,6 +80,12 @@ TEST_CASE("What is no JSON is refused where it goes wrong, however deeply it is 
         CAPTURE(text.substr(0, 20));
         CHECK_THROWS_MATCHES(read(text), aabb::input_error, Message(sentence));
     }
+    // What stands in a string nests nothing.
+    const std::string brackets(100, '[');
+    CHECK(read("{\"a\":\"\\\"" + brackets + "\"}").text("a") == "\"" + brackets);
+    const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+    CHECK_NOTHROW(read(nested(64)));
+    CHECK_THROWS_AS(read(nested(65)), aabb::input_error);
     CHECK_THROWS_MATCHES(json_value("a.glb", "{]", "is no glTF file", json_value::position::byte), aabb::input_error,
                          Message("a.glb: is no glTF file: its JSON is malformed at byte 2"));
 }

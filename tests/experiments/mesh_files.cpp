@@ -120,6 +120,10 @@ TEST_CASE("OFF is made of words, and lines mean something only where colours of 
 TEST_CASE("OBJ: faces of its first versions are read, and statements that may make surface are told") {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     require_two_triangles(read("a.obj", vertices + "f 1 2 3\nfo 1 3 4\n"));
+    // A backslash carries a statement on, behind a blank or a word.
+    require_two_triangles(read("a.obj", vertices + "f 1 2\\\n3\nf 1 \\\n3\\\n 4\n"));
+    const aabblab::loaded_mesh with_weights = read("a.obj", vertices + "v 0 0 0 \\\n1.0\nf 1 2 3\nf 1 3 4\n");
+    CHECK(with_weights.report.text().empty());
     require_two_triangles(
         read("a.obj", vertices + "f 1 2 3\nf 1 3 4\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 \\\n3 4\nparm u 0 "
                                  "1\nend\nl 1 2\nl 2 3\nF 1 2 4\n"),
@@ -151,7 +155,7 @@ TEST_CASE("A vertex that no face uses may be NaN or infinite, keeps its number a
         const aabblab::loaded_mesh loaded = read(name, bytes);
         CHECK(loaded.mesh.triangles == triangles{{1, 2, 3}});
         CHECK(loaded.mesh.vertices == std::vector<aabb::vec3f>{{2, 3, 4}, {2, 3, 4}, {5, 3, 4}, {2, 5, 4}});
-        CHECK(loaded.report.text() == "1 vertex with NaN or infinity, which no face uses, put elsewhere");
+        CHECK(loaded.report.text() == "1 vertex with NaN or infinity, which no face uses, moved onto another");
     }
 }
 
@@ -169,12 +173,14 @@ TEST_CASE("PLY: strips of triangles, told from faces by nothing but their form")
     CHECK(triangles_of(strips, "4 0 1 2 3\n") == triangles{{0, 1, 2}, {2, 1, 3}});
     CHECK(triangles_of(strips, "8 0 1 2 3 -1 0 1 3\n") == triangles{{0, 1, 2}, {2, 1, 3}, {0, 1, 3}});
     CHECK(triangles_of(strips, "9 -1 0 1 -1 0 1 2 -1 -1\n") == triangles{{0, 1, 2}});
+    const aabblab::loaded_mesh parts = read("a.ply", file(strips, "9 0 1 -1 0 1 2 -1 -1 3\n"));
+    CHECK(parts.report.text() == "2 faces of fewer than three corners dropped");
     CHECK(triangles_of(faces + strips, "3 3 2 1\n3 0 1 2\n") == triangles{{3, 2, 1}, {0, 1, 2}});
     CHECK(triangles_of(strips + faces, "3 0 1 2\n3 3 2 1\n") == triangles{{0, 1, 2}, {3, 2, 1}});
     // What joins two parts without a -1 is no surface, but counts for the turn.
     const aabblab::loaded_mesh joined = read("a.ply", file(strips, "8 0 1 2 2 1 1 2 3\n"));
     CHECK(joined.mesh.triangles == triangles{{0, 1, 2}, {2, 1, 3}});
-    CHECK(joined.report.text() == "4 triangles of strips that repeat a corner left out");
+    CHECK(joined.report.text() == "4 triangles of strips skipped, which repeat a corner");
     const std::string binary =
         "ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
         strips + "end_header\n";
@@ -289,7 +295,8 @@ TEST_CASE("triangles of polygons stand in file order, and everything done to a m
     REQUIRE(loaded.report.rounded == 2);
     REQUIRE(loaded.report.dropped == 1);
     REQUIRE(loaded.report.text() ==
-            "1 polygon fanned, 1 concave polygon cut by ears, 3 triangles of zero area kept, 2 coordinates rounded to "
+            "1 polygon fan-triangulated, 1 concave polygon ear-clipped, 3 triangles of zero area kept, 2 coordinates "
+            "rounded to "
             "float, 1 face of fewer than three corners dropped");
 }
 

@@ -69,7 +69,7 @@ std::string refusal_of(const polygon& vertices) {
     return error_of("a.ply", ply(vertices, counted(vertices.size())));
 }
 const std::string crosses = "crosses itself";
-const std::string no_normal = "has no normal, as it encloses no area or as much in either direction";
+const std::string no_normal = "has no normal, as its signed area is zero";
 
 triangles fan(std::uint32_t corners) {
     triangles expected;
@@ -171,7 +171,7 @@ TEST_CASE("polygons: a concave one is cut by ears, the same from any first corne
     numbers face = counted(6);
     for (int first = 0; first < 6; ++first) {
         CHECK(cut(notched, face).mesh.triangles == ears);
-        CHECK(cut(notched, face).report.text() == "1 concave polygon cut by ears");
+        CHECK(cut(notched, face).report.text() == "1 concave polygon ear-clipped");
         std::ranges::rotate(face, face.begin() + 1);
     }
     std::ranges::reverse(face);
@@ -181,7 +181,7 @@ TEST_CASE("polygons: a concave one is cut by ears, the same from any first corne
         "OFF\n6 4 0\n0 0 0\n2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n3 0 1 2\n4 0 1 2 3\n"
         "6 0 1 2 3 4 5\n3 3 4 5\n";
     const aabblab::loaded_mesh loaded = read("a.off", off);
-    CHECK(loaded.report.text() == "1 polygon fanned, 1 concave polygon cut by ears");
+    CHECK(loaded.report.text() == "1 polygon fan-triangulated, 1 concave polygon ear-clipped");
     CHECK(loaded.mesh.triangles ==
           triangles{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}, ears[0], ears[1], ears[2], ears[3], {3, 4, 5}});
 }
@@ -189,7 +189,7 @@ TEST_CASE("polygons: a concave one is cut by ears, the same from any first corne
 TEST_CASE("polygons: a convex one is fanned from its first corner") {
     const polygon octagon = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {3, 2, 0}, {2, 3, 0}, {0, 3, 0}, {0, 1, 0}};
     CHECK(cut(octagon).mesh.triangles == fan(8));
-    CHECK(cut(octagon).report.text() == "1 polygon fanned, 2 triangles of zero area kept");
+    CHECK(cut(octagon).report.text() == "1 polygon fan-triangulated, 2 triangles of zero area kept");
     // Not flat, but convex along its normal.
     CHECK(cut({{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}}).mesh.triangles == fan(4));
 }
@@ -225,7 +225,7 @@ TEST_CASE("polygons: repeated corners count once") {
     // What is left is a triangle, a segment or a point, and these are kept.
     CHECK(cut({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {0, 1, 1, 2}).mesh.triangles.size() == 2);
     CHECK(cut(p, {0, 0, 1, 1}).mesh.triangles.size() == 2);
-    CHECK(cut(p, {2, 2, 2, 2}).report.text() == "1 polygon fanned, 2 triangles of zero area kept");
+    CHECK(cut(p, {2, 2, 2, 2}).report.text() == "1 polygon fan-triangulated, 2 triangles of zero area kept");
     // Concave, with a corner repeated.
     CHECK(cut({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 4, 0}}).report.concave == 1);
 }
@@ -336,6 +336,6 @@ TEST_CASE("polygons: of ten thousand corners") {
     comb.push_back({5000, 0, 0});
     comb.push_back({-1, 0, 0});
     const aabblab::loaded_mesh loaded = cut(comb);
-    CHECK(loaded.report.text() == "1 concave polygon cut by ears");
+    CHECK(loaded.report.text() == "1 concave polygon ear-clipped");
     CHECK(loaded.mesh.triangle_count() == 10'000);
 }

@@ -201,13 +201,13 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
         const std::size_t second = format.text.find('\n') + 1;
         // Text STL and text PLY are told from binary by what is in them.
         const bool is_of_two_kinds = format.file.ends_with(".stl");
-        for (const auto& [mark, name] : {std::pair{'\0', "a NUL"}, {'\x1a', "Ctrl-Z"}}) {
+        for (const auto& [mark, name] : {std::pair{'\0', "a NUL byte"}, {'\x1a', "Ctrl-Z"}}) {
             std::string bytes = format.text;
             bytes.insert(second, 1, mark);
             const std::string refusal = refusal_of(bytes);
             CHECK(refusal.find("read: ") == std::string::npos);
             if (!is_of_two_kinds)
-                CHECK_THAT(refusal, EndsWith(head + "no text: " + name + " stands in line 2, and more follows"));
+                CHECK_THAT(refusal, EndsWith(head + "not text: " + name + " in line 2, with more behind it"));
         }
         // A carriage return in place of one line feed. JSON has no lines.
         if (format.text == gltf) continue;

@@ -99,17 +99,17 @@ TEST_CASE("Reports begin with the headline, and before it with what disturbed th
 
 TEST_CASE("Verdicts are compared with those of another run, and each that differs is told") {
     const std::vector<claim_result> here = made_up().claims;
-    CHECK(agreement_of(here, here, "the other") == "5 of 5 verdicts are those of the other.");
+    CHECK(agreement_of(here, here, "the other") == "5 of 5 verdicts agree with the other.");
     std::vector<claim_result> there = here;
     there[0].verdict = verdict_kind::in_part;
     there[3].verdict = verdict_kind::does_not_hold;
     there.pop_back();
     CHECK(agreement_of(here, there, "the other") ==
-          "2 of 5 verdicts are those of the other: C1: here holds, there holds in part; C8: here no difference, there "
+          "2 of 5 verdicts agree with the other: C1: here holds, there holds in part; C8: here no difference, there "
           "does not hold; C9: here undecided, there none.");
-    const reports told = written(made_up(), "4 of 5 verdicts are those of the other.");
+    const reports told = written(made_up(), "4 of 5 verdicts agree with the other.");
     for (const std::string& report : {told.html, told.markdown})
-        CHECK(report.find("4 of 5 verdicts are those of the other.") != std::string::npos);
+        CHECK(report.find("4 of 5 verdicts agree with the other.") != std::string::npos);
 }
 
 TEST_CASE("Every claim that was measured has its interval drawn in its row, beside its verdict in words") {

@@ -27,17 +27,32 @@ namespace {
 /// Lists and objects in each other. Nobody writes so many, and what visits them calls itself.
 constexpr int most_nested = 64;
 
-struct nested_too_deeply {};
+bool is_nested_too_deeply(std::string_view text) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string && c == '\\')
+            ++i;
+        else if (c == '"')
+            in_string = !in_string;
+        else if (!in_string && (c == '[' || c == '{') && ++depth > most_nested)
+            return true;
+        else if (!in_string && (c == ']' || c == '}'))
+            --depth;
+    }
+    return false;
+}
 
 json parsed(const std::string& file, std::string_view text, const std::string& otherwise, json_value::position where) {
     const auto refuse = [&](const std::string& place, const std::string& why) {
         throw aabb::input_error(file + place + ": " + otherwise + why);
     };
+    // A callback of the parser could tell, but makes it look at every list again for each of its items.
+    if (is_nested_too_deeply(text))
+        refuse("", ": its JSON is nested more than " + std::to_string(most_nested) + " deep");
     try {
-        return json::parse(text, [](int depth, json::parse_event_t, json&) {
-            if (depth > most_nested) throw nested_too_deeply();
-            return true;
-        });
+        return json::parse(text);
     } catch (const json::parse_error& error) {
         const std::size_t read = std::min(error.byte, text.size());
         if (where == json_value::position::byte) refuse("", ": its JSON is malformed at byte " + std::to_string(read));
@@ -45,8 +60,6 @@ json parsed(const std::string& file, std::string_view text, const std::string& o
         refuse(":" + std::to_string(line), ": its JSON is malformed");
     } catch (const json::out_of_range&) {
         refuse("", ": a number in it does not fit a double");
-    } catch (const nested_too_deeply&) {
-        refuse("", ": its JSON is nested more than " + std::to_string(most_nested) + " deep");
     }
     return {};
 }
