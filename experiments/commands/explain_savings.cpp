@@ -15,6 +15,7 @@
 #include "explain_omissions.hpp"
 #include "explain_savings.hpp"
 
+import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
@@ -128,8 +129,10 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     for (const other_way& one : all) playing.push_back(one.who);
     turns played = play_in_turn(staged, playing, most_frames, rounds, limits);
     if (played.times[0].empty()) {
-        print_line("what each choice saves is not known: what is selected was " + text_of(*played.broken_off[0]) +
-                   "; a greater --seconds gives more time.");
+        const attempt& selected_play = *played.broken_off[0];
+        if (selected_play.end == ending::refused) throw aabb::input_error(selected_play.reason);
+        print_line("what each choice saves is not known; as selected: " + text_of(selected_play) +
+                   (selected_play.end == ending::stopped ? "; increase --seconds" : "") + ".");
         return true;
     }
     for (std::size_t i = 0; i < all.size(); ++i) {

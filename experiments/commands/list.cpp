@@ -170,8 +170,7 @@ std::vector<std::string> section_names() {
 void require_section(const std::string& name) {
     const std::vector<std::string> names = section_names();
     if (std::ranges::find(names, name) == names.end())
-        throw aabb::input_error("list: " + aabb::unknown_name("kind", name, names) +
-                                (aabb::nearest_name(name, names).empty() ? "; see aabblab list --help" : ""));
+        throw aabb::input_error("list: " + aabb::unknown_name("kind", name, names, "aabblab list --help"));
 }
 
 /// @param name of the only section; none for all

@@ -118,9 +118,7 @@ const scene_info& kind_named(const std::string& name) {
     const auto kinds = scene_kinds();
     const auto kind = std::ranges::find(kinds, name, &scene_info::name);
     if (kind == kinds.end())
-        throw aabb::input_error(
-            aabb::unknown_name("scene", name, scene_names()) +
-            (aabb::nearest_name(name, scene_names()).empty() ? "; aabblab list scenes has them" : ""));
+        throw aabb::input_error(aabb::unknown_name("scene", name, scene_names(), "aabblab list scenes"));
     return *kind;
 }
 

@@ -148,9 +148,7 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
             e.recorded.insert(metric_named(one.text).group);
             if (std::ranges::find(e.shown, one.text) == e.shown.end()) e.shown.push_back(one.text);
         } else {
-            doc.fail(one.line,
-                     aabb::unknown_name("metric", one.text, known) +
-                         (aabb::nearest_name(one.text, known).empty() ? "; aabblab list metrics has them" : ""));
+            doc.fail(one.line, aabb::unknown_name("metric", one.text, known, "aabblab list metrics"));
         }
     }
 }

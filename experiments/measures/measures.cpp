@@ -127,7 +127,7 @@ std::vector<told_measure> told(const scene_measures& m) {
     all.push_back({"clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering)});
     if (!m.motion) return all;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
-    const char* of = m.boxes.typical_extent > 0 ? "of a mean extent" : "units";
+    const char* of = m.boxes.typical_extent > 0 ? "typical extents" : "units";
     all.push_back({"displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, of)});
     all.push_back(
         {"relative", fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, of)});

@@ -77,10 +77,11 @@ std::string options_of(const contender_name& name) {
     return "To name it:" + (name.engine.empty() ? text : " --engine " + name.engine);
 }
 
-/// "25 frames", "the first 4 of 1,000 frames"
+/// "25 frames", "the first 4 of 1,000 frames", "the first of 61 frames"
 std::string frames_text(const race_result& race) {
     if (race.final_frames == race.frames) return counted(race.frames, "frame");
-    return fmt::format("the first {} of {}", race.final_frames, counted(race.frames, "frame"));
+    return fmt::format("the first {}of {}", race.final_frames == 1 ? "" : grouped(race.final_frames) + " ",
+                       counted(race.frames, "frame"));
 }
 
 /// From how many frames on, or below how many, somebody else is faster than the winner: the first to overtake it.
@@ -119,17 +120,17 @@ std::vector<std::string> what_was_left(const race_result& race) {
     const auto not_played = std::ranges::count_if(
         race.dropped, [](const racer& one) { return one.broken_off && one.broken_off->seconds == 0; });
     if (not_played > 0)
-        sentences.push_back(fmt::format("For {} there was no time; a greater --seconds gives more.",
+        sentences.push_back(fmt::format("There was no time for {}; increase --seconds.",
                                         counted(static_cast<std::size_t>(not_played), "other")));
     if (race.is_validated()) return sentences;
     const racer& winner = race.finalists.front();
     sentences.push_back(
         race.validated > 0
-            ? fmt::format("Only the first {} of these frames were compared with the exact pairs: CGAL takes longer "
-                          "than there was time.",
-                          race.validated)
-            : "Nobody was compared with the exact pairs: CGAL fails to find them, or takes longer than there was "
-              "time.");
+            ? fmt::format(
+                  "Only the first {} compared with the exact pairs: CGAL takes longer than there was time.",
+                  race.validated == 1 ? "of these frames was" : grouped(race.validated) + " of these frames were")
+            : "No candidate was compared with the exact pairs: CGAL fails to find them, or takes longer than there "
+              "was time.");
     for (const racer& other : race.finalists)
         if (other.last->digest != winner.last->digest)
             sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));

@@ -137,13 +137,14 @@ private:
     [[noreturn]] void refuse_all() const {
         for (const racer& r : running_)
             if (r.broken_off->end == ending::refused) throw aabb::input_error(r.broken_off->reason);
-        throw aabb::input_error(
-            fmt::format("nobody plays even frame 0 of this scene in {:.2g} s; --seconds gives more time",
-                        running_.front().broken_off->seconds));
+        const racer& first = running_.front();
+        throw aabb::input_error(fmt::format("no candidate finishes frame 0 of this scene; {}: {}{}", first.name,
+                                            text_of(*first.broken_off),
+                                            first.broken_off->end == ending::stopped ? "; increase --seconds" : ""));
     }
 
     /// Plays the first frames with all; who takes far longer than the fastest so far is stopped. Where all time is over
-    /// before all have played, it is as if nobody had.
+    /// before all have played, or nobody comes to the end, it is as if nobody had.
     /// @returns whether all have
     bool play_round(std::size_t frames, double margin) {
         progress shown("racing over " + counted(frames, "frame"), running_.size());
@@ -158,6 +159,11 @@ private:
                 return false;
             }
             shown.at(++done);
+        }
+        require_any_unrefused();
+        if (std::ranges::all_of(running_, [](const racer& r) { return r.broken_off.has_value(); })) {
+            running_ = before;
+            return false;
         }
         finish_round(frames, margin);
         return true;

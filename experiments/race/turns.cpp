@@ -29,12 +29,15 @@ bool is_hopeless(const race_time& time, const race_time& first) {
 /// The first of all, who decides how many frames there is time for.
 void play_first(turns& played, staged_scene& scene, const contender& who, const time_limits& limits) {
     attempt first = scene.play(who, played.frames, greatest_share * limits.to_play());
-    if (first.end == ending::done || (first.end == ending::stopped && first.time.frames > 0)) {
+    if (first.end == ending::stopped && first.time.frames > 0) {
+        // What is held and left out only a play tells that comes to its end.
         played.frames = first.time.frames;
-        played.times[0].push_back(std::move(first.time));
-    } else {
-        played.broken_off[0] = std::move(first);
+        first = scene.play(who, played.frames, 2 * greatest_share * limits.to_play());
     }
+    if (first.end == ending::done)
+        played.times[0].push_back(std::move(first.time));
+    else
+        played.broken_off[0] = std::move(first);
 }
 
 /// @param first seconds that the first took

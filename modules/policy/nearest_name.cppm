@@ -48,16 +48,18 @@ export namespace aabb {
     return std::string(nearest);
 }
 
-/// The sentence for a name nobody knows: what it was meant to be, and which name is nearest, or, where none is, all
-/// that fit into a line.
+/// The sentence for a name nobody knows: what it was meant to be, and which name is nearest, or, where none is, all of
+/// them, or where they are listed if they do not fit into a line.
+/// @param listing the command that lists them, where one does
 [[nodiscard]] inline std::string unknown_name(std::string_view what, std::string_view name,
-                                              std::span<const std::string> known) {
+                                              std::span<const std::string> known, std::string_view listing = {}) {
     std::string text = "unknown " + std::string(what) + " '" + std::string(name) + "'";
     if (const std::string nearest = nearest_name(name, known); !nearest.empty())
         return text + "; did you mean '" + nearest + "'?";
     std::string all;
     for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-    return all.empty() || all.size() > 120 ? text : text + "; expected one of " + all;
+    if (!all.empty() && all.size() <= 120) return text + "; expected one of " + all;
+    return listing.empty() ? text : text + "; see " + std::string(listing);
 }
 
 }  // namespace aabb

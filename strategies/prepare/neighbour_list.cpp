@@ -144,7 +144,7 @@ private:
     /// many frames yet.
     static constexpr std::uint32_t frames_before_sure = 2;
     static constexpr std::uint32_t frames_of_sure = 4;
-    /// Of the first list, in mean extents: the best where one margin must do for any scene.
+    /// Of the first list, in typical extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
     /// So many times as long where hardly any boxes come into reach by that.
     static constexpr double longer_where_sparse = 3;
@@ -195,7 +195,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     require_ieee_arithmetic();
     objects_.require_boxes_for_all(boxes.size());
     boxes_ = boxes;
-    const bool comes_any = !objects_.arrivals().empty();
+    const bool comes_any = objects_.arrivals() > 0;
     const bool leaves_any = objects_.any_departures();
     frame_.change([&] { objects_.settle(); });
     // At once: the frame may be refused yet, and who left is not told again.
@@ -203,7 +203,7 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
     if (adapts() && objects_.size() < fewest_boxes_of_list) {
         search_as_it_is(boxes);
-    } else if (adapts() && frames_ == 0 && expected_ < fewest_frames_of_first_list) {
+    } else if (adapts() && is_first_ && !is_kept_ && horizon().frames_left < fewest_frames_of_first_list) {
         is_first_ = false;
         pause_.begin_with_look();
         pass_over(boxes);
@@ -277,7 +277,7 @@ std::vector<std::string> neighbour_list_stage::left_out() const {
         absent.emplace_back(adapts() && objects_.size() < fewest_boxes_of_list
                                 ? "no list of neighbours: so few boxes are searched as soon as watched"
                             : expected_ < fewest_frames_of_first_list
-                                ? "no list of neighbours: none repays its making in so few frames, as far as is seen"
+                                ? "no list of neighbours: none has been seen to repay its making in so few frames"
                             : watches_
                                 ? "no list of neighbours: boxes are watched for how far they move"
                                 : "no list of neighbours: boxes move too far, or come too often, for one to pay");

@@ -48,7 +48,7 @@ struct neighbour_list_prepare {
     static constexpr std::array leaves_out{std::string_view("no division of large objects")};
     static constexpr std::tuple parameters{
         number_parameter{"margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
-                         "by which boxes are grown on every side, in mean extents; auto: as it pays, list by list",
+                         "by which boxes are grown on every side, in typical extents; auto: as it pays, list by list",
                          true},
         integer_parameter{"every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
                           "frames from one search to the next, inexact above 1; 0: when boxes have moved too far"}};

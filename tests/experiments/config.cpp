@@ -258,8 +258,7 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
         {minimal + "[measure]\nrepeats = 0\n", ":6: ", "repeats must be a whole number, at least 1, not 0"},
         {minimal + "[measure]\nrepeats = 2.5\n", ":6: ", "repeats must be a whole number, at least 1, not 2.5"},
         {minimal + "[measure]\nmetrics = [\"times\"]\n", ":6: ", "unknown metric 'times'; did you mean 'time'?"},
-        {minimal + "[measure]\nmetrics = [\"xyzzyq\"]\n",
-         ":6: ", "unknown metric 'xyzzyq'; aabblab list metrics has them"},
+        {minimal + "[measure]\nmetrics = [\"xyzzyq\"]\n", ":6: ", "unknown metric 'xyzzyq'; see aabblab list metrics"},
         {minimal + "[measure]\nmetric = []\n", ":6: ", "did you mean 'metrics'?"},
     }));
     const std::string sentence = refusal_of(text);

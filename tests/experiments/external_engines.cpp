@@ -134,7 +134,7 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
         {"sed -i \"2s/.*/$(printf %070d 7)/\" \"$2\"\n",
          "the pairs of the external engine 'mine', line 2, '" + std::string(60, '0') + "…': expected frame,a,b"},
         {"sed -i '2s/.*/0\\x00,4/' \"$2\"\n",
-         "the pairs of the external engine 'mine': is no text: a NUL stands in line 2, and more follows"},
+         "the pairs of the external engine 'mine': is not text: a NUL byte in line 2, with more behind it"},
         {"sed -i '2s/.*/0,4/' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '0,4': expected frame,a,b"},
         {"sed -i '2s/.*//' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '': expected frame,a,b"},
         {"sed -i '2s/.*/0,1,x/' \"$2\"\n",
@@ -234,6 +234,19 @@ TEST_CASE("What an external engine leaves running is killed when it ends, whatev
     std::ifstream(folder / "stray") >> gone_astray;
     REQUIRE(gone_astray > 0);
     CHECK(has_ended(gone_astray));
+}
+
+TEST_CASE("An external engine that ends its process group has failed, and may be run where children are ignored") {
+    const temporary_folder folder;
+    const program_result ended = run_with(folder, good + "kill 0\nsleep 1000\n");
+    CHECK(ended.status == 2);
+    CHECK(ended.err.find("ended by signal 15") != std::string::npos);
+    REQUIRE(run_with(folder, good, "brownian", "timeout_s = 20\n").status == 0);
+    const program_result ignored =
+        run_command({"env", "--ignore-signal=CHLD", AABBLAB_UNDER_TEST, "run", (folder / "joined.toml").string(),
+                     "--out", (folder / "again").string()});
+    INFO(ignored.err);
+    CHECK(ignored.status == 0);
 }
 
 TEST_CASE("An external engine that does not end is killed with what it started, and takes nobody with it") {

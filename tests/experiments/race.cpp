@@ -331,14 +331,34 @@ TEST_CASE("Who did not end is not recommended where anybody did, and all are nam
     CHECK(not_played > 0);
     CHECK(not_played < 12);
     const std::vector<std::string> advice = aabblab::advice_of(race);
-    CHECK(std::ranges::count(advice, "For " + std::to_string(not_played) + " other" + (not_played > 1 ? "s" : "") +
-                                         " there was no time; a greater --seconds gives more.") == 1);
+    CHECK(std::ranges::count(advice, "There was no time for " + std::to_string(not_played) + " other" +
+                                         (not_played > 1 ? "s" : "") + "; increase --seconds.") == 1);
 }
 
 TEST_CASE("A race that is refused a frame says why, as the command says it") {
     std::vector<racer> all{delayed("one", [] { throw aabb::input_error("frame 0: box 3 is inverted"); }),
                            delayed("other", [] { throw aabb::input_error("frame 0: box 3 is inverted"); })};
     CHECK_THROWS_WITH(race_of(scene, all, 1), "frame 0: box 3 is inverted");
+}
+
+TEST_CASE("A frame that is refused in a later round is told as the first one is, by explain too") {
+    const temporary_folder folder;
+    const std::string file = (folder / "p.aabbs").string();
+    REQUIRE(run_program({"scene", "pile", "--n", "60", "--frames", "30", "--out", file}).status == 0);
+    std::string bytes = bytes_of_file(file);
+    const std::string nan("\x00\x00\xc0\x7f", 4);
+    for (const std::size_t frame : {5, 6, 29}) {
+        CAPTURE(frame);
+        std::string wrong = bytes;
+        wrong.replace(wrong.size() - (31 - frame) * 60 * 32 + 3 * 32, 4, nan);
+        const std::string named = folder.write("wrong.aabbs", wrong).string();
+        for (const char* command : {"recommend", "explain"}) {
+            const program_result refused = run_program({command, named, "--seconds", "4"});
+            CHECK(refused.status == 2);
+            CHECK(refused.err.ends_with("frame " + std::to_string(frame) +
+                                        ": box 3 has a coordinate that is not finite\n"));
+        }
+    }
 }
 
 TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
@@ -437,12 +457,12 @@ TEST_CASE("Of a few plays it is not said how sure a ratio is, and of CGAL how fa
         "Use winner: 1 ms for 2 frames; the next, other, takes 2.00 times as long, in 2 plays, too few to say how sure "
         "that is.");
     race.validated = 1;
-    CHECK(
-        aabblab::advice_of(race).back() ==
-        "Only the first 1 of these frames were compared with the exact pairs: CGAL takes longer than there was time.");
+    CHECK(aabblab::advice_of(race).back() ==
+          "Only the first of these frames was compared with the exact pairs: CGAL takes longer than there was time.");
     race.validated = 0;
     CHECK(aabblab::advice_of(race).back() ==
-          "Nobody was compared with the exact pairs: CGAL fails to find them, or takes longer than there was time.");
+          "No candidate was compared with the exact pairs: CGAL fails to find them, or takes longer than there was "
+          "time.");
 }
 
 TEST_CASE("The answer of a race can be named") {

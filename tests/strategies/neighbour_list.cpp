@@ -1036,6 +1036,16 @@ TEST_CASE("of few frames no list is made before boxes have shown that it repays 
     CHECK(first_list(60, 0.001F) < 4);
     CHECK(first_list(60, 1) == 60);
     CHECK(first_list(6, 0.001F) == 6);
+    // Nor where the objects come after some of the frames.
+    const auto late = stage_of(composed({{strategy_kind::prepare, "neighbour_list"}}), 0);
+    late->expect(6);
+    for (std::size_t frame = 0; frame < 2; ++frame) REQUIRE(pairs_of(*late, {}).empty());
+    for (std::uint32_t id = 0; id < n; ++id) late->insert(id);
+    for (std::size_t frame = 2; frame < 6; ++frame) {
+        const std::vector<box> boxes = cubes_on_their_ways(homes, ways, 0.001F * static_cast<float>(frame));
+        REQUIRE(pairs_of(*late, boxes) == overlapping(boxes));
+        CHECK(margin_of(*late) == 0);
+    }
 }
 
 TEST_CASE("no list is planned for more frames than are left, and new memory is to be repaid in them") {

@@ -73,8 +73,7 @@ std::string refusal_of_engine(std::string_view name, std::span<const engine_info
         if (e.name == name) return "the engine '" + e.name + "' is not in this build: " + e.library + " was not found";
         names.push_back(e.name);
     }
-    return unknown_name("engine", name, names) +
-           (nearest_name(name, names).empty() ? "; aabblab list engines has them" : "");
+    return unknown_name("engine", name, names, "aabblab list engines");
 }
 
 bool is_exact_engine(std::string_view name) {

@@ -245,8 +245,7 @@ pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
     if (found == classes.end()) {
         std::vector<std::string> names;
         for (const pair_class& c : classes) names.emplace_back(c.info.name);
-        throw aabb::input_error(aabb::unknown_name("class of pairs", name, names) +
-                                (aabb::nearest_name(name, names).empty() ? "; aabblab list pairs has them" : ""));
+        throw aabb::input_error(aabb::unknown_name("class of pairs", name, names, "aabblab list pairs"));
     }
     // Classes draw apart, or the same corners would stand in several of them.
     const auto number = static_cast<std::uint64_t>(found - classes.begin());

@@ -116,6 +116,7 @@ void kill_descendants() {
     if (program < 0) return false;
     if (program == 0) {
         end_with(keeper, SIGKILL);
+        setpgid(0, 0);  // what it sends to its group is not for the keeper
         sigprocmask(SIG_SETMASK, &before, nullptr);
         return true;
     }
@@ -123,7 +124,10 @@ void kill_descendants() {
     close(refusal);
     int status = 0;
     for (pid_t ended = 0; ended != program;) {
-        if (sigwaitinfo(&awaited, nullptr) == SIGTERM) break;
+        if (sigwaitinfo(&awaited, nullptr) == SIGTERM) {
+            status = SIGTERM;  // as of one that this signal ended
+            break;
+        }
         while (ended != program && (ended = waitpid(-1, &status, WNOHANG)) > 0) continue;
     }
     kill_descendants();
