@@ -34,9 +34,9 @@ enum class polygon_shape : std::uint8_t {
 };
 
 /// A polygon is looked at along the dominant axis of its Newell normal (the first one of equals), where it bounds what
-/// its boundary winds around. Convex, it is fan-triangulated from its first corner. Concave, it is ear-clipped: corners whose
-/// triangle with their neighbours lies in what is left, which then loses this triangle. The result depends on the cycle
-/// of corners, not on the first of them; the reversed polygon gets the same triangles, reversed.
+/// its boundary winds around. Convex, it is fan-triangulated from its first corner. Concave, it is ear-clipped: corners
+/// whose triangle with their neighbours lies in what is left, which then loses this triangle. The result depends on the
+/// cycle of corners, not on the first of them; the reversed polygon gets the same triangles, reversed.
 ///
 /// An ear is a corner that turns to the left (seen counter-clockwise), at whose triangle the winding number is 1, and
 /// into whose interior no edge of the boundary reaches, so that the number is 1 all over it. Cutting the ear makes it 0
