@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 import aabb;
@@ -15,27 +16,19 @@ import aabb.registry;
 /// The values that tests give a parameter: every name of several, every one of a few whole numbers, and auto where it
 /// may be; of more than three the ends and the default; else the default and 3.
 inline std::vector<std::string> values_of(const aabb::parameter_info& parameter) {
-    std::vector<std::string> values;
-    if (parameter.expected.starts_with("one of ")) {
-        const std::string names = parameter.expected.substr(7);
-        for (std::size_t from = 0, to = 0; to != std::string::npos; from = to + 2) {
-            to = names.find(", ", from);
-            values.push_back(names.substr(from, to == std::string::npos ? to : to - from));
-        }
-    } else if (parameter.expected == "a number above 0") {
-        values = {"1.5"};
-    } else if (int least = 0, most = 0;
-               std::sscanf(parameter.expected.c_str(), "a whole number from %d to %d", &least, &most) == 2 &&
-               (most - least < 3 || !parameter.expected.ends_with("or auto"))) {
-        if (most - least < 3)
-            for (int value = least; value <= most; ++value) values.push_back(std::to_string(value));
-        else
-            values = {std::to_string(least), parameter.fallback, std::to_string(most)};
-        values.erase(std::ranges::unique(values).begin(), values.end());
-        if (most - least < 3 && parameter.expected.ends_with("or auto")) values.emplace_back("auto");
-    } else {
-        values = {parameter.fallback, "3"};
+    if (const auto* names = std::get_if<aabb::name_values>(&parameter.values)) return names->names;
+    if (const auto* number = std::get_if<aabb::number_values>(&parameter.values))
+        if (!number->or_equal && !number->or_auto) return {"1.5"};
+    const auto* const whole = std::get_if<aabb::whole_values>(&parameter.values);
+    if (whole && whole->most - whole->least < 3) {
+        std::vector<std::string> values;
+        for (std::uint64_t value = whole->least; value <= whole->most; ++value) values.push_back(std::to_string(value));
+        if (whole->or_auto) values.emplace_back("auto");
+        return values;
     }
+    if (!whole || whole->or_auto) return {parameter.fallback, "3"};
+    std::vector<std::string> values{std::to_string(whole->least), parameter.fallback, std::to_string(whole->most)};
+    values.erase(std::ranges::unique(values).begin(), values.end());
     return values;
 }
 

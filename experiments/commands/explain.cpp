@@ -86,7 +86,9 @@ std::string explained(scene_play& scene, const contender& who) {
     if (scene.meshes())
         text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     text += indented_all("planned from what was seen", p.plans());
-    return text + indented_all("left out", omissions_of(name, p.left_out()));
+    std::vector<std::string> left_out;
+    for (const aabb::omission& one : omissions_of(name, p.left_out())) left_out.push_back(to_text(one));
+    return text + indented_all("left out", left_out);
 }
 
 void explain_contender(staged_scene& scene, const contender& who, const time_limits& limits) {

@@ -37,9 +37,8 @@ double median_ms(std::span<const race_time> times) {
 /// What is left out, without reasons.
 std::vector<std::string> omitted_by(const other_way& one) {
     std::vector<std::string> all;
-    for (const std::string& sentence : omissions_of(one.who.name, one.times.back().left_out))
-        if (std::string what = sentence.substr(0, sentence.find(':')); std::ranges::find(all, what) == all.end())
-            all.push_back(std::move(what));
+    for (const aabb::omission& absent : omissions_of(one.who.name, one.times.back().left_out))
+        if (std::ranges::find(all, absent.what) == all.end()) all.push_back(absent.what);
     return all;
 }
 
@@ -60,14 +59,14 @@ std::string more(std::uint64_t bytes, std::uint64_t than) {
 
 }  // namespace
 
-std::vector<std::string> omissions_of(const contender_name& who, std::vector<std::string> by_stages) {
+std::vector<aabb::omission> omissions_of(const contender_name& who, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // Stages say the rest themselves.
         if (!info_of(kind).apart || who[kind].empty()) continue;
         const std::span<const aabb::strategy_info> all = aabb::strategies(kind);
         const auto found = std::ranges::find(all, aabb::parse_strategy(who[kind]).name, &aabb::strategy_info::name);
         assert(found != all.end());
-        by_stages.insert(by_stages.end(), found->leaves_out.begin(), found->leaves_out.end());
+        for (const std::string& what : found->leaves_out) by_stages.push_back({what, {}});
     }
     return by_stages;
 }

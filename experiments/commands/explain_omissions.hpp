@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+import aabb.pipeline;
 import aabb.registry;
 import aabblab.play;
 import aabblab.race;
@@ -12,9 +13,10 @@ import aabblab.results;
 
 namespace aabblab {
 
-/// What a contender does without, sentence by sentence; a reason follows a colon.
+/// What a contender does without, by its stages and by its strategies.
 /// @param by_stages what its stages say of themselves
-[[nodiscard]] std::vector<std::string> omissions_of(const contender_name& who, std::vector<std::string> by_stages);
+[[nodiscard]] std::vector<aabb::omission> omissions_of(const contender_name& who,
+                                                       std::vector<aabb::omission> by_stages);
 
 /// A way of playing the scene, played in the same rounds as the others.
 struct other_way {

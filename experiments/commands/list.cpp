@@ -34,7 +34,7 @@ const metric_group_info& group_of(const metric& m) {
 nlohmann::ordered_json to_json(std::span<const aabb::parameter_info> parameters) {
     auto all = nlohmann::ordered_json::array();
     for (const auto& p : parameters) {
-        all.push_back({{"name", p.name}, {"expected", p.expected}, {"default", p.fallback}, {"help", p.help}});
+        all.push_back({{"name", p.name}, {"expected", to_text(p.values)}, {"default", p.fallback}, {"help", p.help}});
         if (p.fallback.empty()) all.back()["default"] = nullptr;
     }
     return all;
@@ -94,8 +94,9 @@ void print_entry(std::string_view name, std::string_view text) {
 
 void print_parameters(std::span<const aabb::parameter_info> parameters) {
     for (const auto& p : parameters)
-        print(entry(fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
-                    fmt::format("{}: {}{}", p.help, p.expected, p.fallback.empty() ? ", which must be given" : "")));
+        print(entry(
+            fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
+            fmt::format("{}: {}{}", p.help, to_text(p.values), p.fallback.empty() ? ", which must be given" : "")));
 }
 
 /// With their parameters.

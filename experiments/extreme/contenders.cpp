@@ -5,6 +5,7 @@ module;
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 module aabblab.extreme;
@@ -19,25 +20,15 @@ namespace aabblab {
 
 namespace {
 
-/// The names that a parameter takes; none where it takes numbers.
-std::vector<std::string> names_of_values(const aabb::parameter_info& parameter) {
-    const std::string start = "one of ";
-    std::vector<std::string> names;
-    if (!parameter.expected.starts_with(start)) return names;
-    for (std::size_t from = start.size(), to = 0; to != std::string::npos; from = to + 2) {
-        to = parameter.expected.find(", ", from);
-        names.push_back(parameter.expected.substr(from, to == std::string::npos ? to : to - from));
-    }
-    return names;
-}
-
 /// With each named value of each parameter; a default is not written.
 std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, const std::string& name) {
     const auto info = std::ranges::find(aabb::strategies(kind), name, &aabb::strategy_info::name);
     std::vector<aabb::strategy_choice> all{{name, {}}};
     for (const aabb::parameter_info& parameter : info->parameters) {
+        const auto* const named = std::get_if<aabb::name_values>(&parameter.values);
+        if (!named) continue;
         std::vector<aabb::strategy_choice> more;
-        for (const std::string& value : names_of_values(parameter)) {
+        for (const std::string& value : named->names) {
             if (value == parameter.fallback) continue;
             for (aabb::strategy_choice choice : all) {
                 choice.settings.push_back({parameter.name, value});

@@ -88,7 +88,7 @@ public:
     void search(std::vector<aabb::index_pair>& pairs) override;
     [[nodiscard]] aabb::work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
 
 private:
     struct found_pair {

@@ -172,11 +172,11 @@ std::vector<std::string> player::plans() const {
     return made_.global ? made_.global->plans() : std::vector<std::string>{};
 }
 
-std::vector<std::string> player::left_out() const {
-    std::vector<std::string> all = made_.global ? made_.global->left_out() : std::vector<std::string>{};
-    if (!made_.local) all.emplace_back("no local detection: no meshes, no trees, no triangle test");
-    for (std::string& sentence : made_.local ? made_.local->left_out() : std::vector<std::string>{})
-        if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
+std::vector<aabb::omission> player::left_out() const {
+    std::vector<aabb::omission> all = made_.global ? made_.global->left_out() : std::vector<aabb::omission>{};
+    if (!made_.local) all.push_back({"no local detection", "no meshes, no trees, no triangle test"});
+    for (aabb::omission& one : made_.local ? made_.local->left_out() : std::vector<aabb::omission>{})
+        if (std::ranges::find(all, one) == all.end()) all.push_back(std::move(one));
     return all;
 }
 

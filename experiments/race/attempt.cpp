@@ -49,7 +49,8 @@ attempt attempt_from(const work_apart& played) {
         } else if (line[0] == bytes_line) {
             text >> t.bytes;
         } else {
-            t.left_out.push_back(line.substr(1));
+            const std::size_t between = line.find('\t');
+            t.left_out.push_back({line.substr(1, between - 1), line.substr(between + 1)});
         }
     }
     return one;
@@ -72,7 +73,7 @@ void tell_play(scene_play& scene, const contender& who, std::size_t frames, cons
         },
         frames);
     tell(fmt::format("{} {}\n", bytes_line, p->held_bytes()));
-    for (const std::string& sentence : p->left_out()) tell(omission_line + sentence + "\n");
+    for (const aabb::omission& one : p->left_out()) tell(omission_line + one.what + "\t" + one.why + "\n");
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ export module aabblab.race;
 
 export import :apart;
 
+import aabb.pipeline;
 import aabblab.play;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -59,8 +60,8 @@ struct race_time {
     std::size_t frames = 0;
     std::uint64_t bytes = 0;
     std::string digest;
-    std::vector<std::string> left_out;   ///< by the stages, after the last of these frames
-    std::vector<std::string> digests{};  ///< of the pairs up to each frame
+    std::vector<aabb::omission> left_out;  ///< by the stages, after the last of these frames
+    std::vector<std::string> digests{};    ///< of the pairs up to each frame
 
     /// Of so many frames, the further ones as fast as those that were played.
     [[nodiscard]] double over(double all_frames) const {

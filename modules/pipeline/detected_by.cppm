@@ -3,6 +3,7 @@ module;
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -52,10 +53,11 @@ public:
     [[nodiscard]] work_counters counters() const override { return work_of(detection_.counters()); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return detection_.bytes(); }
 
-    [[nodiscard]] std::vector<std::string> left_out() const override {
-        std::vector<std::string> absent;
-        if constexpr (requires { Tree::leaves_out; }) absent.assign(Tree::leaves_out.begin(), Tree::leaves_out.end());
-        if constexpr (!Counters::enabled) absent.emplace_back("no work counters");
+    [[nodiscard]] std::vector<omission> left_out() const override {
+        std::vector<omission> absent;
+        if constexpr (requires { Tree::leaves_out; })
+            for (const std::string_view what : Tree::leaves_out) absent.push_back({std::string(what), {}});
+        if constexpr (!Counters::enabled) absent.push_back({"no work counters", {}});
         return absent;
     }
 

@@ -52,19 +52,19 @@ public:
         return {};
     }
 
-    [[nodiscard]] std::vector<std::string> left_out() const override {
-        std::vector<std::string> absent;
-        if constexpr (!really_cuts<Partition>) absent.emplace_back("no partition: no cells, no copies of objects");
+    [[nodiscard]] std::vector<omission> left_out() const override {
+        std::vector<omission> absent;
+        if constexpr (!really_cuts<Partition>) absent.push_back({"no partition", "no cells, no copies of objects"});
         if constexpr (ColumnPartition<Partition>)
             if (search_.is_uncut())
                 for (const char* what : {"no partition", "no sort"})
-                    absent.push_back(std::string(what) + ": so few boxes are tested each against each");
+                    absent.push_back({what, "so few boxes are tested each against each"});
         if constexpr (CoherentSweep<Sweep>)
-            absent.emplace_back("no projection lists beside those that the sweep keeps for itself");
+            absent.push_back({"no projection lists beside those that the sweep keeps for itself", {}});
         for (std::size_t k = 0; k < 3; ++k)
             if (!has_axis(search_.sorted_axes(), k))
-                absent.push_back(std::string("no projection list of the ") + "xyz"[k] + " axis");
-        if constexpr (!Counters::enabled) absent.emplace_back("no work counters");
+                absent.push_back({std::string("no projection list of the ") + "xyz"[k] + " axis", {}});
+        if constexpr (!Counters::enabled) absent.push_back({"no work counters", {}});
         return absent;
     }
 

@@ -25,6 +25,18 @@ struct part_bytes {
     std::size_t bytes;
 };
 
+/// What a stage does without.
+struct omission {
+    std::string what;  ///< "no sort"
+    std::string why;   ///< "so few boxes are tested each against each"; empty where it is how the strategy is made
+
+    bool operator==(const omission&) const = default;
+};
+/// "no sort: so few boxes are tested each against each"
+[[nodiscard]] inline std::string to_text(const omission& one) {
+    return one.why.empty() ? one.what : one.what + ": " + one.why;
+}
+
 /// Into which parts meshes are divided: by mesh, the triangles of each part. Every triangle stands in one of them; a
 /// mesh of less than two parts stays whole.
 using mesh_division = std::vector<std::vector<std::vector<std::uint32_t>>>;
@@ -64,8 +76,7 @@ public:
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
     /// What this stage planned from what it saw, a sentence each.
     [[nodiscard]] virtual std::vector<std::string> plans() const { return {}; }
-    /// What this stage does without, a sentence each.
-    [[nodiscard]] virtual std::vector<std::string> left_out() const = 0;
+    [[nodiscard]] virtual std::vector<omission> left_out() const = 0;
 };
 
 /// Two meshes at two poses in, intersecting triangle pairs out.
@@ -114,7 +125,7 @@ public:
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
-    [[nodiscard]] virtual std::vector<std::string> left_out() const = 0;
+    [[nodiscard]] virtual std::vector<omission> left_out() const = 0;
 };
 
 /// A triangle test alone; it throws input_error as `require_ieee_arithmetic`.

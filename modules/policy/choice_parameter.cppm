@@ -8,6 +8,8 @@ module;
 
 export module aabb.policy:choice_parameter;
 
+import :parameter_values;
+
 export namespace aabb {
 
 /// One of several names; the field is an enumeration numbered from 0 in the order of the names.
@@ -18,11 +20,7 @@ struct choice_parameter {
     std::array<std::string_view, N> names;
     std::string_view help;
 
-    [[nodiscard]] std::string expected() const {
-        std::string text = "one of ";
-        for (std::size_t i = 0; i < N; ++i) text += (i ? ", " : "") + std::string(names[i]);
-        return text;
-    }
+    [[nodiscard]] parameter_values values() const { return name_values{{names.begin(), names.end()}}; }
 
     [[nodiscard]] std::string show(const Config& config) const {
         const auto chosen = static_cast<std::size_t>(config.*field);

@@ -10,6 +10,7 @@ export module aabb.policy:configuration;
 
 import aabb.base;
 import :nearest_name;
+import :parameter_values;
 import :strategy;
 import :strategy_choice;
 
@@ -18,7 +19,7 @@ export namespace aabb {
 /// A parameter as `aabblab list` shows it.
 struct parameter_info {
     std::string name;
-    std::string expected;
+    parameter_values values;
     std::string fallback;  ///< the default; empty where there is none and the parameter must be set
     std::string help;
 };
@@ -31,7 +32,7 @@ template <Configurable S>
         const config_of<S> defaults{};
         std::apply(
             [&](const auto&... p) {
-                (infos.push_back({std::string(p.name), p.expected(), p.show(defaults), std::string(p.help)}), ...);
+                (infos.push_back({std::string(p.name), p.values(), p.show(defaults), std::string(p.help)}), ...);
             },
             S::parameters);
     }
@@ -51,7 +52,7 @@ template <Configurable S>
                 if (parameter.name != s.name) return;
                 known = true;
                 if (!parameter.set(config, s.value))
-                    throw input_error(std::string(S::name) + ": " + s.name + " must be " + parameter.expected() +
+                    throw input_error(std::string(S::name) + ": " + s.name + " must be " + to_text(parameter.values()) +
                                       ", not '" + s.value + "'");
             };
             std::apply([&](const auto&... parameter) { (take(parameter), ...); }, S::parameters);
@@ -67,7 +68,7 @@ template <Configurable S>
         const auto require = [&](const auto& parameter) {
             if (parameter.show(config).empty())
                 throw input_error(std::string(S::name) + ": " + std::string(parameter.name) + " must be given, " +
-                                  parameter.expected());
+                                  to_text(parameter.values()));
         };
         std::apply([&](const auto&... parameter) { (require(parameter), ...); }, S::parameters);
     }

@@ -8,6 +8,8 @@ module;
 
 export module aabb.policy:integer_parameter;
 
+import :parameter_values;
+
 export namespace aabb {
 
 /// A whole number in [least, most], as text; with `or_auto`, "auto" too, which leaves the optional empty.
@@ -20,11 +22,10 @@ struct integer_parameter {
     std::string_view help;
 
     static constexpr bool or_auto = std::same_as<Value, std::optional<Whole>>;
-    static_assert(or_auto || std::same_as<Value, Whole>);
+    static_assert(std::unsigned_integral<Whole> && (or_auto || std::same_as<Value, Whole>));
 
-    [[nodiscard]] std::string expected() const {
-        return "a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
-               (or_auto ? " or auto" : "");
+    [[nodiscard]] parameter_values values() const {
+        return whole_values{static_cast<std::uint64_t>(least), static_cast<std::uint64_t>(most), or_auto};
     }
 
     [[nodiscard]] std::string show(const Config& config) const {

@@ -11,6 +11,7 @@ module;
 export module aabb.policy:number_parameter;
 
 import aabb.base;
+import :parameter_values;
 
 export namespace aabb {
 
@@ -27,11 +28,7 @@ struct number_parameter {
 
     static constexpr bool or_auto = std::same_as<Value, std::optional<double>>;
 
-    [[nodiscard]] std::string expected() const {
-        std::string text = (or_equal ? "a number of at least " : "a number above ") + shortest(above);
-        if (at_most < std::numeric_limits<double>::max()) text += " and at most " + shortest(at_most);
-        return text + (or_auto ? " or auto" : "");
-    }
+    [[nodiscard]] parameter_values values() const { return number_values{above, at_most, or_equal, or_auto}; }
 
     [[nodiscard]] std::string show(const Config& config) const {
         if constexpr (or_auto)

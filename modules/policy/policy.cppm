@@ -8,6 +8,7 @@ export import :exactness;
 export import :integer_parameter;
 export import :nearest_name;
 export import :number_parameter;
+export import :parameter_values;
 export import :refusal;
 export import :strategy;
 export import :strategy_choice;

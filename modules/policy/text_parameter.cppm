@@ -4,6 +4,8 @@ module;
 
 export module aabb.policy:text_parameter;
 
+import :parameter_values;
+
 export namespace aabb {
 
 /// A text as it is, mostly the name of a file. It is never empty: a field that is empty by default must be set. A text
@@ -15,7 +17,7 @@ struct text_parameter {
     std::string_view what;  ///< completes "must be …"
     std::string_view help;
 
-    [[nodiscard]] std::string expected() const { return std::string(what); }
+    [[nodiscard]] parameter_values values() const { return text_values{std::string(what)}; }
 
     [[nodiscard]] std::string show(const Config& config) const { return config.*field; }
 

@@ -60,7 +60,7 @@ public:
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
     [[nodiscard]] std::vector<std::string> plans() const override;
-    [[nodiscard]] std::vector<std::string> left_out() const override;
+    [[nodiscard]] std::vector<omission> left_out() const override;
 
 private:
     /// Where the pairs of a frame come from.
@@ -271,16 +271,15 @@ std::vector<std::string> neighbour_list_stage::plans() const {
     return all;
 }
 
-std::vector<std::string> neighbour_list_stage::left_out() const {
-    std::vector<std::string> absent = search_->left_out();
+std::vector<omission> neighbour_list_stage::left_out() const {
+    std::vector<omission> absent = search_->left_out();
     if (from_ == source::search)
-        absent.emplace_back(adapts() && objects_.size() < fewest_boxes_of_list
-                                ? "no list of neighbours: so few boxes are searched as soon as watched"
-                            : expected_ < fewest_frames_of_first_list
-                                ? "no list of neighbours: none has been seen to repay its making in so few frames"
-                            : watches_
-                                ? "no list of neighbours: boxes are watched for how far they move"
-                                : "no list of neighbours: boxes move too far, or come too often, for one to pay");
+        absent.push_back(
+            {"no list of neighbours",
+             adapts() && objects_.size() < fewest_boxes_of_list ? "so few boxes are searched as soon as watched"
+             : expected_ < fewest_frames_of_first_list ? "none has been seen to repay its making in so few frames"
+             : watches_                                ? "boxes are watched for how far they move"
+                                                       : "boxes move too far, or come too often, for one to pay"});
     return absent;
 }
 

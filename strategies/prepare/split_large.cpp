@@ -44,7 +44,7 @@ public:
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
     [[nodiscard]] std::vector<std::string> plans() const override { return search_->plans(); }
-    [[nodiscard]] std::vector<std::string> left_out() const override;
+    [[nodiscard]] std::vector<omission> left_out() const override;
 
 private:
     /// Where the pieces of an interval begin, and the last one's end.
@@ -151,9 +151,9 @@ std::vector<part_bytes> split_large_stage::bytes() const {
     return parts;
 }
 
-std::vector<std::string> split_large_stage::left_out() const {
-    std::vector<std::string> absent = search_->left_out();
-    if (splits_.empty()) absent.emplace_back("no division of large objects: none is large");
+std::vector<omission> split_large_stage::left_out() const {
+    std::vector<omission> absent = search_->left_out();
+    if (splits_.empty()) absent.push_back({"no division of large objects", "none is large"});
     return absent;
 }
 

@@ -89,7 +89,7 @@ public:
     }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return search_->bytes(); }
     [[nodiscard]] std::vector<std::string> plans() const override { return search_->plans(); }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return search_->left_out(); }
+    [[nodiscard]] std::vector<omission> left_out() const override { return search_->left_out(); }
 
 private:
     std::unique_ptr<global_stage> search_;

@@ -136,11 +136,11 @@ std::vector<part_bytes> auto_detector::bytes() const {
     return parts;
 }
 
-std::vector<std::string> auto_detector::left_out() const {
-    std::vector<std::string> absent = global_->left_out();
-    if (!meshes_) absent.emplace_back("no local detection: no meshes, no trees, no triangle test");
-    for (std::string& sentence : meshes_ ? meshes_->local->left_out() : std::vector<std::string>{})
-        if (std::ranges::find(absent, sentence) == absent.end()) absent.push_back(std::move(sentence));
+std::vector<omission> auto_detector::left_out() const {
+    std::vector<omission> absent = global_->left_out();
+    if (!meshes_) absent.push_back({"no local detection", "no meshes, no trees, no triangle test"});
+    for (omission& one : meshes_ ? meshes_->local->left_out() : std::vector<omission>{})
+        if (std::ranges::find(absent, one) == absent.end()) absent.push_back(std::move(one));
     return absent;
 }
 

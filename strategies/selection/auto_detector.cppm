@@ -60,9 +60,9 @@ public:
 
     /// What each kind of the stages that are there got, and by which rule.
     [[nodiscard]] std::span<const selected_strategy> selected() const noexcept { return selected_; }
-    /// What is held on the heap beside the meshes, by part, and what is done without, a sentence each.
+    /// What is held on the heap beside the meshes, by part, and what is done without.
     [[nodiscard]] std::vector<part_bytes> bytes() const;
-    [[nodiscard]] std::vector<std::string> left_out() const;
+    [[nodiscard]] std::vector<omission> left_out() const;
 
 private:
     struct mesh_part;

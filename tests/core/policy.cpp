@@ -111,7 +111,7 @@ TEST_CASE("parameters describe themselves") {
     CHECK(infos[0].fallback == "0.5");
     CHECK(infos[1].fallback == "auto");
     CHECK(infos[2].fallback == "green");
-    CHECK(infos[2].expected == "one of red, green");
+    CHECK(to_text(infos[2].values) == "one of red, green");
     CHECK(parameters_of<plain>().empty());
 }
 

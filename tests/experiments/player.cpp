@@ -127,7 +127,7 @@ public:
     std::optional<aabb::tree_survey> survey(std::uint32_t model) const override { return right_->survey(model); }
     aabb::work_counters counters() const override { return right_->counters(); }
     std::vector<aabb::part_bytes> bytes() const override { return right_->bytes(); }
-    std::vector<std::string> left_out() const override { return right_->left_out(); }
+    std::vector<aabb::omission> left_out() const override { return right_->left_out(); }
 
 private:
     std::unique_ptr<aabb::local_stage> right_ = aabb::compose_local_detection({}, aabb::instrumentation::none);

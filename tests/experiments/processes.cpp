@@ -187,7 +187,7 @@ TEST_CASE("A repeat of a later process that finds other pairs is named, and its 
             void search(std::vector<aabb::index_pair>&) override {}
             [[nodiscard]] aabb::work_counters counters() const override { return {}; }
             [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-            [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+            [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
         };
         return std::make_unique<blind>();
     };

@@ -56,7 +56,7 @@ public:
     void search(std::vector<aabb::index_pair>& pairs) override { search_->search(pairs); }
     [[nodiscard]] aabb::work_counters counters() const override { return search_->counters(); }
     [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return search_->bytes(); }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
 
 private:
     Before before_;

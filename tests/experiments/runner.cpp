@@ -71,7 +71,7 @@ public:
     }
     [[nodiscard]] aabb::work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
 
 private:
     fault what_;
@@ -92,7 +92,7 @@ public:
     void search(std::vector<aabb::index_pair>& pairs) override { right_->search(pairs); }
     [[nodiscard]] aabb::work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
 
 private:
     std::unique_ptr<aabb::global_stage> right_ =

@@ -140,7 +140,7 @@ TEST_CASE("incremental holds no list of an axis on which all boxes overlap, unti
     search.play(boxes);
     const auto left_out = [&] {
         std::string all;
-        for (const std::string& sentence : search.stage().left_out()) all += sentence + "; ";
+        for (const omission& one : search.stage().left_out()) all += to_text(one) + "; ";
         return all;
     };
     CHECK(left_out().find("no projection list of the y axis") != std::string::npos);

@@ -132,7 +132,7 @@ played played_about_homes(int frames, Displacement displacement) {
 /// Whether something that begins so is left out.
 bool says(const global_stage& stage, std::string_view beginning) {
     return std::ranges::any_of(stage.left_out(),
-                               [&](const std::string& absent) { return absent.starts_with(beginning); });
+                               [&](const omission& absent) { return to_text(absent).starts_with(beginning); });
 }
 
 }  // namespace

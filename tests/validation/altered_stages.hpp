@@ -34,7 +34,7 @@ public:
     }
     [[nodiscard]] work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"a", 40}, {"b", 2}}; }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    [[nodiscard]] std::vector<omission> left_out() const override { return {}; }
 
 private:
     std::unique_ptr<global_stage> whole_ = make_box_engine("brute_force");
@@ -76,7 +76,7 @@ public:
     [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const override { return std::nullopt; }
     [[nodiscard]] work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
-    [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+    [[nodiscard]] std::vector<omission> left_out() const override { return {}; }
 
 private:
     std::unique_ptr<local_stage> whole_ = make_mesh_engine("brute_force");

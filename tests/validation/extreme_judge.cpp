@@ -138,7 +138,7 @@ TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it
         void search(pair_list&) override {}
         [[nodiscard]] work_counters counters() const override { return {}; }
         [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
-        [[nodiscard]] std::vector<std::string> left_out() const override { return {}; }
+        [[nodiscard]] std::vector<omission> left_out() const override { return {}; }
     };
     // Of the scenes that this processor has.
     std::vector<const char*> names = {"upward_boxes"};

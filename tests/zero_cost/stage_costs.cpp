@@ -118,7 +118,7 @@ struct copying_prepare {
         void search(std::vector<aabb::index_pair>& pairs) override { search_->search(pairs); }
         [[nodiscard]] aabb::work_counters counters() const override { return search_->counters(); }
         [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return search_->bytes(); }
-        [[nodiscard]] std::vector<std::string> left_out() const override { return search_->left_out(); }
+        [[nodiscard]] std::vector<aabb::omission> left_out() const override { return search_->left_out(); }
 
     private:
         std::unique_ptr<aabb::global_stage> search_;

@@ -23,7 +23,7 @@ public:
     void update(std::span<const box> boxes) final;
     void search(std::vector<index_pair>& pairs) final;
     [[nodiscard]] work_counters counters() const final { return {}; }
-    [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
+    [[nodiscard]] std::vector<omission> left_out() const final { return {}; }
 
 protected:
     [[nodiscard]] inline bool is_present(std::uint32_t id) const { return objects_.contains(id); }

@@ -28,7 +28,7 @@ public:
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final;
     [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const final { return std::nullopt; }
     [[nodiscard]] work_counters counters() const final { return {}; }
-    [[nodiscard]] std::vector<std::string> left_out() const final { return {}; }
+    [[nodiscard]] std::vector<omission> left_out() const final { return {}; }
 
 protected:
     /// Appends the intersecting pairs.
