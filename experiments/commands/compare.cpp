@@ -62,7 +62,7 @@ table table_of(std::span<const compared_time> times, const std::string& unit, bo
         if (all || time.found == outcome::less || time.found == outcome::more)
             t.rows.push_back({time.label, fmt::format("{:.3f}", time.in_a), fmt::format("{:.3f}", time.in_b),
                               fmt::format("{:.3f}", time.change),
-                              fmt::format("{:.3f}-{:.3f}", time.around.low, time.around.high),
+                              time.too_few ? "-" : fmt::format("{:.3f}-{:.3f}", time.around.low, time.around.high),
                               std::string(text_of(time.found))});
     return t;
 }
@@ -80,7 +80,8 @@ public:
         }
     }
 
-    [[nodiscard]] std::string text(std::string_view what) const {
+    /// @param all are listed
+    [[nodiscard]] std::string text(std::string_view what, bool all) const {
         std::string text =
             fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided",
                         compared_, what, changed_, same_, 100 * equivalence_band, undecided_);
@@ -89,9 +90,8 @@ public:
         if (undecided_ > 0)
             text += fmt::format(
                 "undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's correction for "
-                "all "
-                "{}; --all lists them\n",
-                100 * equivalence_band, what);
+                "all {}{}\n",
+                100 * equivalence_band, what, all ? "" : "; --all lists them");
         return text;
     }
 
@@ -105,7 +105,7 @@ void print_ratios(const comparison& found, bool all) {
         count.add(s.ratios);
         print_block(heading_of(s) + "; time over that of '" + s.base + "'", table_of(s.ratios, "ratio", all));
     }
-    print(count.text("ratios"));
+    print(count.text("ratios", all));
 }
 
 void print_times(const comparison& found, bool all) {
@@ -114,7 +114,7 @@ void print_times(const comparison& found, bool all) {
         count.add(s.times);
         print_block(heading_of(s) + "; milliseconds a frame", table_of(s.times, "ms", all));
     }
-    print(count.text("times"));
+    print(count.text("times", all));
 }
 
 std::string percents(std::uint64_t before, std::uint64_t after) {

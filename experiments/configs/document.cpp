@@ -209,9 +209,12 @@ std::uint64_t document::integer_of(const std::string& key, const node& value, st
     const char* end = value.text.data() + value.text.size();
     const bool parsed = value.kind == node_kind::integer &&
                         std::from_chars(value.text.data(), end, number) == std::from_chars_result{end, std::errc{}};
-    if (!parsed || number < least)
-        fail(value.line, key + " must be a whole number, at least " + std::to_string(least) +
-                             (value.is_scalar() ? ", not " + value.text : ", not " + std::string(name_of(value.kind))));
+    if (!parsed || number < least) {
+        const std::string given = value.kind == node_kind::text ? "the text \"" + value.text + "\""
+                                  : value.is_scalar()           ? value.text
+                                                                : std::string(name_of(value.kind));
+        fail(value.line, key + " must be a whole number, at least " + std::to_string(least) + ", not " + given);
+    }
     return number;
 }
 

@@ -34,10 +34,12 @@ void play_first(turns& played, staged_scene& scene, const contender& who, const 
         played.frames = first.time.frames;
         first = scene.play(who, played.frames, 2 * greatest_share * limits.to_play());
     }
-    if (first.end == ending::done)
-        played.times[0].push_back(std::move(first.time));
-    else
+    if (first.end != ending::done) {
         played.broken_off[0] = std::move(first);
+        return;
+    }
+    played.frames = first.time.frames;
+    played.times[0].push_back(std::move(first.time));
 }
 
 /// @param first seconds that the first took

@@ -1,5 +1,6 @@
 // `auto` in configs and commands, and what explain says of a scene.
 
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <cstddef>
@@ -205,7 +206,10 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
     const std::string file = (folder / "p.aabbs").string();
     const auto table_of = [&](const char* scene, const char* objects) {
         REQUIRE(run_program({"scene", scene, "--n", objects, "--frames", "6", "--out", file}).status == 0);
-        const std::string told = run_program({"explain", file}).out;
+        std::string told = run_program({"explain", file}).out;
+        std::string in_one_line = told;
+        std::ranges::replace(in_one_line, '\n', ' ');
+        CHECK(in_one_line.find("5 rounds of 7 frames ") != std::string::npos);
         return told.substr(told.find("\nleft out  "));
     };
     const auto line_of = [](const std::string& table, const std::string& what) {

@@ -256,6 +256,8 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
         {minimal + "[compose]\npartition = { name = \"uniform_grid\", cell_size = -2 }\n",
          ":6: ", "cell_size must be a number above 0 or auto, not '-2'"},
         {minimal + "[measure]\nrepeats = 0\n", ":6: ", "repeats must be a whole number, at least 1, not 0"},
+        {minimal + "[measure]\nrepeats = \"3\"\n",
+         ":6: ", "repeats must be a whole number, at least 1, not the text \"3\""},
         {minimal + "[measure]\nrepeats = 2.5\n", ":6: ", "repeats must be a whole number, at least 1, not 2.5"},
         {minimal + "[measure]\nmetrics = [\"times\"]\n", ":6: ", "unknown metric 'times'; did you mean 'time'?"},
         {minimal + "[measure]\nmetrics = [\"xyzzyq\"]\n", ":6: ", "unknown metric 'xyzzyq'; see aabblab list metrics"},

@@ -93,6 +93,8 @@ TEST_CASE("malformed text meshes are refused with the line") {
              {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n3 2 1 0\n",
               "a.off:7: expected the end of the file after 3 vertices and 1 face, found '3'"},
              {"a.obj", "v 0 0\n", "a.obj:1: expected three coordinates, found the end of the line"},
+             {"a.obj", "v 0 0 0 1 0.5 x\n", "a.obj:1: expected the weight or the colour of a vertex, found 'x'"},
+             {"a.obj", "v 0 0 0\nf 1/1/1/1 1 1\n", "a.obj:2: expected the number of a vertex, found '1/1/1/1'"},
              {"a.obj", "v 0 0 -1.#INF\n", "a.obj:1: expected three coordinates, found '-1.#INF'"},
              {"a.obj", "v 0 0 0\nv 0 0 inf\nf 1 2 1\n",
               "a.obj:2: vertex 2 has a coordinate that is not finite, and a face uses it"},
