@@ -64,7 +64,7 @@ int fail(int status, const std::string& sentence) {
 }
 
 int main_of(int argc, char** argv) {
-    std::signal(SIGCHLD, SIG_DFL);  // where the caller ignores it, nobody could wait for a child
+    std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would keep waitpid from reporting a status
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is the error EPIPE, told apart from others in print()
     int status = 0;
     try {

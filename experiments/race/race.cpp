@@ -144,7 +144,7 @@ private:
     }
 
     /// Plays the first frames with all; who takes far longer than the fastest so far is stopped. Where all time is over
-    /// before all have played, or nobody comes to the end, it is as if nobody had.
+    /// before all have played, or none finishes, the round does not count.
     /// @returns whether all have
     bool play_round(std::size_t frames, double margin) {
         progress shown("racing over " + counted(frames, "frame"), running_.size());

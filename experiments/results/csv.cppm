@@ -30,7 +30,7 @@ struct csv_text {
 /// @throws aabb::input_error with file and line where quotes are not as above.
 [[nodiscard]] csv_text read_csv(std::string_view text, const std::string& file);
 
-/// The same of a text that nobody is writing.
+/// The same of a file that is complete.
 /// @throws aabb::input_error on a last record that was cut off, too.
 [[nodiscard]] std::vector<csv_record> whole_records_of(std::string_view text, const std::string& file);
 

@@ -107,8 +107,8 @@ public:
     /// are among them, since they meet in the vertices that they share.
     virtual void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) = 0;
 
-    /// Hands over the same pairs, one after the other, for whoever counts them or leaves some out: around a vertex of n
-    /// triangles there are n²/2. A stage that finds them one by one keeps none.
+    /// Calls `take` with each of the same pairs. A stage that finds them one by one stores none: around a vertex of n
+    /// triangles there are n²/2.
     virtual void each_self_pair(std::uint32_t model, const std::function<void(index_pair)>& take) {
         std::vector<index_pair> pairs;
         self_pairs(model, pairs);

@@ -48,7 +48,7 @@ export namespace aabb {
     return std::string(nearest);
 }
 
-/// The sentence for a name nobody knows: what it was meant to be, and which name is nearest, or, where none is, all of
+/// The sentence for an unknown name: what it was meant to be, and which name is nearest, or, where none is, all of
 /// them, or where they are listed if they do not fit into a line.
 /// @param listing the command that lists them, where one does
 [[nodiscard]] inline std::string unknown_name(std::string_view what, std::string_view name,

@@ -341,7 +341,7 @@ TEST_CASE("A race that is refused a frame says why, as the command says it") {
     CHECK_THROWS_WITH(race_of(scene, all, 1), "frame 0: box 3 is inverted");
 }
 
-TEST_CASE("A frame that is refused in a later round is told as the first one is, by explain too") {
+TEST_CASE("recommend and explain report an invalid frame, whichever it is") {
     const temporary_folder folder;
     const std::string file = (folder / "p.aabbs").string();
     REQUIRE(run_program({"scene", "pile", "--n", "60", "--frames", "30", "--out", file}).status == 0);

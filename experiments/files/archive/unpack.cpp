@@ -52,7 +52,7 @@ public:
         archive_read_support_filter_xz(archive_.get());
         archive_read_support_format_tar(archive_.get());
         if (access(file_.c_str(), R_OK) != 0) fail("cannot be read");
-        // A pipe that nobody writes into would be waited for.
+        // Opening a named pipe without a writer would block.
         if (!std::filesystem::is_regular_file(file)) fail("is not a regular file");
         if (archive_read_open_filename(archive_.get(), file_.c_str(), std::size_t{1} << 16U) != ARCHIVE_OK)
             fail_reading();
