@@ -1,10 +1,53 @@
-# Sourced by ./aabblab behind setup.bash: how the program is built, and what is said meanwhile. `root`, `preset`, `build`,
-# `stamp` and `targets` are the caller's.
+# Sourced by ./aabblab where its targets are not built: what is answered without a build, how the program is built, and
+# what is said meanwhile. `root`, `preset`, `build`, `stamp`, `studies` and `targets` are the caller's.
 # shellcheck shell=bash disable=SC2154
+set -o pipefail
 
 log=$build/build.log
 # What package managers write to whenever they change something.
 package_databases=(/var/lib/dpkg/status /var/lib/rpm/* /var/lib/pacman/local)
+
+say() { printf 'aabblab: %s\n' "$*" >&2; }
+fail() {
+    say "$*"
+    exit 2
+}
+
+# print_stored ARGUMENT…: what the program prints for these, where that is stored (tests/script/stored_output.bash).
+# Only a build knows which libraries are there.
+print_stored() {
+    local stored=$root/experiments/stored_output words=$* file line
+    case $words in
+    -h | --help) file=help ;;
+    *\ -h | *\ --help)
+        words=${words% *}
+        # Of what a command is given beside, its help says the same.
+        while [[ $words == *\ * && ! -r $stored/help/${words// //}.txt ]]; do words=${words% *}; done
+        file=help/${words// //}
+        ;;
+    list) file=list ;;
+    *) return 1 ;;
+    esac
+    [[ -r $stored/$file.txt ]] || return 1
+    while IFS= read -r line; do
+        case $file/$line in
+        list/engines* | list/library_tests* | list/integrators*)
+            line+=' (availability unknown: nothing is built yet)'
+            ;;
+        esac
+        printf '%s\n' "$line"
+    done <"$stored/$file.txt"
+}
+
+# The options of what only this script has.
+help_on() {
+    case $1 in
+    test) printf 'aabblab test [OPTION…]: builds and runs every test; options go to ctest, as in -R axial_cut.\n' ;;
+    data) printf 'aabblab data [--dragon]: fetches the real meshes; --dragon also the Stanford dragon, from npm.\n' ;;
+    benchmark) printf 'aabblab benchmark [OPTION…]: times each stage of global search, each test of local detection and each build alone; options are Google Benchmark'"'"'s, as in\n--benchmark_filter=sort/ or --benchmark_list_tests.\n' ;;
+    paper) printf 'aabblab paper [RESULTS_DIR] [--out FILE.pdf]: the report of a reproduction as a PDF, by default from results/reproduce\n(results/reproduce-quick where only that is there) to RESULTS_DIR/paper.pdf. Installs TeX where it is missing.\n' ;;
+    esac
+}
 
 # contained COMMAND…: runs it in a process group of its own, which ends with this script when that is told to end.
 contained() {
@@ -113,9 +156,10 @@ large_pages=glibc.malloc.hugetlb=1:glibc.malloc.top_pad=16777216:glibc.malloc.mm
 # Builds the targets, and leaves the whole output in the log, unless there was nothing to do.
 build() {
     : >"$log.new"
+    # shellcheck disable=SC2086 # names of targets
     # Described before it is built, so that what changes meanwhile is newer.
     if configure && { describe_build >"$stamp.new" || rm -- "$stamp.new"; } &&
-        logged building "$log.new" contained env GLIBC_TUNABLES="$large_pages" cmake --build "$build" --target "${targets[@]}"; then
+        logged building "$log.new" contained env GLIBC_TUNABLES="$large_pages" cmake --build "$build" --target $targets; then
         if [[ -e $stamp.new ]]; then mv -- "$stamp.new" "$stamp"; fi
         if [[ $(<"$log.new") != *'no work to do.' ]]; then mv "$log.new" "$log"; fi
         return
@@ -147,7 +191,7 @@ describe_build() {
         printf '%s\n' CMakeLists.txt CMakePresets.json cmake
         sed -nE 's/^ *add_subdirectory\(([^ )]+).*/\1/p' "$root/CMakeLists.txt"
         git -C "$root" ls-tree --name-only HEAD 2>/dev/null || true
-    } | sort -u | if [[ ${targets[*]} == all ]]; then cat; else grep -vx tests; fi
+    } | sort -u | if [[ $targets == all ]]; then cat; else grep -vx tests; fi
 }
 
 # paper [RESULTS_DIR] [--out FILE.pdf]: typesets what `reproduce` left. Nothing has to be built for it.
@@ -188,4 +232,25 @@ paper() {
     set_up_tex
     unlock
     exec "$root/paper/tex/build" "$results" "$out"
+}
+
+# prepare ARGUMENT…: answers what needs no build, and ends there; else sets up what is missing and builds.
+prepare() {
+    [[ $preset =~ ^(debug|release|bench)$ ]] || fail "AABBLAB_PRESET is '$preset'; it must be debug, release or bench."
+    [[ $AABBLAB_INSTALL =~ ^(yes|no|all)$ ]] || fail "AABBLAB_INSTALL is '$AABBLAB_INSTALL'; it must be yes, no or all."
+    if [[ $1 =~ ^(test|data|benchmark|paper)$ && ${2-} =~ ^(-h|--help)$ ]]; then
+        help_on "$1"
+        exit
+    fi
+    if [[ ! -x $build/aabblab ]] && print_stored "$@"; then exit; fi
+    [[ $1 != data ]] || exec "$root/experiments/data/fetch" "${@:2}"
+    root=$(readlink -f -- "$root")
+    # shellcheck source=cmake/setup.bash
+    . "$root/cmake/setup.bash"
+    [[ $1 != paper ]] || paper "${@:2}"
+    lock
+    leave_old_place
+    set_up
+    build
+    unlock
 }

@@ -1,4 +1,4 @@
-# Sourced by ./aabblab: what the build needs, and how it gets there. `root` and `build` are folders of the caller, whose
+# Sourced by build.bash: what the build needs, and how it gets there. `root` and `build` are folders of the caller, whose
 # `studies` is empty where what only single studies need is not wanted.
 # shellcheck shell=bash disable=SC2154
 
