@@ -11,11 +11,10 @@
 
 #include "commands/command_line.hpp"
 #include "commands/command_parser.hpp"
-#include "commands/commands.hpp"
 #include "commands/kept_costs.hpp"
-#include "commands/output.hpp"
 
 import aabb.base;
+import aabblab.output;
 import aabblab.pair_output;
 
 namespace aabblab {
@@ -75,23 +74,7 @@ int main_of(int argc, char** argv) {
         program.set_help_flag("-h,--help", "Print this help");
         program.require_subcommand(0, 1);
         wrap_help(program);
-        const command_parser commands(program);
-        add_reproduce(commands, status);
-        add_run(commands, status);
-        add_validate(commands, status);
-        add_atlas(commands, status);
-        add_compare(commands, status);
-        add_errors(commands, status);
-        add_explain(commands, status);
-        add_recommend(commands, status);
-        add_calibrate(commands, status);
-        add_list(commands, status);
-        add_pairs(commands, status);
-        add_collide(commands, status);
-        add_contacts(commands, status);
-        add_classify(commands, status);
-        add_order(commands, status);
-        add_scene(commands, status);
+        add_commands({program, status});
         // Set last: commands added before do not inherit it.
         program.footer(
             "With the script aabblab at the root of the source tree also:\n"

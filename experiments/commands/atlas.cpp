@@ -1,22 +1,18 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
-
-#include "atlas_measuring.hpp"
-#include "reproduce_archive.hpp"
-#include "reproduce_measuring.hpp"
 
 import aabb.base;
 import aabblab.atlas;
+import aabblab.output;
+import aabblab.record;
 import aabblab.statistics;
+import aabblab.suites;
 import aabblab.tables;
 
 namespace aabblab {
@@ -49,7 +45,7 @@ int run(const atlas_request& request) {
     const results_source& source = sources.all().front();
     std::vector<atlas_scene> atlas;
     (void)sources.with_names_of_user([&] {
-        (void)verify_source(source.folder);
+        verify_record(source.folder);
         std::filesystem::path parts = source.folder;
         atlas = measured_atlas(parts);
         // Of a reproduction it is that of its report.
@@ -66,30 +62,25 @@ int run(const atlas_request& request) {
     print("In times as long as the fastest of each scene, of the same:\n" +
           to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
-        print(wrapped(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source)) + "\n");
+        print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source));
     print("\nMaps, borders and every ratio are in " + visible((out / "atlas.html").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 
 }  // namespace
 
-void add_atlas(const command_parser& program, int& status) {
+void add_atlas(const command_parser& program) {
     const command_parser command = program.add_command(
         "atlas", "Which composition or engine wins in which scene, and what it costs to use one everywhere");
-    auto request = std::make_shared<atlas_request>();
-    command.add_flag("--quick", request->quick, "Small scenes, few repeats: a minute in place of half an hour");
-    command.add_flag("--judge", request->judge, "Measure nothing: make the maps of results that are there");
-    command
-        .add_option(
-            "RESULTS", request->source,
-            "With --judge: an archive or a folder of results, also of reproduce, in place of the folder of --out")
-        .type_name("");
-    command
-        .add_option("--out", request->out,
-                    "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; of RESULTS "
-                    "results/atlas-judged)")
-        .type_name("DIR");
-    command.callback([request, &status] { status = run(*request); });
+    auto& request = command.calls(run);
+    command.flag("--quick", &request.quick, "Small scenes, few repeats: a minute in place of half an hour");
+    command.flag("--judge", &request.judge, "Measure nothing: make the maps of results that are there");
+    command.optional_argument(
+        "RESULTS", &request.source,
+        "With --judge: an archive or a folder of results, also of reproduce, in place of the folder of --out");
+    command.option("--out DIR", &request.out,
+                   "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; of RESULTS "
+                   "results/atlas-judged)");
 }
 
 }  // namespace aabblab

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
 #include "kept_costs.hpp"
-#include "output.hpp"
 
 import aabb.base;
 import aabb.costs;
@@ -18,6 +15,7 @@ import aabblab.calibrate;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.machine;
+import aabblab.output;
 import aabblab.processor;
 import aabblab.statistics;
 import aabblab.stopwatch;
@@ -90,18 +88,15 @@ void calibrate(const calibrate_request& request) {
 
 }  // namespace
 
-void add_calibrate(const command_parser& program, int&) {
+void add_calibrate(const command_parser& program) {
     const command_parser command = program.add_command(
         "calibrate", "Measure what elementary work takes on this machine, and keep it: what strategies plan by");
-    auto request = std::make_shared<calibrate_request>();
-    const parsed_option quick =
-        command.add_flag("--quick", request->quick, "In about 20 seconds in place of two minutes");
-    const parsed_option out =
-        command.add_option("--out", request->out, "Write it there, not where it is used").type_name("FILE");
-    command.add_flag("--reset", request->reset, "Remove what was kept: costs are as shipped again")
+    auto& request = command.calls<calibrate_request>(calibrate);
+    const parsed_option quick = command.flag("--quick", &request.quick, "In about 20 seconds in place of two minutes");
+    const parsed_option out = command.option("--out FILE", &request.out, "Write it there, not where it is used");
+    command.flag("--reset", &request.reset, "Remove what was kept: costs are as shipped again")
         .excludes(quick)
         .excludes(out);
-    command.callback([request] { calibrate(*request); });
 }
 
 }  // namespace aabblab

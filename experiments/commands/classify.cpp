@@ -2,19 +2,12 @@
 #include <unistd.h>
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "number.hpp"
-#include "output.hpp"
-
-// Imports, so it comes last.
-#include "hit_geometry.hpp"
 
 import aabb.base;
 import aabb.geometry;
@@ -23,8 +16,11 @@ import aabb.policy;
 import aabb.registry;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.inputs;
+import aabblab.output;
 import aabblab.pair_output;
 import aabblab.progress;
+import aabblab.queries;
 
 namespace aabblab {
 
@@ -43,13 +39,8 @@ std::string answer_of(const aabb::triangle_test& test, const std::vector<std::st
     if (words.size() != 18)
         throw aabb::input_error(fmt::format("expected 18 numbers, two triangles, not {}", words.size()));
     aabb::triangle3<Real> triangles[2];
-    for (std::size_t i = 0; i < 18; ++i) {
-        try {
-            triangles[i / 9][static_cast<int>(i % 9 / 3)][static_cast<int>(i % 3)] = parse_number<Real>(words[i]);
-        } catch (const aabb::input_error& error) {
-            throw aabb::input_error(fmt::format("number {} of 18: {}", i + 1, error.what()));
-        }
-    }
+    for (std::size_t i = 0; i < 18; ++i)
+        triangles[i / 9][static_cast<int>(i % 9 / 3)][static_cast<int>(i % 3)] = parse_number_of<Real>(words, i);
     if (geometry) return to_text(test.intersection(in_double(triangles[0]), in_double(triangles[1]))) + "\n";
     return test.intersects(triangles[0], triangles[1]) ? "1\n" : "0\n";
 }
@@ -81,25 +72,19 @@ void classify(const classify_request& request) {
 
 }  // namespace
 
-void add_classify(const command_parser& program, int&) {
+void add_classify(const command_parser& program) {
     const command_parser command =
         program.add_command("classify", "Do two triangles intersect, and in what? One pair a line, one answer a line");
-    auto request = std::make_shared<classify_request>();
-    command
-        .add_option("FILE", request->file,
-                    "18 numbers a line, decimal or C99 hexadecimal, with blanks or commas between; - reads "
-                    "standard input; # begins a comment")
-        .required()
-        .type_name("");
-    command
-        .add_option("--triangle", request->triangle,
-                    "Triangle test (default exact), or one of a library that `list` shows")
-        .type_name("R");
-    command.add_flag("--double", request->keep_doubles, "Keep the numbers as doubles instead of rounding to float");
-    command.add_flag("--geometry", request->geometry,
-                     "What the two have in common in place of 0 or 1: kind, number of corners, corners, and the error "
-                     "of a coordinate on each axis");
-    command.callback([request] { classify(*request); });
+    auto& request = command.calls(classify);
+    command.argument("FILE", &request.file,
+                     "18 numbers a line, decimal or C99 hexadecimal, with blanks or commas between; - reads standard "
+                     "input; # begins a comment");
+    command.option("--triangle R", &request.triangle,
+                   "Triangle test (default exact), or one of a library that `list` shows");
+    command.flag("--double", &request.keep_doubles, "Keep the numbers as doubles instead of rounding to float");
+    command.flag("--geometry", &request.geometry,
+                 "What the two have in common in place of 0 or 1: kind, number of corners, corners, and the error of a "
+                 "coordinate on each axis");
 }
 
 }  // namespace aabblab

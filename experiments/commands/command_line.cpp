@@ -9,11 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "output.hpp"
-
 import aabb.base;
 import aabb.policy;
 import aabb.registry;
+import aabblab.output;
 
 namespace aabblab {
 

@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace CLI {
@@ -13,16 +16,16 @@ class Option;
 
 namespace aabblab {
 
+/// What takes the value of an option or an argument, which the caller keeps; or what is done with it.
+using option_value = std::variant<std::string*, std::optional<std::string>*, std::optional<std::size_t>*,
+                                  std::vector<std::string>*, std::function<void(const std::string&)>>;
+
 /// An option, a flag or an argument of a command, of which help and refusals tell.
 class parsed_option {
 public:
     explicit parsed_option(CLI::Option& option) : option_(&option) {}
 
     parsed_option required() const;
-    /// What stands for its value in the help; empty for an argument, whose name does.
-    parsed_option type_name(const std::string& name) const;
-    /// What stands behind a flag in the help.
-    parsed_option option_text(const std::string& text) const;
     parsed_option excludes(parsed_option other) const;
     /// Takes one value each time that it is given.
     parsed_option one_value_at_a_time() const;
@@ -37,32 +40,48 @@ private:
 /// that takes longer to compile than most commands do, so that they see no more of it than this.
 class command_parser {
 public:
-    explicit command_parser(CLI::App& command) : command_(&command) {}
+    /// @param status of the program, which a command sets when it has run: 0, or 1 when a check failed
+    command_parser(CLI::App& command, int& status) : command_(&command), status_(&status) {}
 
     command_parser add_command(const std::string& name, const std::string& help) const;
-    parsed_option add_option(const std::string& names, std::string& value, const std::string& help) const;
-    parsed_option add_option(const std::string& names, std::optional<std::string>& value,
-                             const std::string& help) const;
-    parsed_option add_option(const std::string& names, std::optional<std::size_t>& value,
-                             const std::string& help) const;
-    parsed_option add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const;
-    parsed_option add_option(const std::string& names, const std::function<void(const std::string&)>& take,
-                             const std::string& help) const;
-    parsed_option add_flag(const std::string& names, bool& given, const std::string& help) const;
-    /// A flag that may have a value, and "true" where it has none.
-    parsed_option add_flag(const std::string& names, std::string& value, const std::string& help) const;
+    /// One that was added before. In place of all else that a command takes, one of its own may follow.
+    [[nodiscard]] command_parser command(const std::string& name) const;
+
+    /// What the command does: called once the whole command line has been read, with the request that it has filled.
+    /// Bad input is thrown as aabb::input_error, which ends the program with status 2.
+    template <class Request, class Result>
+    Request& calls(Result (*act)(const Request&)) const {
+        const auto request = std::make_shared<Request>();
+        callback([request, act] {
+            if constexpr (std::is_void_v<Result>) {
+                act(*request);
+                return 0;
+            } else {
+                return act(*request);
+            }
+        });
+        return *request;
+    }
+
+    /// @param name as the help has it: "MESH"
+    parsed_option argument(const std::string& name, const option_value& value, const std::string& help) const;
+    parsed_option optional_argument(const std::string& name, const option_value& value, const std::string& help) const;
+    /// @param names with what stands for the value in the help: "--n,--objects V"
+    parsed_option option(const std::string& names, const option_value& value, const std::string& help) const;
+    /// @param value a text where the flag may have a value, as in "--self [=apart]": "true" where it has none
+    parsed_option flag(const std::string& name, std::variant<bool*, std::string*> value, const std::string& help) const;
     void footer(const std::string& text) const;
     /// Made when help is asked for.
     void footer(const std::function<std::string()>& text) const;
-    /// What is done once the whole command line has been read.
-    void callback(const std::function<void()>& act) const;
-    /// One of its commands, which have all been added, may follow in place of all else that it takes: nothing is to be
-    /// lost in silence.
-    void allow_one_command() const;
-    [[nodiscard]] bool any_command_given() const;
 
 private:
+    void callback(const std::function<int()>& act) const;
+
     CLI::App* command_;
+    int* status_;
 };
+
+/// Adds every command of the program, in the order of its help.
+void add_commands(const command_parser& program);
 
 }  // namespace aabblab

@@ -2,22 +2,19 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
-
-#include "reproduce_archive.hpp"
 
 import aabblab.comparison;
+import aabblab.output;
+import aabblab.record;
 import aabblab.scenes;
-import aabblab.tables;
 import aabblab.statistics;
+import aabblab.tables;
 
 namespace aabblab {
 
@@ -137,7 +134,7 @@ void print_numbers(const comparison& found) {
 }
 
 int compare_folders(const compare_request& request) {
-    for (const std::string& folder : {request.a, request.b}) (void)verify_source(folder);
+    for (const std::string& folder : {request.a, request.b}) verify_record(folder);
     const run_results a = read_results(request.a);
     const run_results b = read_results(request.b);
     if (request.times) {
@@ -158,15 +155,14 @@ int compare_folders(const compare_request& request) {
 
 }  // namespace
 
-void add_compare(const command_parser& program, int& status) {
+void add_compare(const command_parser& program) {
     const command_parser command = program.add_command(
         "compare", "Two results folders, of two commits or machines: which ratios, answers, counts and bytes changed");
-    auto request = std::make_shared<compare_request>();
-    command.add_option("A", request->a, "Folder of results, of an experiment or of several").required().type_name("");
-    command.add_option("B", request->b, "Another, which is compared with it").required().type_name("");
-    command.add_flag("--times", request->times, "Compare milliseconds too; of one machine only");
-    command.add_flag("--all", request->all, "List what is unchanged or undecided too");
-    command.callback([request, &status] { status = compare_folders(*request); });
+    auto& request = command.calls(compare_folders);
+    command.argument("A", &request.a, "Folder of results, of an experiment or of several");
+    command.argument("B", &request.b, "Another, which is compared with it");
+    command.flag("--times", &request.times, "Compare milliseconds too; of one machine only");
+    command.flag("--all", &request.all, "List what is unchanged or undecided too");
 }
 
 }  // namespace aabblab

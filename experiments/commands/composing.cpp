@@ -1,29 +1,33 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "output.hpp"
 
 // Imports, so it comes last.
 #include "composing.hpp"
 
 import aabb.base;
-import aabb.geometry;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
-import aabblab.files;
-import aabblab.scenes;
+import aabblab.queries;
 
 namespace aabblab {
 
 namespace {
+
+std::vector<aabb::strategy_kind> kinds_of(aabb::stage stage) {
+    std::vector<aabb::strategy_kind> all;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (info_of(kind).stage == stage) all.push_back(kind);
+    return all;
+}
 
 /// "bucket, or what goes with what is named", "as it serves the scene"
 std::string usual_of(aabb::strategy_kind kind) {
@@ -33,83 +37,48 @@ std::string usual_of(aabb::strategy_kind kind) {
     return info.beside == info.fallback ? text : text + ", or what goes with what is named";
 }
 
-}  // namespace
-
-std::string names_in_line(aabb::strategy_kind kind) {
-    std::string text;
-    for (const std::string& name : aabb::strategy_names(kind)) text += (text.empty() ? "" : ", ") + name;
-    return text;
+/// "--sort, --partition and --sweep"
+std::string option_names(aabb::stage stage) {
+    std::vector<std::string> names;
+    for (const aabb::strategy_kind kind : kinds_of(stage)) names.push_back(fmt::format("--{}", name_of(kind)));
+    const std::string last = names.back();
+    names.pop_back();
+    return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
-void stage_options::add_to(const command_parser& command) {
-    for (const aabb::strategy_kind kind : kinds()) {
-        const std::string name(name_of(kind));
-        command
-            .add_option(
-                "--" + name, given_[kind],
-                "One of " + names_in_line(kind) + " (default " + usual_of(kind) + "), as in NAME:parameter=value")
-            .type_name("S");
-    }
+}  // namespace
+
+void method_options::add_to(const command_parser& command, const std::string& in_place) {
+    for (const aabb::stage stage : stages_)
+        for (const aabb::strategy_kind kind : kinds_of(stage))
+            command.option(
+                fmt::format("--{} S", name_of(kind)), &given_[kind],
+                fmt::format("One of {} (default {}), as in NAME:parameter=value", names_in_line(kind), usual_of(kind)));
+    command.option("--engine E", &engine_, "Reference system in place of " + in_place);
     command.footer("aabblab list has every strategy with its parameters.");
 }
 
-bool stage_options::any() const {
-    return std::ranges::any_of(given_.all, [](const auto& one) { return one.has_value(); });
+search_choice method_options::choice(bool geometry) const {
+    if (geometry && engine_)
+        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
+    const auto is_given = [&](aabb::strategy_kind kind) { return given_[kind].has_value(); };
+    if (engine_ && std::ranges::any_of(kinds_of(stages_.back()), is_given))
+        throw aabb::input_error(fmt::format("--engine stands in for {}, so give it {}", option_names(stages_.back()),
+                                            stages_.size() == 1 ? "alone" : "without them"));
+    search_choice choice{stages_, {}, engine_, geometry};
+    for (const aabb::stage stage : stages_)
+        for (const aabb::strategy_kind kind : kinds_of(stage)) {
+            if (!is_given(kind)) continue;
+            if (*given_[kind] == "auto")
+                throw aabb::input_error(
+                    fmt::format("--{} auto: leave it out, since what is not named is selected", name_of(kind)));
+            choice.named[kind] = aabb::parse_strategy(*given_[kind]);
+        }
+    return choice;
 }
 
-std::string stage_options::names() const {
-    std::string text;
-    const std::vector<aabb::strategy_kind> all = kinds();
-    for (std::size_t i = 0; i < all.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == all.size() ? " and " : ", ") + ("--" + std::string(name_of(all[i])));
-    return text;
-}
-
-void stage_options::add_to(aabb::named_strategies& named) const {
-    for (const aabb::strategy_kind kind : kinds()) {
-        if (!given_[kind]) continue;
-        if (*given_[kind] == "auto")
-            throw aabb::input_error("--" + std::string(name_of(kind)) +
-                                    " auto: leave it out, since what is not named is selected");
-        named[kind] = aabb::parse_strategy(*given_[kind]);
-    }
-}
-
-std::vector<aabb::strategy_kind> stage_options::kinds() const {
-    std::vector<aabb::strategy_kind> all;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (info_of(kind).stage == stage_) all.push_back(kind);
-    return all;
-}
-
-void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes) {
-    std::vector<std::string> names;
-    for (const std::string& name : meshes) names.emplace_back(name_without_order(name));
-    std::vector<std::string> files = names;
-    for (const std::string& name : names) files.push_back((data_folder() / name).string());
-    require_other_file(out, files);
-    // A file of that name here would from now on hide the one in the data folder.
-    for (const std::string& name : names)
-        if (std::filesystem::weakly_canonical(name) == std::filesystem::weakly_canonical(out))
-            throw aabb::input_error(out + " is the name of a mesh that this command reads from the data folder");
-}
-
-void note_left_out(const std::vector<std::string>& names, const std::filesystem::path& folder) {
-    const std::vector<std::string> endings = mesh_endings();
-    for (const std::string& name : std::set(names.begin(), names.end()))
-        if (std::ranges::find(endings, mesh_ending_of(name_without_order(name, folder))) != endings.end())
-            if (const std::string left_out = make_mesh(name, folder).report.left_out(); !left_out.empty())
-                note(name + ": " + left_out);
-}
-
-std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names) {
-    std::vector<aabb::mesh> meshes;
-    for (const std::string& name : names) {
-        loaded_mesh loaded = make_mesh(name);
-        if (const std::string report = loaded.report.text(); !report.empty()) note(name + ": " + report);
-        meshes.push_back(std::move(loaded.mesh));
-    }
-    return meshes;
+std::string names_in_line(aabb::strategy_kind kind) {
+    return fmt::format("{}", fmt::join(aabb::strategy_names(kind), ", "));
 }
 
 }  // namespace aabblab

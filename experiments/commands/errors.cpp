@@ -1,19 +1,16 @@
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
-
-#include "error_studies.hpp"
 
 import aabblab.configs;
 import aabblab.errors;
 import aabblab.figures;
+import aabblab.output;
 import aabblab.results;
+import aabblab.suites;
 import aabblab.tables;
 
 namespace aabblab {
@@ -21,7 +18,7 @@ namespace aabblab {
 namespace {
 
 struct errors_request {
-    std::string config = AABBLAB_ERROR_CONFIGS "/triangle_tests.toml";
+    std::string config = usual_study();
     std::optional<std::string> out;
     bool quick = false;
 };
@@ -49,18 +46,15 @@ int run(const errors_request& request) {
 
 }  // namespace
 
-void add_errors(const command_parser& program, int& status) {
+void add_errors(const command_parser& program) {
     const command_parser command =
         program.add_command("errors", "Error against run time: what methods get wrong, and the time they take or save");
-    auto request = std::make_shared<errors_request>();
-    command
-        .add_option("CONFIG", request->config,
-                    "Methods, and what they are held against (default experiments/configs/errors/triangle_tests.toml)")
-        .type_name("");
-    command.add_option("--out", request->out, "Folder of table and plots (default results/errors-NAME)")
-        .type_name("DIR");
-    command.add_flag("--quick", request->quick, "Fewer pairs, for a first look");
-    command.callback([request, &status] { status = run(*request); });
+    auto& request = command.calls(run);
+    command.optional_argument(
+        "CONFIG", &request.config,
+        "Methods, and what they are held against (default experiments/configs/errors/triangle_tests.toml)");
+    command.option("--out DIR", &request.out, "Folder of table and plots (default results/errors-NAME)");
+    command.flag("--quick", &request.quick, "Fewer pairs, for a first look");
 }
 
 }  // namespace aabblab

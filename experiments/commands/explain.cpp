@@ -2,23 +2,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "number.hpp"
-#include "output.hpp"
 
 // Import, so they come last.
-#include "experiments.hpp"
 #include "explain_omissions.hpp"
 #include "explain_savings.hpp"
 #include "kept_costs.hpp"
-#include "scene_arguments.hpp"
+#include "scene_texts.hpp"
 #include "wrapped_row.hpp"
 
 import aabb.base;
@@ -28,12 +23,15 @@ import aabb.registry;
 import aabb.selection;
 import aabb.validation;
 import aabblab.configs;
+import aabblab.inputs;
 import aabblab.measures;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.play;
 import aabblab.race;
 import aabblab.scenes;
 import aabblab.stopwatch;
+import aabblab.suites;
 import aabblab.tables;
 
 namespace aabblab {
@@ -102,12 +100,7 @@ void explain_contender(staged_scene& scene, const contender& who, const time_lim
 
 /// Parts of the config that a scene has no use for.
 void explain_unused(const experiment& e, const scene_choice& scene) {
-    for (const aabb::engine_info& engine : aabb::engines())
-        for (const std::string& name : e.engines)
-            if (name == engine.name && !contender_of(engine, has_meshes(scene)))
-                print("  " + name + " has no part in this scene: it searches no boxes\n");
-    for (const external_engine& engine : e.externals)
-        if (has_meshes(scene)) print("  " + engine.name + " has no part in this scene: it is given boxes only\n");
+    for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
     if (has_meshes(scene)) return;
     std::string kinds;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
@@ -119,15 +112,13 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 /// What the scene is and what it is like; nothing is said of one that cannot be played.
 void explain_measures(staged_scene& scene, const time_limits& limits) {
     const auto text_of_measures = [](const std::vector<told_measure>& measures) {
-        table t{{{"measured", false}, {"", false}}, {}};
-        for (const told_measure& one : measures) t.rows.push_back({one.name, one.value});
-        return to_text(t, output_width());
+        return to_text(table_of(measures), output_width());
     };
     const work_apart work =
         scene.apart([&](scene_play& play, const telling& tell) { tell(text_of_measures(told(measure_scene(play)))); },
                     share_of_part * limits.to_play());
     if (work.end == ending::refused) throw aabb::input_error(work.reason);
-    print(wrapped(scene.choice().kind + " (" + visible(parameters_text(scene.choice())) + ")") + "\n");
+    print_paragraph(heading_of(scene.choice()));
     if (work.end == ending::done)
         print(work.told);
     else
@@ -228,22 +219,16 @@ int explain(const explain_request& request) {
 
 }  // namespace
 
-void add_explain(const command_parser& program, int& status) {
+void add_explain(const command_parser& program) {
     const command_parser command = program.add_command(
         "explain", "What a scene is like, which composition it gets and why, its bytes, and what is left out");
-    auto request = std::make_shared<explain_request>();
-    command
-        .add_option(
-            "WHAT", request->what,
-            std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help)
-        .required()
-        .type_name("");
-    command
-        .add_option(
-            "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text, "play"); },
-            "How long to play each scene (default 60); it says what there was no time for")
-        .type_name("S");
-    command.callback([request, &status] { status = explain(*request); });
+    auto& request = command.calls<explain_request>(explain);
+    command.argument(
+        "WHAT", &request.what,
+        std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help);
+    command.option(
+        "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "play"); },
+        "How long to play each scene (default 60); it says what there was no time for");
 }
 
 }  // namespace aabblab

@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "output.hpp"
-
 // Imports, so they come last.
 #include "explain_omissions.hpp"
 #include "wrapped_row.hpp"
@@ -19,6 +17,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.play;
 import aabblab.race;
 import aabblab.results;

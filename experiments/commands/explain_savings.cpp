@@ -8,18 +8,17 @@
 #include <utility>
 #include <vector>
 
-#include "output.hpp"
-#include "told_times.hpp"
-
 // Imports, so they come last.
 #include "explain_omissions.hpp"
 #include "explain_savings.hpp"
+#include "scene_texts.hpp"
 
 import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.play;
 import aabblab.race;
 import aabblab.scenes;
@@ -81,10 +80,6 @@ void add_row(table& t, const other_way& one, const other_way& selected) {
                       ratio[1], fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
 }
 
-void print_line(const std::string& line) {
-    print(wrapped(line) + "\n");
-}
-
 /// The compositions that did not finish a run, and why.
 void print_unfinished(const std::vector<other_way>& all) {
     table t{{{"not finished", false}, {"", false}}, {}};
@@ -101,7 +96,7 @@ bool print_disagreements(const std::vector<other_way>& all) {
     for (const other_way& one : all) times.push_back(one.times);
     const std::vector<std::size_t> wrong = who_disagrees(times);
     for (const std::size_t i : wrong)
-        print_line(called(all[i]) + " finds other pairs than what is selected: one of the two is wrong.");
+        print_paragraph(called(all[i]) + " finds other pairs than what is selected: one of the two is wrong.");
     return wrong.empty();
 }
 
@@ -131,8 +126,8 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (played.times[0].empty()) {
         const attempt& selected_play = *played.broken_off[0];
         if (selected_play.end == ending::refused) throw aabb::input_error(selected_play.reason);
-        print_line("what each choice saves is not known; as selected: " + text_of(selected_play) +
-                   (selected_play.end == ending::stopped ? "; increase --seconds" : "") + ".");
+        print_paragraph("what each choice saves is not known; as selected: " + text_of(selected_play) +
+                        (selected_play.end == ending::stopped ? "; increase --seconds" : "") + ".");
         return true;
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -150,22 +145,22 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
              {"bytes", true, 1}},
             {}};
     for (std::size_t i = 0; i < in_one_kind; ++i) add_row(t, all[i], all[0]);
-    print_line(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} of {}",
-                           counted(played.rounds, "round"), counted(played.frames, "frame")));
+    print_paragraph(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} of {}",
+                                counted(played.rounds, "round"), counted(played.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
     print_unfinished(all);
-    if (!alone.empty()) print_line(alone + ": nothing else can be composed with the rest.");
+    if (!alone.empty()) print_paragraph(alone + ": nothing else can be composed with the rest.");
     if (!any)
-        print_line(fmt::format("With more than {} only kinds that stand apart are tried in other ways.",
-                               counted(most_objects_of_any, "object")));
-    print_line(ms_a_frame_text);
-    print_line(fmt::format(
+        print_paragraph(fmt::format("With more than {} only kinds that stand apart are tried in other ways.",
+                                    counted(most_objects_of_any, "object")));
+    print_paragraph(ms_a_frame_text);
+    print_paragraph(fmt::format(
         "ratio: ms/frame over that of what is selected in the same round, the median; range: the least and the "
         "greatest; ?: the range comes within 3 % of 1, so that the rounds leave it open; > {:.0f}: seen in one "
         "round.",
         hopeless_ratio));
-    print_line(build_ms_text);
-    print_line("bytes: held after the last of these frames; counters: the same with all work counted.");
+    print_paragraph(build_ms_text);
+    print_paragraph("bytes: held after the last of these frames; counters: the same with all work counted.");
     print("\n");
     print_omissions(all);
     const bool same = print_disagreements(all);

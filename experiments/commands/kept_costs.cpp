@@ -5,12 +5,11 @@
 #include <string>
 #include <system_error>
 
-#include "output.hpp"
-
 import aabb.base;
 import aabb.costs;
 import aabblab.configs;
 import aabblab.machine;
+import aabblab.output;
 
 namespace aabblab {
 

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,14 +11,13 @@
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
 
 import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.metrics;
+import aabblab.output;
 import aabblab.scenes;
 import aabblab.stepping;
 
@@ -27,138 +25,108 @@ namespace aabblab {
 
 namespace {
 
-const metric_group_info& group_of(const metric& m) {
-    return metric_groups[static_cast<std::size_t>(m.group)];
-}
+using json = nlohmann::ordered_json;
 
-nlohmann::ordered_json to_json(std::span<const aabb::parameter_info> parameters) {
-    auto all = nlohmann::ordered_json::array();
-    for (const auto& p : parameters) {
+struct list_request {
+    std::optional<std::string> kind;
+    bool json = false;
+};
+
+/// Something that has a name, for people and as JSON.
+struct listed {
+    std::string name;
+    std::string said;
+    std::span<const aabb::parameter_info> parameters;
+    json members;
+};
+
+/// A part of the list, with the names that `list` takes and JSON has.
+struct section {
+    std::string name;
+    std::string heading;  ///< what is said behind the name
+    std::vector<listed> entries;
+    std::vector<listed> left_out = {};  ///< of this build
+};
+
+json json_of(std::span<const aabb::parameter_info> parameters) {
+    json all = json::array();
+    for (const aabb::parameter_info& p : parameters) {
         all.push_back({{"name", p.name}, {"expected", to_text(p.values)}, {"default", p.fallback}, {"help", p.help}});
         if (p.fallback.empty()) all.back()["default"] = nullptr;
     }
     return all;
 }
 
-nlohmann::ordered_json everything() {
-    nlohmann::ordered_json all;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        auto& of_kind = all["strategies"][std::string(aabb::name_of(kind))];
-        for (const auto& s : aabb::strategies(kind))
-            of_kind.push_back(
-                {{"name", s.name}, {"summary", s.summary}, {"exact", s.exact}, {"parameters", to_json(s.parameters)}});
+std::string_view group_of(const metric& m) {
+    return metric_groups[static_cast<std::size_t>(m.group)].name;
+}
+
+std::string said_of(const auto& info) {
+    return std::string(info.summary);
+}
+std::string said_of(const aabb::engine_info& e) {
+    const char* scope = !e.collides_meshes ? "boxes" : e.searches_boxes ? "boxes and meshes" : "meshes";
+    return fmt::format("{} ({}{})", e.summary, scope, e.exact ? ", exact" : "");
+}
+std::string said_of(const metric& m) {
+    return fmt::format("{} ({}{})", m.summary, m.unit.empty() ? "" : m.unit + ", ", group_of(m));
+}
+
+/// What scripts may want to know, of what has it.
+template <class Info>
+listed listed_of(const Info& info) {
+    listed one{std::string(info.name), said_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
+    json& members = one.members;
+    if constexpr (requires { info.engine; }) members["engine"] = info.engine;
+    if constexpr (requires { info.searches_boxes; }) members["searches_boxes"] = info.searches_boxes;
+    if constexpr (requires { info.collides_meshes; }) members["collides_meshes"] = info.collides_meshes;
+    if constexpr (requires { info.exact; }) members["exact"] = info.exact;
+    if constexpr (requires { info.order; }) members["order"] = info.order;
+    if constexpr (requires { info.adaptive; }) members["adaptive"] = info.adaptive;
+    if constexpr (requires { info.has_meshes; }) members["has_meshes"] = info.has_meshes;
+    if constexpr (requires { info.plays_file; }) members["has_seed"] = !info.plays_file;
+    if constexpr (requires { info.unit; }) members["unit"] = info.unit;
+    if constexpr (requires { info.group; }) members["recorded"] = group_of(info);
+    if constexpr (requires { info.direction; })
+        members["better"] = info.direction == better::less   ? "less"
+                            : info.direction == better::more ? "more"
+                                                             : "neither";
+    if constexpr (requires { info.parameters; }) {
+        one.parameters = info.parameters;
+        members["parameters"] = json_of(one.parameters);
     }
-    for (const auto& e : aabb::engines())
-        all["engines"].push_back({{"name", e.name},
-                                  {"summary", e.summary},
-                                  {"searches_boxes", e.searches_boxes},
-                                  {"collides_meshes", e.collides_meshes},
-                                  {"exact", e.exact}});
-    all["engines_left_out"] = nlohmann::ordered_json::array();
-    for (const auto& e : aabb::left_out_engines())
-        all["engines_left_out"].push_back({{"name", e.name}, {"not_found", e.library}});
-    for (const auto& t : aabb::library_tests())
-        all["library_tests"].push_back({{"name", t.name},
-                                        {"summary", t.summary},
-                                        {"engine", t.engine},
-                                        {"exact", t.exact},
-                                        {"parameters", to_json(t.parameters)}});
-    for (const integrator_info& i : integrators())
-        all["integrators"].push_back(
-            {{"name", i.name}, {"summary", i.summary}, {"order", i.order}, {"adaptive", i.adaptive}});
-    for (const auto& s : scene_kinds())
-        all["scenes"].push_back({{"name", s.name},
-                                 {"summary", s.summary},
-                                 {"has_meshes", s.has_meshes},
-                                 {"has_seed", !s.plays_file},
-                                 {"parameters", to_json(s.parameters)}});
-    for (const auto& s : shapes())
-        all["shapes"].push_back({{"name", s.name}, {"summary", s.summary}, {"parameters", to_json(s.parameters)}});
-    for (const auto& c : pair_classes()) all["pairs"].push_back({{"name", c.name}, {"summary", c.summary}});
-    for (const metric_group_info& group : metric_groups)
-        all["recorded"].push_back({{"name", group.name}, {"summary", group.summary}});
-    for (const metric& m : metrics())
-        all["metrics"].push_back({{"name", m.name},
-                                  {"summary", m.summary},
-                                  {"unit", m.unit},
-                                  {"recorded", group_of(m).name},
-                                  {"better", m.direction == better::less   ? "less"
-                                             : m.direction == better::more ? "more"
-                                                                           : "neither"}});
+    return one;
+}
+
+std::vector<listed> all_of(const auto& infos) {
+    std::vector<listed> all;
+    for (const auto& info : infos) all.push_back(listed_of(info));
     return all;
 }
-
-void print_entry(std::string_view name, std::string_view text) {
-    print(entry(fmt::format("  {}", name), text));
-}
-
-void print_parameters(std::span<const aabb::parameter_info> parameters) {
-    for (const auto& p : parameters)
-        print(entry(
-            fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
-            fmt::format("{}: {}{}", p.help, to_text(p.values), p.fallback.empty() ? ", which must be given" : "")));
-}
-
-/// With their parameters.
-template <class Infos>
-void print_infos(const Infos& infos) {
-    for (const auto& info : infos) {
-        print_entry(info.name, info.summary);
-        print_parameters(info.parameters);
-    }
-}
-
-std::string scope_of(const aabb::engine_info& engine) {
-    const std::string scope = !engine.collides_meshes ? "boxes" : engine.searches_boxes ? "boxes and meshes" : "meshes";
-    return engine.exact ? scope + ", exact" : scope;
-}
-
-void print_engines() {
-    for (const auto& e : aabb::engines()) print_entry(e.name, e.summary + " (" + scope_of(e) + ")");
-    for (const auto& e : aabb::left_out_engines())
-        print_entry(e.name, "left out: " + e.library + " was not found when this was built");
-}
-
-void print_integrators() {
-    for (const integrator_info& i : integrators()) print_entry(i.name, i.summary);
-    for (const std::string_view name : left_out_integrators())
-        print_entry(name,
-                    "left out: its library was not found when this was built; ./aabblab validate stiff installs it");
-}
-
-void print_pair_classes() {
-    for (const auto& c : pair_classes()) print_entry(c.name, c.summary);
-}
-
-void print_metric_groups() {
-    for (const metric_group_info& group : metric_groups) print_entry(group.name, group.summary);
-}
-
-void print_metrics() {
-    for (const metric& m : metrics())
-        print_entry(m.name, fmt::format("{} ({}{})", m.summary, m.unit.empty() ? "" : m.unit + ", ", group_of(m).name));
-}
-
-/// A part of the list, with the names that `list` takes and JSON has.
-struct section {
-    std::string name;
-    std::string heading;  ///< what is said behind the name
-    std::function<void()> print_entries;
-};
 
 std::vector<section> sections() {
     std::vector<section> all;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        all.push_back({std::string(name_of(kind)), "", [kind] { print_infos(aabb::strategies(kind)); }});
-    all.push_back({"engines", "", print_engines});
+        all.push_back({std::string(name_of(kind)), "", all_of(aabb::strategies(kind))});
+    all.push_back({"engines", "", all_of(aabb::engines())});
+    for (const auto& e : aabb::left_out_engines()) {
+        const json members = {{"name", e.name}, {"not_found", e.library}};
+        const std::string said = "left out: " + e.library + " was not found when this was built";
+        all.back().left_out.push_back({e.name, said, {}, members});
+    }
     all.push_back({"library_tests", ", triangle tests of engines' libraries, for classify and errors",
-                   [] { print_infos(aabb::library_tests()); }});
-    all.push_back({"integrators", ", of validate stiff", print_integrators});
-    all.push_back({"scenes", "", [] { print_infos(scene_kinds()); }});
-    all.push_back({"shapes", ", in place of a mesh file", [] { print_infos(shapes()); }});
-    all.push_back({"pairs", " of triangles, for errors", print_pair_classes});
-    all.push_back({"recorded", ", for metrics of each", print_metric_groups});
-    all.push_back({"metrics", "", print_metrics});
+                   all_of(aabb::library_tests())});
+    all.push_back({"integrators", ", of validate stiff", all_of(integrators())});
+    for (const std::string_view name : left_out_integrators()) {
+        const char* said =
+            "left out: its library was not found when this was built; ./aabblab validate stiff installs it";
+        all.back().left_out.push_back({std::string(name), said, {}, {}});
+    }
+    all.push_back({"scenes", "", all_of(scene_kinds())});
+    all.push_back({"shapes", ", in place of a mesh file", all_of(shapes())});
+    all.push_back({"pairs", " of triangles, for errors", all_of(pair_classes())});
+    all.push_back({"recorded", ", for metrics of each", all_of(metric_groups)});
+    all.push_back({"metrics", "", all_of(metrics())});
     return all;
 }
 
@@ -168,47 +136,56 @@ std::vector<std::string> section_names() {
     return names;
 }
 
-void require_section(const std::string& name) {
-    const std::vector<std::string> names = section_names();
-    if (std::ranges::find(names, name) == names.end())
-        throw aabb::input_error("list: " + aabb::unknown_name("kind", name, names, "aabblab list --help"));
+void print_text(const section& one) {
+    print(one.name + one.heading + "\n");
+    for (const std::vector<listed>& part : {one.entries, one.left_out})
+        for (const listed& l : part) {
+            print(entry("  " + l.name, l.said));
+            for (const aabb::parameter_info& p : l.parameters)
+                print(entry(fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
+                            fmt::format("{}: {}{}", p.help, to_text(p.values),
+                                        p.fallback.empty() ? ", which must be given" : "")));
+        }
 }
 
-/// @param name of the only section; none for all
-void print_text(const std::optional<std::string>& name) {
-    for (const section& one : sections()) {
-        if (name && one.name != *name) continue;
-        print(one.name + one.heading + "\n");
-        one.print_entries();
+json json_of(const std::vector<listed>& entries) {
+    json all = json::array();
+    for (const listed& one : entries) all.push_back(one.members);
+    return all;
+}
+
+json json_of(const std::vector<section>& sections) {
+    json all;
+    for (const section& one : sections) {
+        const auto is_it = [&](aabb::strategy_kind kind) { return name_of(kind) == one.name; };
+        const bool is_kind = std::ranges::any_of(aabb::strategy_kinds, is_it);
+        (is_kind ? all["strategies"] : all)[one.name] = json_of(one.entries);
+        if (one.name == "engines") all["engines_left_out"] = json_of(one.left_out);
     }
+    return all;
 }
 
-/// What stands in `everything` about one section alone.
-nlohmann::ordered_json part_of(const nlohmann::ordered_json& whole, const std::string& name) {
-    if (whole["strategies"].contains(name)) return {{"strategies", {{name, whole["strategies"][name]}}}};
-    nlohmann::ordered_json part{{name, whole[name]}};
-    if (name == "engines") part["engines_left_out"] = whole["engines_left_out"];
-    return part;
+void list(const list_request& request) {
+    std::vector<section> all = sections();
+    if (request.kind) {
+        const std::vector<std::string> names = section_names();
+        if (std::ranges::find(names, *request.kind) == names.end())
+            throw aabb::input_error("list: " + aabb::unknown_name("kind", *request.kind, names, "aabblab list --help"));
+        std::erase_if(all, [&](const section& one) { return one.name != *request.kind; });
+    }
+    if (request.json) return print(json_of(all).dump(2) + "\n");
+    for (const section& one : all) print_text(one);
 }
 
 }  // namespace
 
-void add_list(const command_parser& program, int&) {
+void add_list(const command_parser& program) {
     const command_parser command =
         program.add_command("list", "Strategies with their parameters, engines, scenes and metrics");
-    auto kind = std::make_shared<std::optional<std::string>>();
-    auto json = std::make_shared<bool>(false);
-    std::string names;
-    for (const std::string& name : section_names()) names += (names.empty() ? "" : ", ") + name;
-    command.add_option("KIND", *kind, "List these only: one of " + names).type_name("");
-    command.add_flag("--json", *json, "Print it as JSON");
-    command.callback([kind, json] {
-        if (*kind) require_section(**kind);
-        if (*json)
-            print((*kind ? part_of(everything(), **kind) : everything()).dump(2) + "\n");
-        else
-            print_text(*kind);
-    });
+    auto& request = command.calls(list);
+    command.optional_argument("KIND", &request.kind,
+                              fmt::format("List these only: one of {}", fmt::join(section_names(), ", ")));
+    command.flag("--json", &request.json, "Print it as JSON");
 }
 
 }  // namespace aabblab

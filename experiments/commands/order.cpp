@@ -1,14 +1,10 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
 
 // Imports, so it comes last.
 #include "composing.hpp"
@@ -17,7 +13,9 @@ import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabblab.files;
+import aabblab.inputs;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.pair_output;
 
 namespace aabblab {
@@ -41,8 +39,7 @@ void write_ordered(const order_request& request) {
     std::optional<number_table> numbers;
     if (request.numbers) {
         require_no_mesh(*request.numbers, {request.mesh});
-        if (std::filesystem::weakly_canonical(*request.numbers) == std::filesystem::weakly_canonical(request.out))
-            throw aabb::input_error("--out and --numbers are the same file, " + request.out);
+        require_two_files("--out", request.out, "--numbers", *request.numbers);
         numbers.emplace(*request.numbers, "triangle,was");
     }
     const aabb::ordered_mesh made = in_leaf_order(read_meshes({request.mesh}).front(), build);
@@ -56,26 +53,21 @@ void write_ordered(const order_request& request) {
 
 }  // namespace
 
-void add_order(const command_parser& program, int&) {
+void add_order(const command_parser& program) {
     const command_parser command =
         program.add_command("order", "Write a mesh in the order of a tree's leaves, for smaller trees");
-    auto request = std::make_shared<order_request>();
-    command.add_option("MESH", request->mesh, "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape").required().type_name("");
-    command
-        .add_option(
-            "--build", request->build,
-            "The build that makes the leaves: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)")
-        .type_name("S");
-    command.add_option("--out", request->out, "The mesh to write (.off)").required().type_name("FILE");
-    command
-        .add_option("--numbers", request->numbers,
-                    "Write which triangle of MESH each one was, rows triangle,was, to this CSV file")
-        .type_name("FILE");
+    auto& request = command.calls(write_ordered);
+    command.argument("MESH", &request.mesh, "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape");
+    command.option(
+        "--build S", &request.build,
+        "The build that makes the leaves: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)");
+    command.option("--out FILE", &request.out, "The mesh to write (.off)").required();
+    command.option("--numbers FILE", &request.numbers,
+                   "Write which triangle of MESH each one was, rows triangle,was, to this CSV file");
     command.footer(
         "The build file_order with the tree implicit:vertices=fetched takes 1.2 bytes a triangle of such a mesh, in "
         "collide, contacts and configs. There FILE:order=BUILD, or SHAPE:triangles=N,order=BUILD, stands for it "
         "without a file. Put in order again, triangles move again: a build also goes by where they stood.");
-    command.callback([request] { write_ordered(*request); });
 }
 
 }  // namespace aabblab

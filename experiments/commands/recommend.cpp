@@ -1,28 +1,25 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "number.hpp"
-#include "output.hpp"
-#include "told_times.hpp"
 
-// Import, so they come last.
-#include "composing.hpp"
-#include "scene_arguments.hpp"
+// Imports, so it comes last.
+#include "scene_texts.hpp"
 
 import aabb.base;
 import aabb.costs;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.inputs;
 import aabblab.machine;
 import aabblab.measures;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.play;
 import aabblab.race;
 import aabblab.results;
@@ -92,12 +89,6 @@ std::vector<std::string> legend() {
             ms_a_frame_text, build_ms_text};
 }
 
-std::string joined(const std::vector<std::string>& sentences) {
-    std::string text;
-    for (const std::string& one : sentences) text += (text.empty() ? "" : " ") + one;
-    return text;
-}
-
 /// By what, when and where it was measured.
 std::string origin() {
     const kept_costs here = costs_of(this_machine().processor, aabb::machine_costs());
@@ -108,8 +99,9 @@ std::string page_of(const std::string& scene, const race_result& race, const std
     return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(scene) +
            "</title>\n<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:"
            "0 .6em;text-align:left}</style></head><body>\n<h1>" +
-           html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
-           "<p>" + html_text(joined(legend())) + "</p>\n" + measured + to_html(dropped_table_of(race)) +
+           html_text(scene) + "</h1>\n<p>" + html_text(fmt::format("{}", fmt::join(advice_of(race), " "))) + "</p>\n" +
+           to_html(table_of(race)) + "<p>" + html_text(fmt::format("{}", fmt::join(legend(), " "))) + "</p>\n" +
+           measured + to_html(dropped_table_of(race)) +
            "<p>Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in "
            "those after the first; or how a play ended that did not come to its end. Strategies play with their "
            "default parameters.</p>\n<p>" +
@@ -119,12 +111,7 @@ std::string page_of(const std::string& scene, const race_result& race, const std
 /// As a page has it: what the scene is like, or that there was no time to find out.
 std::string measures_page(staged_scene& scene, double seconds) {
     const work_apart measured = scene.apart(
-        [](scene_play& play, const telling& tell) {
-            table measures{{{"measured", false}, {"", false}}, {}};
-            for (const told_measure& one : told(measure_scene(play))) measures.rows.push_back({one.name, one.value});
-            tell(to_html(measures));
-        },
-        seconds);
+        [](scene_play& play, const telling& tell) { tell(to_html(table_of(told(measure_scene(play))))); }, seconds);
     return measured.end == ending::done ? measured.told
                                         : "<p>There was no time to measure what the scene is like.</p>\n";
 }
@@ -142,17 +129,17 @@ int recommend(const recommend_request& request) {
     if (scene.scene().objects() < 2)
         throw aabb::input_error("nothing to search: the scene has " + counted(scene.scene().objects(), "object"));
     const race_result race = run_race(scene, starters(scene.scene()), limits);
-    const std::string name = scene.choice().kind + " (" + visible(parameters_text(scene.choice())) + ")";
-    print(wrapped(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame")) + "\n");
+    const std::string name = heading_of(scene.choice());
+    print_paragraph(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame"));
     print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
                       race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
                       100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
     print(to_text(table_of(race), output_width()) + "\n");
-    for (const std::string& line : legend()) print(wrapped(line) + "\n");
+    for (const std::string& line : legend()) print_paragraph(line);
     print("\n");
     if (const table unfinished = unfinished_table_of(race); !unfinished.rows.empty())
         print(to_text(unfinished, output_width()) + "\n");
-    for (const std::string& sentence : advice_of(race)) print(wrapped(sentence) + "\n");
+    for (const std::string& sentence : advice_of(race)) print_paragraph(sentence);
     if (page) {
         page->write(page_of(name, race, measures_page(scene, limits.to_end())));
         page->commit();
@@ -164,21 +151,17 @@ int recommend(const recommend_request& request) {
 
 }  // namespace
 
-void add_recommend(const command_parser& program, int& status) {
+void add_recommend(const command_parser& program) {
     const command_parser command = program.add_command(
         "recommend",
         "Which composition or engine is the fastest in a scene, from a race that drops the hopeless early");
-    auto request = std::make_shared<recommend_request>();
-    command.add_option("WHAT", request->what, scene_arguments_help).required().type_name("");
-    command
-        .add_option(
-            "--seconds", [request](const std::string& text) { request->seconds = seconds_of(text, "race"); },
-            "How long to race (default 60): it ends within twice that, or 2 s after the scene is read where that is "
-            "later; "
-            "who takes longer is stopped")
-        .type_name("S");
-    command.add_option("--report", request->report, "Write all of it as a page, too").type_name("FILE.html");
-    command.callback([request, &status] { status = recommend(*request); });
+    auto& request = command.calls(recommend);
+    command.argument("WHAT", &request.what, scene_arguments_help);
+    command.option(
+        "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "race"); },
+        "How long to race (default 60): it ends within twice that, or 2 s after the scene is read where that is "
+        "later; who takes longer is stopped");
+    command.option("--report FILE.html", &request.report, "Write all of it as a page, too");
 }
 
 }  // namespace aabblab

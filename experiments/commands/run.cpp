@@ -1,18 +1,15 @@
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
-
-#include "experiments.hpp"
 
 import aabblab.configs;
+import aabblab.output;
 import aabblab.results;
+import aabblab.suites;
 
 namespace aabblab {
 
@@ -45,19 +42,17 @@ int run(const run_request& request) {
 
 }  // namespace
 
-void add_run(const command_parser& program, int& status) {
+void add_run(const command_parser& program) {
     const command_parser command =
         program.add_command("run", "One experiment: scenes x compositions, validated, then timed");
-    auto request = std::make_shared<run_request>();
-    command.add_option("CONFIG", request->config, "Config of the experiment (.toml)").required().type_name("");
-    command.add_option("--out", request->out, "Folder of the results (default results/NAME, or results/NAME-quick)")
-        .type_name("DIR");
-    command.add_flag("--quick", request->quick, "What the config says under quick, for a first look");
-    command.add_flag("--resume", request->resume, "Skip what is finished in the folder already");
-    command.add_flag("--counts", request->counts, "Also print the work of each composition and the bytes of its parts");
+    auto& request = command.calls(run);
+    command.argument("CONFIG", &request.config, "Config of the experiment (.toml)");
+    command.option("--out DIR", &request.out, "Folder of the results (default results/NAME, or results/NAME-quick)");
+    command.flag("--quick", &request.quick, "What the config says under quick, for a first look");
+    command.flag("--resume", &request.resume, "Skip what is finished in the folder already");
+    command.flag("--counts", &request.counts, "Also print the work of each composition and the bytes of its parts");
     // What it starts afresh for each of the processes that a config asks for; not for users.
-    command.add_option("--process", request->process, "").hidden();
-    command.callback([request, &status] { status = run(*request); });
+    command.option("--process", &request.process, "").hidden();
 }
 
 }  // namespace aabblab

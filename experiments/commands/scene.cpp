@@ -1,25 +1,20 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
-
-// Imports, so it comes last.
-#include "composing.hpp"
 
 import aabb.base;
 import aabb.geometry;
@@ -28,7 +23,9 @@ import aabb.policy;
 import aabb.registry;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.inputs;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.picture;
 import aabblab.play;
 import aabblab.progress;
@@ -106,12 +103,8 @@ private:
 /// Without one given, 1 where the kind has one.
 std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_info& kind) {
     if (!request.seed) return kind.plays_file ? std::nullopt : std::optional<std::uint64_t>(1);
-    const std::string& text = *request.seed;
-    std::uint64_t seed = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-    if (error != std::errc{} || end != text.data() + text.size())
-        throw aabb::input_error("--seed must be a whole number from 0 to 18446744073709551615, not '" + text + "'");
-    return seed;
+    return parse_whole(*request.seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                       "--seed must be a whole number from 0 to 18446744073709551615");
 }
 
 const scene_info& kind_named(const std::string& name) {
@@ -179,18 +172,12 @@ void require_outputs(const scene_request& request) {
     const auto played = request.settings.find("file");
     for (const auto& [option, file] : outputs) {
         require_no_mesh(file, request.meshes);
-        if (played != request.settings.end() && played->second) require_other_file(file, {&*played->second, 1});
+        if (played != request.settings.end() && played->second) require_other_file(file, *played->second);
     }
     if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, the file to write");
     for (std::size_t i = 0; i < outputs.size(); ++i)
-        for (std::size_t j = i + 1; j < outputs.size(); ++j) {
-            std::error_code ignored;  // a file that is not there is no other's
-            if (std::filesystem::equivalent(outputs[i].second, outputs[j].second, ignored) ||
-                std::filesystem::weakly_canonical(outputs[i].second) ==
-                    std::filesystem::weakly_canonical(outputs[j].second))
-                throw aabb::input_error(outputs[i].first + " and " + outputs[j].first + " are the same file, " +
-                                        outputs[i].second);
-        }
+        for (std::size_t j = i + 1; j < outputs.size(); ++j)
+            require_two_files(outputs[i].first, outputs[i].second, outputs[j].first, outputs[j].second);
     require_ending("--out", request.out, ".aabbs", "a recording; aabblab pairs writes the pairs of one as CSV");
     require_ending("--picture", request.picture, ".svg", "a picture");
 }
@@ -250,34 +237,26 @@ void add_parameters(const command_parser& command, scene_request& request) {
             help += fmt::format("{}{}", help.empty() ? "Of " : ", ", kind.name);
             if (!p.fallback.empty()) help += fmt::format(" (default {})", p.fallback);
         }
-    for (const auto& [name, help] : helps)
-        command.add_option(option_names(name), request.settings[name], help).type_name("V");
+    for (const auto& [name, help] : helps) command.option(option_names(name) + " V", &request.settings[name], help);
     command.footer("aabblab list scenes tells what these parameters mean and may be.");
 }
 
 }  // namespace
 
-void add_scene(const command_parser& program, int&) {
+void add_scene(const command_parser& program) {
     const command_parser command =
         program.add_command("scene", "Write a scene as a recording of boxes, or as a picture");
-    auto request = std::make_shared<scene_request>();
-    std::string names;
-    for (const std::string& name : scene_names()) names += (names.empty() ? "" : ", ") + name;
-    command.add_option("NAME", request->kind, "One of " + names).required().type_name("");
-    add_parameters(command, *request);
+    auto& request = command.calls(write_scene);
+    command.argument("NAME", &request.kind, fmt::format("One of {}", fmt::join(scene_names(), ", ")));
+    add_parameters(command, request);
     command
-        .add_option("--mesh", request->meshes,
-                    "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape, for scenes of meshes; may be repeated")
-        .one_value_at_a_time()
-        .type_name("MESH");
-    command.add_option("--seed", request->seed, "Whole number: the same seed gives the same scene (default 1)")
-        .type_name("S");
-    command.add_option("--out", request->out, "The recording to write (.aabbs)").type_name("FILE");
-    command.add_option("--motion", request->motion, "The motion file to write, for `contacts`: the poses of meshes")
-        .type_name("FILE");
-    command.add_option("--picture", request->picture, "The picture to write (.svg): the first and the last frame")
-        .type_name("FILE");
-    command.callback([request] { write_scene(*request); });
+        .option("--mesh MESH", &request.meshes,
+                "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape, for scenes of meshes; may be repeated")
+        .one_value_at_a_time();
+    command.option("--seed S", &request.seed, "Whole number: the same seed gives the same scene (default 1)");
+    command.option("--out FILE", &request.out, "The recording to write (.aabbs)");
+    command.option("--motion FILE", &request.motion, "The motion file to write, for `contacts`: the poses of meshes");
+    command.option("--picture FILE", &request.picture, "The picture to write (.svg): the first and the last frame");
 }
 
 }  // namespace aabblab

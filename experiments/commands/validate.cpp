@@ -1,24 +1,24 @@
 #include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "command_parser.hpp"
-#include "commands.hpp"
-#include "output.hpp"
 
-#include "experiments.hpp"
+// Imports, so it comes last.
+#include "scene_texts.hpp"
 
 import aabb.base;
 import aabb.registry;
 import aabb.validation;
 import aabblab.configs;
-import aabblab.tables;
-import aabblab.results;
+import aabblab.output;
 import aabblab.play;
+import aabblab.results;
 import aabblab.scenes;
+import aabblab.suites;
+import aabblab.tables;
 
 namespace aabblab {
 
@@ -72,8 +72,8 @@ int validate(const validate_request& request) {
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
         const scene_validation result = validate_scene(scene, contenders_for(e, scene));
-        print(scene.kind + " (" + visible(parameters_text(scene)) + "), all pairs of " + std::to_string(result.frames) +
-              " frames against " + result.exact_by + ", digest " + result.digest + "\n\n");
+        print(heading_of(scene) + ", all pairs of " + std::to_string(result.frames) + " frames against " +
+              result.exact_by + ", digest " + result.digest + "\n\n");
         table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
         for (const contender_validation& v : result.contenders) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
@@ -91,19 +91,13 @@ int validate(const validate_request& request) {
 
 }  // namespace
 
-void add_validate(const command_parser& program, int& status) {
+void add_validate(const command_parser& program) {
     const command_parser command = program.add_command(
         "validate", "Exactness of every composition of an experiment, or of all there are, against the references");
-    auto request = std::make_shared<validate_request>();
-    command.add_option("CONFIG", request->config, "Config of the experiment (.toml); without one, every composition")
-        .type_name("");
-    command.add_flag("--quick", request->quick, "What the config says under quick, for a first look");
-    command.callback([command, request, &status] {
-        if (!command.any_command_given()) status = validate(*request);
-    });
-    add_validate_extreme(command, status);
-    add_validate_stiff(command, status);
-    command.allow_one_command();
+    auto& request = command.calls(validate);
+    command.optional_argument("CONFIG", &request.config,
+                              "Config of the experiment (.toml); without one, every composition");
+    command.flag("--quick", &request.quick, "What the config says under quick, for a first look");
 }
 
 }  // namespace aabblab

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "output.hpp"
-
+import aabblab.output;
 import aabblab.tables;
 
 namespace aabblab {

@@ -1,10 +1,15 @@
 module;
 #include <filesystem>
+#include <functional>
+#include <list>
+#include <span>
 #include <string>
 #include <vector>
 
 /// What of a reproduction's folder its report is made from, and whether it is as the run left it.
 export module aabblab.record;
+
+import aabblab.archive;
 
 export namespace aabblab {
 
@@ -32,6 +37,33 @@ void unseal_record(const std::filesystem::path& folder);
 /// Where it is sealed, every file is there and as it was, whatever the ends of its lines, and no other.
 /// @throws aabb::input_error where that is not so.
 void verify_record(const std::filesystem::path& folder);
+
+/// The small atlas that stands in the report.
+[[nodiscard]] inline std::filesystem::path folder_of_atlas(const std::filesystem::path& folder) {
+    return folder / "atlas";
+}
+
+struct results_source {
+    std::string name;  ///< as the user gave it
+    std::filesystem::path folder;
+};
+
+/// Results to be judged, each in a folder; those of archives in temporary ones, gone with this.
+class source_list {
+public:
+    /// @param names of folders and archives
+    /// @throws aabb::input_error where one is not there, or is no such archive.
+    explicit source_list(std::span<const std::string> names);
+    void add(const std::filesystem::path& folder);
+
+    [[nodiscard]] const std::vector<results_source>& all() const { return all_; }
+    /// Does the work; where it refuses a file of an archive, the sentence has the archive's name.
+    [[nodiscard]] int with_names_of_user(const std::function<int()>& work) const;
+
+private:
+    std::list<unpacked_archive> unpacked_;
+    std::vector<results_source> all_;
+};
 
 /// What a report says of results that are not sealed.
 inline constexpr const char* unsealed_note =

@@ -35,6 +35,14 @@ struct table {
     std::vector<column> columns;
     std::vector<std::vector<std::string>> rows;
 };
+
+/// A table of a report.
+struct named_table {
+    std::string name;  ///< of its files
+    std::string caption;
+    table content;
+};
+
 /// Columns lined up with spaces, for terminals.
 [[nodiscard]] std::string to_text(const table& t);
 /// The same in lines of at most `width` characters, as far as a name or a number is not longer. Spare columns are left

@@ -32,6 +32,25 @@ struct child_result {
 [[nodiscard]] child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                      const surroundings& where);
 
+/// What a program that ended by itself left.
+struct ended_process {
+    int status;
+    std::vector<std::string> lines;  ///< that it printed
+};
+
+/// Runs a program to its end, which it must reach by itself. What we have printed so far comes before what it says.
+/// @param log of what it says on standard error; empty: goes to ours
+/// @throws aabb::input_error where it cannot be run, or ends otherwise than with 0 or 1.
+[[nodiscard]] ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                                       const std::filesystem::path& log);
+
+/// This program started afresh, which must print a line for all that is wrong.
+/// @throws aabb::input_error also where it ends with 1 and has not said why.
+[[nodiscard]] std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments);
+
+/// The folder of this program.
+[[nodiscard]] std::filesystem::path own_folder();
+
 /// A folder that is removed with this, and with this process, by whatever signal it ends.
 class folder_guard {
 public:

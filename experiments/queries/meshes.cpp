@@ -1,0 +1,197 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.queries;
+
+import :neighbours;
+import aabb.base;
+import aabb.digest;
+import aabb.geometry;
+import aabb.pipeline;
+import aabb.selection;
+import aabblab.configs;
+import aabblab.inputs;
+import aabblab.pair_output;
+import aabblab.play;
+import aabblab.stopwatch;
+
+namespace aabblab {
+
+namespace {
+
+/// Meshes where they are told to be, each an object; the second one, frame by frame, at each of its poses, as often as
+/// that is repeated.
+class posed_meshes final : public aabb::mesh_scene {
+public:
+    /// @param of_b at least one, also where there is no second mesh
+    posed_meshes(std::vector<aabb::mesh> given, const aabb::pose& of_a, std::vector<aabb::pose> of_b,
+                 std::size_t repeats)
+        : of_a_(of_a), of_b_(std::move(of_b)), frames_(repeats * of_b_.size()) {
+        meshes = std::move(given);
+        for (std::uint32_t object = 0; object < meshes.size(); ++object) mesh_of.push_back(object);
+    }
+
+    [[nodiscard]] std::size_t frames() const override { return frames_; }
+    bool next(std::vector<aabb::pose>& poses) override {
+        if (frame_ == frames_) return false;
+        poses = {of_a_, of_b_[frame_++ % of_b_.size()]};
+        poses.resize(meshes.size());
+        return true;
+    }
+
+private:
+    aabb::pose of_a_;
+    std::vector<aabb::pose> of_b_;
+    std::size_t frames_;
+    std::size_t frame_ = 0;
+};
+
+struct answer {
+    std::uint64_t count = 0;              ///< of a mesh with itself those that share no vertex
+    std::uint64_t neighbours = 0;         ///< those that do
+    std::vector<aabb::index_pair> pairs;  ///< that are kept, but those that `detect` leaves with the player
+};
+
+/// @param stored neighbours are kept among the pairs
+answer answer_of(player& who, const mesh_query& query, const aabb::mesh& m, bool stored) {
+    answer found;
+    if (query.self) {
+        who.each_self_pair(0, [&](aabb::index_pair pair) {
+            const bool neighbours = share_vertex(m, pair);
+            ++(neighbours ? found.neighbours : found.count);
+            if (neighbours ? stored : query.ask != question::count) found.pairs.push_back(pair);
+        });
+        return found;
+    }
+    switch (query.ask) {
+        case question::count: found.count = who.count_contacts(); break;
+        case question::pairs: who.detect(); break;
+        case question::first:
+            if (const auto c = who.first_contact()) found.pairs.push_back({c->triangle_a, c->triangle_b});
+            break;
+    }
+    return found;
+}
+
+/// Takes the pairs of each pose: in order, with what their triangles have in common, once each.
+class pair_record {
+public:
+    /// @param rows null where they are not wanted
+    pair_record(const mesh_query& query, const scene_play& scene, mesh_result& result, number_table* rows)
+        : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
+
+    /// @param stored neighbours are among the pairs
+    void take(std::uint32_t pose, answer found, bool stored) {
+        pose_ = pose;
+        sort_rows(found.pairs);
+        require_each_once(found.pairs, method_.name);
+        const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
+        if (method_.geometry)
+            method_.geometry->take(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
+        if (query_.ask == question::first) result_.first.emplace_back();
+        if (!query_.neighbours || stored) return take_sorted(found.pairs);
+        const std::uint64_t neighbours = for_each_with_neighbours(
+            meshes.front(), found.pairs, [&](std::span<const aabb::index_pair> some) { take_sorted(some); });
+        if (neighbours != found.neighbours)
+            throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, and there are {}",
+                                     method_.name, found.neighbours, neighbours));
+    }
+    [[nodiscard]] std::string digest() const { return digest_.text(); }
+
+private:
+    void take_sorted(std::span<const aabb::index_pair> pairs) {
+        digest_.add(pose_, pairs);
+        if (!rows_ && !method_.geometry && query_.ask != question::first) return;
+        for (const aabb::index_pair pair : pairs) {
+            found_pair found{pair, {}};
+            if (method_.geometry) found.common = (*method_.geometry)(pair);
+            if (rows_) add_row(found);
+            if (query_.ask == question::first) result_.first.back() = found;
+        }
+    }
+
+    void add_row(const found_pair& found) {
+        const auto [a, b] = found.triangles;
+        const std::string cells = found.common ? to_cells(*found.common) : "";
+        if (query_.neighbours)
+            rows_->add({a, b, shared_vertices(scene_.meshes()->meshes.front(), found.triangles)}, cells);
+        else if (query_.by_pose)
+            rows_->add({pose_, a, b}, cells);
+        else
+            rows_->add({a, b}, cells);
+    }
+
+    const mesh_query& query_;
+    const scene_play& scene_;
+    mesh_result& result_;
+    search_method& method_;
+    number_table* rows_;
+    aabb::digest digest_;
+    std::uint32_t pose_ = 0;
+};
+
+/// Bytes of the trees a triangle; empty for an engine that does not say.
+std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
+    std::optional<std::size_t> trees;
+    for (const aabb::part_bytes& part : result.bytes)
+        if (part.part == "nodes" || part.part == "indices") trees = trees.value_or(0) + part.bytes;
+    std::size_t triangles = 0;
+    for (const std::uint32_t of_mesh : result.triangles) triangles += of_mesh;
+    if (!trees) return std::nullopt;
+    return static_cast<double>(*trees) / static_cast<double>(triangles);
+}
+
+}  // namespace
+
+mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
+                          const aabb::pose& of_a, given_poses of_b, number_table* rows) {
+    const std::size_t poses = of_b.poses.size();
+    scene_play scene(std::make_unique<posed_meshes>(std::move(meshes), of_a, std::move(of_b.poses), query.repeats));
+    aabb::scene_outlook outlook = outlook_of(scene);
+    outlook.frames = 1;  // each query is timed for itself: none leaves anything to the next
+    mesh_result result;
+    result.method = method_of(choice, outlook);
+    std::optional<player> who;
+    result.build_ms = milliseconds_of([&] { who.emplace(std::move(result.method.made), scene); });
+    for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
+    // Of a mesh with itself, pairs that share a vertex may be by far the most: around one of n triangles there are
+    // n²/2. They are stored only where they are wanted and an inexact method may have missed some; an exact one has
+    // found them all, so that they follow from the mesh.
+    const bool stored = query.neighbours && !result.method.exact && query.ask != question::count;
+    pair_record record(query, scene, result, rows);
+    for (std::uint32_t frame = 0; scene.next(); ++frame) {
+        answer found;
+        try {
+            who->update();
+            who->search();
+            const auto ask = [&] { found = answer_of(*who, query, scene.meshes()->meshes.front(), stored); };
+            result.query_ms.push_back(milliseconds_of(ask));
+        } catch (const aabb::input_error& error) {
+            throw aabb::input_error(fmt::format("{}{}: {}", of_b.place_of(frame % poses), query.between, error.what()));
+        }
+        if (frame >= poses) continue;
+        if (query.self) result.neighbours = found.neighbours;
+        if (!query.self && query.ask != question::count) {
+            for (const aabb::contact& c : who->sorted_contacts()) found.pairs.push_back({c.triangle_a, c.triangle_b});
+            found.count = found.pairs.size();
+        }
+        result.counts.push_back(found.count);
+        if (query.ask != question::count) record.take(frame, std::move(found), stored);
+    }
+    result.bytes = who->local_bytes();
+    result.bytes_per_triangle = bytes_per_triangle_of(result);
+    if (query.ask != question::count) result.digest = record.digest();
+    return result;
+}
+
+}  // namespace aabblab

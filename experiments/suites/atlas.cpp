@@ -1,0 +1,65 @@
+module;
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+module aabblab.suites;
+
+import aabblab.configs;
+import aabblab.output;
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+/// Its experiments, in the order in which they are played.
+struct part {
+    std::string_view name;
+    bool unseen;
+};
+constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {"atlas_unseen", true}}};
+
+}  // namespace
+
+std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick) {
+    std::vector<experiment> experiments;
+    for (const part& one : parts)
+        experiments.push_back(open_experiment(fmt::format("{}/{}.toml", AABBLAB_ATLAS_CONFIGS, one.name), quick));
+    std::vector<std::string> failures;
+    for (const experiment& e : experiments) {
+        note(fmt::format("part {} of {} of the atlas: {}, {} scenes", &e - experiments.data() + 1, experiments.size(),
+                         e.name, e.scenes.size()));
+        std::vector<std::string> found =
+            play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
+        std::ranges::move(found, std::back_inserter(failures));
+    }
+    return failures;
+}
+
+std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
+    std::vector<std::string> sentences;
+    for (const part& one : parts) {
+        if (!std::filesystem::exists(folder / one.name / "manifest.json"))
+            sentences.push_back(fmt::format("of {} nothing was played yet", one.name));
+        else if (!read_manifest(folder / one.name).finished)
+            sentences.push_back(
+                fmt::format("{} is not finished; scenes of it that were not played are missing", one.name));
+    }
+    return sentences;
+}
+
+std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder) {
+    std::vector<atlas_scene> atlas;
+    for (const part& one : parts)
+        if (std::filesystem::exists(folder / one.name / "results.csv"))
+            std::ranges::move(read_atlas(folder / one.name, one.unseen), std::back_inserter(atlas));
+    return atlas;
+}
+
+}  // namespace aabblab

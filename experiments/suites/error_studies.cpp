@@ -1,0 +1,102 @@
+module;
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+module aabblab.suites;
+
+import aabblab.configs;
+import aabblab.errors;
+import aabblab.files;
+import aabblab.output;
+import aabblab.results;
+import aabblab.stopwatch;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+void print_tables(std::span<const error_point> points) {
+    for (const pair_group group : groups_in(points)) {
+        print(
+            fmt::format("In {}:\nshares of pairs with a wrong answer, of intersecting ones that were missed,\nof "
+                        "others that were invented; fewest wrong first\n\n{}\n",
+                        title_of(group), to_text(error_summary(points, group), output_width())));
+        print(fmt::format("By set, missed + invented as shares of all pairs\n\n{}\n",
+                          to_text(errors_by_set(points, group), output_width())));
+        print(group_statement(points, group) + "\n\n");
+    }
+}
+
+void print_tables(std::span<const hit_point> points) {
+    for (const bool in_double : {false, true}) {
+        const table shown = hit_summary(points, in_double);
+        if (shown.rows.empty()) continue;
+        print(
+            fmt::format("Hits of triangles of {}s against CGAL's exact construction: hits whose\n"
+                        "kind or number of corners differs, the greatest error of a coordinate over its\n"
+                        "bound, the greatest at all beside its bound\n\n{}\n",
+                        in_double ? "double" : "float", to_text(shown, output_width())));
+    }
+}
+
+/// @returns a sentence for each test whose hits are wrong
+std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, std::span<const pair_set> sets,
+                                           printed shown) {
+    // What is finished stays, whatever happens afterwards.
+    const std::vector<hit_point> points = measure_hits(sets, [&](std::span<const hit_point> so_far) {
+        write_file(folder / "intersections.csv", to_csv(hit_rows(so_far)));
+    });
+    if (shown != printed::nothing) print_tables(points);
+    std::vector<std::string> failures;
+    for (const hit_point& p : points)
+        if (!p.is_right())
+            failures.push_back(
+                fmt::format("{} constructs {} hits of {} wrongly", p.triangle, p.different + p.outside, p.pairs));
+    return failures;
+}
+
+}  // namespace
+
+std::string usual_study() {
+    return AABBLAB_ERROR_CONFIGS "/triangle_tests.toml";
+}
+
+std::vector<std::filesystem::path> error_configs() {
+    std::vector<std::filesystem::path> all;
+    for (const auto& file : std::filesystem::directory_iterator(AABBLAB_ERROR_CONFIGS))
+        if (file.path().extension() == ".toml") all.push_back(file.path());
+    std::ranges::sort(all);
+    return all;
+}
+
+std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown) {
+    require_fine_clock();
+    std::vector<std::string> failures;
+    std::filesystem::create_directories(folder);
+    // Of an earlier study, they would stand beside the config of this one.
+    for (const char* file : {"errors.csv", "intersections.csv"}) std::filesystem::remove(folder / file);
+    write_file(folder / "config.toml", study.text);
+    if (study.whole) {
+        failures = play_experiment(*study.whole, folder, existing_results::replace, "the same command", shown);
+        if (shown != printed::nothing)
+            for (const std::string& text : metric_statements(study, summarise(read_rows(folder / "results.csv"))))
+                print(text + "\n\n");
+    } else if (!study.curves.empty()) {
+        const std::vector<error_point> points = measure_errors(study, [&](std::span<const error_point> so_far) {
+            write_file(folder / "errors.csv", to_csv(error_rows(so_far)));
+        });
+        if (shown != printed::nothing) print_tables(points);
+    }
+    if (!study.hits.empty())
+        std::ranges::move(measure_hits_into(folder, study.hits, shown), std::back_inserter(failures));
+    return failures;
+}
+
+}  // namespace aabblab

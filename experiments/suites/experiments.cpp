@@ -1,0 +1,223 @@
+module;
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+module aabblab.suites;
+
+import aabb.policy;
+import aabb.registry;
+import aabb.validation;
+import aabblab.configs;
+import aabblab.files;
+import aabblab.inputs;
+import aabblab.metrics;
+import aabblab.output;
+import aabblab.play;
+import aabblab.processes;
+import aabblab.processor;
+import aabblab.results;
+import aabblab.scenes;
+import aabblab.stopwatch;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+/// Says how to go on when the program is interrupted; every finished row is in its file by then.
+class interruption {
+public:
+    explicit interruption(const std::string& resume_with) {
+        message() = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
+        std::signal(SIGINT, [](int signal) {
+            // Only what a signal handler may call.
+            if (write(STDERR_FILENO, message().data(), message().size()) < 0) _exit(1);
+            std::signal(signal, SIG_DFL);
+            std::raise(signal);
+        });
+    }
+    interruption(const interruption&) = delete;
+    interruption& operator=(const interruption&) = delete;
+    ~interruption() { std::signal(SIGINT, SIG_DFL); }
+
+private:
+    static std::string& message() {
+        static std::string text;
+        return text;
+    }
+};
+
+/// Once for each kind of scene.
+void note_idle_engines(const experiment& e) {
+    std::set<std::string> kinds;
+    for (const scene_choice& scene : e.scenes)
+        if (kinds.insert(scene.kind).second)
+            for (const std::string& sentence : idle_engines(e, scene, scene.kind)) note(sentence);
+}
+
+/// Whatever the seeds.
+bool is_same_scene(const scene_choice& a, const scene_choice& b) {
+    return whatever_seed(a) == whatever_seed(b);
+}
+
+/// The rows of a scene, whatever its seeds.
+std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> all) {
+    std::vector<row> rows;
+    for (const row& r : all)
+        if (is_same_scene(r.scene, scene)) rows.push_back(r);
+    return rows;
+}
+
+/// Names of files are in it.
+scene_choice visible_scene(scene_choice scene) {
+    for (aabb::setting& s : scene.settings) s.value = visible(s.value);
+    for (std::string& mesh : scene.meshes) mesh = visible(mesh);
+    return scene;
+}
+
+void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printed shown) {
+    for (scene_summary& scene : scenes) {
+        scene.scene = visible_scene(scene.scene);
+        print(heading_of(scene) + "\n" + to_text(table_of(scene, e.shown), output_width()) + "\n");
+        if (shown != printed::tables_and_counts) continue;
+        if (const table counts = counts_table_of(scene); !counts.columns.empty())
+            print("work a frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
+    }
+    flush_output();
+}
+
+/// A table for scenes whose ratios are to the same composition; those of boxes and of meshes are not.
+void print_overall(std::span<const scene_summary> scenes) {
+    std::map<contender_name, std::vector<scene_summary>> alike;
+    for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
+    for (const auto& [base, some] : alike)
+        if (const table overall = overall_table_of(some); some.size() > 1 && !overall.rows.empty())
+            print(
+                fmt::format("{} scenes with {},\nthe ratio to it as a geometric mean, fastest first; regret: the ratio "
+                            "over\nthe least of an exact answer in each scene, the median, and the worst\n\n{}\n",
+                            some.size(), text_of(base), to_text(overall, output_width())));
+}
+
+/// What takes several must not have them all on one processor.
+bool takes_several_threads(const experiment& e) {
+    return std::ranges::any_of(every_composition(e), [](const aabb::composition& c) {
+        return std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
+            return std::ranges::any_of(c[kind].settings,
+                                       [](const aabb::setting& s) { return s.name == "threads" && s.value != "1"; });
+        });
+    });
+}
+
+/// Plays one process's share of every scene.
+/// @param tell hears what is wrong, a sentence each
+/// @param is_played hears the number of each scene that is
+void play_scenes(
+    const experiment& e, results_folder& results, std::size_t process,
+    const std::function<void(const std::string&)>& tell,
+    const std::function<void(std::size_t)>& is_played = [](std::size_t) {}) {
+    std::optional<idlest_processor> pinned;
+    if (e.records(metric_group::time) && !takes_several_threads(e)) pinned.emplace();
+    for (std::size_t i = 0; i < e.scenes.size(); ++i) {
+        const scene_choice& scene = e.scenes[i];
+        std::ranges::for_each(run_scene(e, scene, contenders_for(e, scene), results, process), tell);
+        is_played(i);
+    }
+}
+
+/// @param tell hears what is wrong, a sentence each
+void play_afresh(const experiment& e, const std::filesystem::path& folder,
+                 const std::function<void(const std::string&)>& tell) {
+    for (std::size_t process = 0; process < e.processes; ++process) {
+        std::vector<std::string> share{"run", e.file, "--out", folder.string(), "--process", std::to_string(process)};
+        if (e.quick) share.emplace_back("--quick");
+        std::ranges::for_each(lines_of_own_process(share), tell);
+    }
+}
+
+}  // namespace
+
+experiment open_experiment(const std::string& config, bool quick) {
+    experiment e = read_experiment(config, quick ? experiment_size::quick : experiment_size::full);
+    for (const std::string& sentence : e.notes) note(sentence);
+    std::vector<std::string> meshes;
+    for (const scene_choice& scene : e.scenes) meshes.insert(meshes.end(), scene.meshes.begin(), scene.meshes.end());
+    // All scenes of a config have its folder.
+    note_left_out(meshes, e.scenes.front().folder);
+    return e;
+}
+
+std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& called) {
+    std::vector<std::string> sentences;
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !contender_of(engine, has_meshes(scene)))
+            sentences.push_back(engine.name + " has no part in " + called + ": it searches no boxes");
+    for (const external_engine& engine : e.externals)
+        if (has_meshes(scene))
+            sentences.push_back(engine.name + " has no part in " + called + ": it is given boxes only");
+    return sentences;
+}
+
+std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
+                                         existing_results existing, const std::string& resume_with, printed shown) {
+    if (e.records(metric_group::time)) require_fine_clock();
+    const interruption said(resume_with);
+    const folder_lock alone(folder);
+    std::vector<std::string> failures;
+    const auto tell = [&](const std::string& failure) {
+        note(failure);
+        failures.push_back(failure);
+    };
+    {
+        results_folder results(folder, record_of(e), existing);
+        note_idle_engines(e);
+        if (!results.replaced().empty()) note(results.replaced() + "; this run replaces them");
+        // It is of a whole run.
+        std::error_code ignored;
+        std::filesystem::remove(folder / "summary.csv", ignored);
+        if (e.processes == 1) {
+            // Shows a scene as soon as its last seed is played.
+            play_scenes(e, results, 0, tell, [&](std::size_t i) {
+                const scene_choice& scene = e.scenes[i];
+                if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_same_scene(scene, e.scenes[i + 1])))
+                    print_scenes(e, summarise(rows_of_all_seeds(scene, results.rows())), shown);
+            });
+            results.seal();
+        }
+    }
+    if (e.processes > 1) {
+        play_afresh(e, folder, tell);
+        results_folder(folder, record_of(e), existing_results::resume).seal();
+    }
+    const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
+    write_file(folder / "summary.csv", to_csv(full_table_of(scenes)));
+    if (shown == printed::nothing) return failures;
+    if (e.processes > 1) print_scenes(e, scenes, shown);
+    print_overall(scenes);
+    return failures;
+}
+
+bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
+    results_folder results(folder, record_of(e), existing_results::resume);
+    bool right = true;
+    play_scenes(e, results, process, [&](const std::string& failure) {
+        print(failure + "\n");
+        flush_output();
+        right = false;
+    });
+    return right;
+}
+
+}  // namespace aabblab

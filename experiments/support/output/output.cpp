@@ -1,0 +1,157 @@
+module;
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+module aabblab.output;
+
+import aabb.base;
+
+namespace aabblab {
+
+namespace {
+
+bool outlives_reader = false;
+bool reader_has_gone = false;
+
+void lose_output(int error) {
+    if (error != EPIPE)
+        throw aabb::input_error("cannot write to standard output: " + std::generic_category().message(error));
+    if (!outlives_reader) throw output_closed();
+    reader_has_gone = true;
+}
+
+/// The bytes of the character in front; 0 where it is a control character or no UTF-8.
+std::size_t plain_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;
+    const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+    if (byte(0) < 0xc0 || byte(0) > 0xf4 || text.size() < length) return 0;
+    std::uint32_t code = byte(0) & (0x7fU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0U) != 0x80) return 0;
+        code = code << 6U | (byte(i) & 0x3fU);
+    }
+    // The second row of control characters, forms longer than they need be, halves of UTF-16 pairs, and no Unicode.
+    constexpr std::array<std::uint32_t, 5> least = {0, 0, 0xa0, 0x800, 0x10000};
+    return code >= least[length] && (code < 0xd800 || code > 0xdfff) && code <= 0x10ffff ? length : 0;
+}
+
+constexpr std::size_t least_width = 40;
+
+std::optional<std::size_t> width_of_terminal(int stream) {
+    winsize window{};
+    if (ioctl(stream, TIOCGWINSZ, &window) != 0 || window.ws_col == 0) return std::nullopt;
+    return std::max<std::size_t>(window.ws_col, least_width);
+}
+
+/// In characters, not bytes.
+std::size_t width_of(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+}
+
+std::string made_visible(std::string_view text, bool keep_lines) {
+    std::string shown;
+    while (!text.empty()) {
+        const std::size_t length = keep_lines && text[0] == '\n' ? 1 : plain_length(text);
+        if (length == 0)
+            shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+        else
+            shown += text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return shown;
+}
+
+}  // namespace
+
+std::string visible(std::string_view text) {
+    return made_visible(text, false);
+}
+
+void print(std::string_view text) {
+    if (reader_has_gone) return;
+    const std::string shown = made_visible(text, true);
+    if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) lose_output(errno);
+}
+
+void flush_output() {
+    if (!reader_has_gone && std::fflush(stdout) != 0) lose_output(errno);
+}
+
+void outlive_reader() {
+    outlives_reader = true;
+}
+
+std::size_t output_width() {
+    std::size_t width = 80;
+    if (const char* columns = std::getenv("COLUMNS")) std::from_chars(columns, columns + std::strlen(columns), width);
+    return std::max(width_of_terminal(STDOUT_FILENO).value_or(width), least_width);
+}
+
+std::size_t paragraph_width() {
+    return std::min<std::size_t>(output_width(), 80);
+}
+
+std::string wrapped(std::string_view text, std::size_t most) {
+    std::string lines;
+    std::size_t width = 0;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t to = std::min(text.find(' ', from), text.size());
+        const std::string_view word = text.substr(from, to - from);
+        const std::size_t with_word = width + 1 + width_of(word);
+        const bool fits = with_word <= most;
+        if (width > 0) lines += fits ? " " : "\n";
+        width = width > 0 && fits ? with_word : width_of(word);
+        lines += word;
+        from = to + 1;
+    }
+    return lines;
+}
+
+void print_paragraph(std::string_view text) {
+    print(wrapped(text) + "\n");
+}
+
+std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
+    const std::size_t indent = width_of(before);
+    const std::string lines = wrapped(text, most > indent ? most - indent : 0);
+    std::string all(before);
+    for (const char c : lines) {
+        all += c;
+        if (c == '\n') all.append(indent, ' ');
+    }
+    return all;
+}
+
+std::string entry(std::string_view name, std::string_view text) {
+    const std::size_t column = std::min<std::size_t>(30, output_width() / 2);
+    const std::string pad(column, ' ');
+    const std::size_t width = width_of(name);
+    if (text.empty()) return std::string(name) + "\n";
+    if (width >= column) return std::string(name) + "\n" + hanging(pad, text) + "\n";
+    return hanging(std::string(name) + pad.substr(width), text) + "\n";
+}
+
+void note(std::string_view text) {
+    const std::string shown = visible(text);
+    const std::optional<std::size_t> width = width_of_terminal(STDERR_FILENO);
+    std::fprintf(stderr, "%s\n", (width ? hanging("aabblab: ", shown, *width) : "aabblab: " + shown).c_str());
+}
+
+}  // namespace aabblab
