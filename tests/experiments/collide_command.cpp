@@ -7,7 +7,6 @@
 #include <sstream>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "mesh_bytes.hpp"
@@ -141,7 +140,6 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
         if (const std::string row = rows.substr(begin, rows.find('\n', begin) - begin); row.ends_with(",0"))
             without += row.substr(0, row.size() - 2) + "\n";
     REQUIRE(bytes_of_file(folder / "apart.csv") == without);
-    REQUIRE(run_program({"collide", mesh, "--self=appart"}).err.find("did you mean 'apart'?") != std::string::npos);
     REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 more among triangles that share a vertex") !=
             std::string::npos);
 }
@@ -248,33 +246,6 @@ TEST_CASE("neighbours in a mesh have an edge or a corner in common") {
     }
 }
 
-TEST_CASE("collide refuses questions that do not go together") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
-        {{a}, "collide: expected B, the other mesh, or --self"},
-        {{a, a, "--self"}, "--self holds one mesh against itself, so give no second one"},
-        {{a, "--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "poses change nothing"},
-        {{a, "--self", "--poses", "poses.txt"}, "poses change nothing"},
-        {{a, "--self", "--first"}, "--self finds every pair, so --first does not go with it"},
-        {{a, a, "--first", "--count"}, "--first and --count ask for different things"},
-        {{a, a, "--count", "--out", folder / "x.csv"}, "--count keeps no pairs"},
-        {{a, a, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
-        {{a, a, "--geometry", "--count"}, "--count keeps no pairs, so --geometry does not go with it"},
-        {{a, a, "--geometry", "--first", "--engine", "cgal"}, "so --engine does not go with it"},
-        {{a, a, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
-         "--geometry: moller decides whether triangles intersect, not what they have in common; give --triangle "
-         "exact\n"},
-    };
-    for (const auto& [options, said] : refused) {
-        const program_result result = run_program(joined({"collide"}, options));
-        INFO(result.err);
-        REQUIRE(result.status == 2);
-        REQUIRE(result.err.find(said) != std::string::npos);
-        REQUIRE(folder.files() == 1);
-    }
-}
-
 TEST_CASE("pairs, collide and contacts speak of one as of one") {
     const temporary_folder folder;
     const std::string mesh = folder.write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
@@ -356,27 +327,6 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     }
 }
 
-TEST_CASE("a line of a file of poses that is none is told") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const auto [text, said] = GENERATE(table<std::string, std::string>({
-        {"# nothing\n\n", "poses.txt: has no poses"},
-        {"# one\n1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,x,0,1,0,0,0,0,1,0\n",
-         "poses.txt:3: number 4 of 12: 'x' is not a number"},
-        {"0 0 1 0 0\n", "poses.txt:1: a pose is 12 numbers, the rows of [R t] with commas between, not 5"},
-        {"2,0,0,0,0,1,0,0,0,0,1,0", "poses.txt:1: the pose is not rigid"},
-        {"1,0,0,0,0,1,0,0,0,0,1,0\n\n1,0,0,1e39,0,1,0,0,0,0,1,0", "poses.txt:3: "},
-        {"1,0,0,1e39,0,1,0,0,0,0,1,0", "a.off: seen from one mesh, the other lies beyond the range of float"},
-    }));
-    const program_result result =
-        run_program({"collide", a, a, "--poses", folder.write("poses.txt", text), "--out", folder / "pairs.csv"});
-    INFO(result.err);
-    CHECK(result.status == 2);
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find(said) != std::string::npos);
-    CHECK(folder.files() == 2);
-}
-
 TEST_CASE("collide searches as often as it is asked to, and tells each time") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
@@ -414,35 +364,4 @@ TEST_CASE("collide ends with status 1 where anything intersects, if it is asked 
     // Its triangles share vertices.
     CHECK(status_of({"--self", "--exit-code"}) == 0);
     CHECK(status_of({folder / "absent.off", "--exit-code"}) == 2);
-}
-
-TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
-        {{"--pose-a", "1,0,0"}, "--pose-a: a pose is 12 numbers"},
-        {{"--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0,"}, "--pose-a: a number is missing after the last comma"},
-        {{"--pose-b", "1,0,0,x,0,1,0,0,0,0,1,0"}, "--pose-b: number 4 of 12: 'x' is not a number"},
-        {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,nan"}, "number 12 of 12: 'nan' is not finite"},
-        {{"--pose-b", "1,0,0,1e39,0,1,0,0,0,0,1,0"}, "a.off: seen from one mesh, the other lies beyond"},
-        {{"--pose-b", "2,0,0,0,0,1,0,0,0,0,1,0"}, "--pose-b: the pose is not rigid"},
-        {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
-        {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,0", "--poses", "nowhere.txt"}, "--pose-b and --poses both say where B is"},
-        {{"--poses", "nowhere.txt"}, "nowhere.txt"},
-        {{"--repeat", "0"}, "--repeat is how often to search: a whole number from 1 to 1,000,000, not '0'"},
-        {{"--repeat", "-3"}, "a whole number from 1 to 1,000,000, not '-3'"},
-        {{"--repeat", "99999999999999999999999"}, "from 1 to 1,000,000, not '99999999999999999999999'"},
-        {{"--repeat", "1000001"}, "not '1000001'"},
-        {{"--repeat", "1.5"}, "not '1.5'"},
-        {{"--repeat", "x"}, "not 'x'"},
-        {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
-        {{"--engine", "cgl"}, "did you mean 'cgal'?"},
-        {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --build, --tree and --triangle"},
-    }));
-    const program_result result = run_program(joined({"collide", a, a, "--out", folder / "pairs.csv"}, options));
-    INFO(result.err);
-    REQUIRE(result.status == 2);
-    REQUIRE(is_one_sentence(result.err));
-    REQUIRE(result.err.find(said) != std::string::npos);
-    REQUIRE(folder.files() == 1);
 }

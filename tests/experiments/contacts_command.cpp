@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mesh_bytes.hpp"
@@ -107,72 +105,4 @@ TEST_CASE("contacts plays the motion that a scene has written, and finds what th
     const auto summary = nlohmann::json::parse(run_program({"contacts", motion, shapes[0], shapes[1], "--json"}).out);
     CHECK(summary["contacts"] > 20);
     CHECK(validated.find("digest " + summary["digest"].get<std::string>()) != std::string::npos);
-}
-
-TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves no file behind") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
-    const std::string one = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
-    const auto [text, said] = GENERATE_COPY(table<std::string, std::string>({
-        {"", ": is empty"},
-        {"# nothing\n", ": ends before the first pose"},
-        {"a 0\n", ":1: expected the number of a frame, found 'a'"},
-        {"0\n", ":1: expected the number of an object, found the end of the line"},
-        {"0 0 1 0 0 0 0 1 0 0 0 0 1\n", ":1: expected twelve numbers, the rows of [R t], found the end of the line"},
-        {"0 0 1 0 0 x 0 1 0 0 0 0 1 0\n", ":1: expected twelve numbers, the rows of [R t], found 'x'"},
-        {"0 0 1 0 0 nan 0 1 0 0 0 0 1 0\n", ":1: 'nan' is not a finite number"},
-        {"0 0 1 0 0 1e999 0 1 0 0 0 0 1 0\n", ":1: '1e999' is not a finite number"},
-        {"0 0 2 0 0 0 0 1 0 0 0 0 1 0\n", ":1: the pose is not rigid"},
-        {"0 0 1 0 0 0 0 1 0 0 0 0 1 0 7\n", ":1: expected the end of the line after frame, object and twelve numbers"},
-        {"1 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
-        {one + "99999999 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: a frame is a number below 10000000"},
-        {one + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + one, ":3: frame 0 follows frame 1; frames stand in order"},
-        {one + one, ":2: object 0 has two poses in frame 0"},
-        {one + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
-        {"0 2 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
-        {"0 4000000000 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: an object is a number below 10000000"},
-    }));
-    const std::string motion = folder.write("m.txt", text);
-    const program_result result = run_program({"contacts", motion, mesh, "--out", folder / "c.csv"});
-    INFO(result.err);
-    CHECK(result.status == 2);
-    CHECK(result.err.find("m.txt" + said) != std::string::npos);
-    CHECK(std::ranges::count(result.err, '\n') == 1);
-    CHECK(folder.files() == 2);
-}
-
-TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
-    const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
-    const std::string far = folder.write("far.txt", "0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n");
-    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
-        {{"contacts", motion, mesh, mesh}, "moves 1 objects, but there are 2 meshes"},
-        {{"contacts", motion, mesh, "--engine", "cgal", "--tree", "canonical"},
-         "--engine stands in for --build, --tree and --triangle"},
-        {{"contacts", motion, mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
-        {{"contacts", motion, mesh, "--geometry"}, "--geometry adds columns to the contacts, so give --out FILE"},
-        {{"contacts", motion, mesh, "--geometry", "--out", folder / "x.csv", "--engine", "cgal"},
-         "--geometry is constructed by the triangle test, so --engine does not go with it"},
-        {{"contacts", motion, mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "separating_axes"},
-         "--geometry: separating_axes decides whether triangles intersect"},
-        {{"contacts", motion, mesh, "--out", motion}, "m.txt"},
-        {{"contacts", motion, mesh, "--out", mesh}, "a.off"},
-        {{"scene", "mesh_pair", "--mesh", mesh, "--out", mesh}, "a.off"},
-        {{"scene", "mesh_pair", "--mesh", mesh, "--picture", mesh}, "a.off"},
-        {{"scene", "mesh_pair", "--mesh", mesh, "--normalise", "no", "--motion", mesh}, "a.off"},
-        {{"contacts", motion}, "MESH"},
-        {{"scene", "brownian", "--motion", folder / "x.txt"}, "brownian is a scene of boxes, which have no poses"},
-        {{"scene", "deforming", "--motion", folder / "x.txt"}, "deforming deforms its meshes, so poses alone"},
-        {{"scene", "mesh_pair", "--motion", folder / "x", "--out", folder / "x"}, "--out and --motion are the same"},
-        {{"scene", "mesh_pair", "--motion", folder / "x"}, "so give --normalise no with it"},
-        {{"contacts", far, mesh}, "/far.txt: frame 0: object 0 lies beyond the range of float"},
-    };
-    for (const auto& [arguments, said] : refused) {
-        const program_result result = run_program(arguments);
-        INFO(result.err);
-        CHECK(result.status == 2);
-        CHECK(result.err.find(said) != std::string::npos);
-        CHECK(folder.files() == 3);
-    }
 }

@@ -45,23 +45,3 @@ TEST_CASE("order writes a mesh whose tree need not say which triangle stands whe
     // By name, without a file.
     REQUIRE(collided(mesh + ",order=sah", "file_order")["digest"] == after["digest"]);
 }
-
-TEST_CASE("order refuses what it does not know, and to write over the mesh that it reads") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
-    const program_result build = run_program({"order", mesh, "--build", "sha", "--out", folder / "b.off"});
-    REQUIRE(build.status == 2);
-    REQUIRE(build.err.find("unknown build 'sha'; did you mean 'sah'?") != std::string::npos);
-    for (const std::string& name : {mesh, mesh + ":order=median"}) {
-        REQUIRE(run_program({"order", name, "--out", mesh}).status == 2);
-        REQUIRE(run_program({"order", name, "--out", folder / "b.off", "--numbers", mesh}).status == 2);
-        REQUIRE(run_program({"collide", name, "--self", "--out", mesh}).status == 2);
-        REQUIRE(bytes_of_file(mesh) == tetrahedron);
-    }
-    REQUIRE(run_program({"order", mesh, "--out", folder / "b.ply"})
-                .err.find("order writes OFF, so --out ends in .off, not '.ply'") != std::string::npos);
-    REQUIRE(run_program({"order", mesh, "--out", folder / "B.OFF"}).status == 0);
-    REQUIRE(run_program({"order", mesh, "--out", folder / "b.off", "--numbers", folder / "./b.off"})
-                .err.find("--out and --numbers are the same file") != std::string::npos);
-    REQUIRE(run_program({"order", mesh}).status == 2);
-}

@@ -70,34 +70,6 @@ TEST_CASE("pairs tells people what it found") {
     REQUIRE(run_program({"pairs", recording_in(folder, "0")}).status == 0);
 }
 
-TEST_CASE("pairs refuses what it cannot do and leaves no file behind") {
-    const temporary_folder folder;
-    const std::string scene = recording_in(folder);
-    const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
-        {{"--sort", "insertoin"}, "did you mean 'insertion'?"},
-        {{"--sort", "std:gaps=1"}, "takes no parameters"},
-        {{"--partition", "uniform_grid:cell_size"}, "name=value"},
-        {{"--engine", "brute_farce"}, "did you mean 'brute_force'?"},
-        {{"--engine", "brute_force", "--sweep", "one_axis"},
-         "--engine stands in for --prepare, --sort, --partition and --sweep"},
-        {{"--split-large", "2"}, "'split_large' is a strategy; write --prepare split_large"},
-        {{"--prepare", "split_large:size=0"}, "split_large: size must be a number above 0, not '0'"},
-        {{"--prepare", "split_mesh"}, "split_mesh divides meshes, and there are only boxes here"},
-        {{"--sort", "std", "--sweep", "incremental"}, "goes with insertion only"},
-        {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "it goes with none only"},
-        {{"--partition", "axial_cut:axes=4"}, "axial_cut: axes must be a whole number from 1 to 3 or auto, not '4'"},
-        {{"--partition", "axial_cut:segments=0"}, "axial_cut: segments must be a whole number from 1 to 65535 or auto"},
-    }));
-    std::vector<std::string> arguments = {"pairs", scene, "--out", folder / "pairs.csv"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const program_result result = run_program(arguments);
-    INFO(result.err);
-    REQUIRE(result.status == 2);
-    REQUIRE(is_one_sentence(result.err));
-    REQUIRE(result.err.find(said) != std::string::npos);
-    REQUIRE(folder.files() == 1);
-}
-
 TEST_CASE("copies of objects beyond all measure are refused before they are made") {
     const temporary_folder folder;
     const std::string scene = folder / "dense.aabbs";
@@ -142,26 +114,6 @@ TEST_CASE("pairs of a recording with a bad box in a later frame leaves no file b
     REQUIRE(result.status == 2);
     REQUIRE(is_one_sentence(result.err));
     REQUIRE(folder.files() == 2);
-}
-
-TEST_CASE("scene refuses what it cannot do and leaves no file behind") {
-    const temporary_folder folder;
-    const auto [options, said] = GENERATE(table<std::vector<std::string>, std::string>({
-        {{"browniann"}, "did you mean 'brownian'?"},
-        {{"brownian", "--seed", "-1"}, "--seed must be a whole number"},
-        {{"brownian", "--n", "many"}, "objects must be"},
-        {{"brownian", "--n", ""}, "objects must be"},
-        {{"brownian", "--mesh", "icosphere"}, "no meshes"},
-        {{"mesh_swarm", "--mesh", "icospher"}, "did you mean 'icosphere'"},
-    }));
-    std::vector<std::string> arguments = {"scene", "--out", folder / "scene.aabbs"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const program_result result = run_program(arguments);
-    INFO(result.err);
-    REQUIRE(result.status == 2);
-    REQUIRE(is_one_sentence(result.err));
-    REQUIRE(result.err.find(said) != std::string::npos);
-    REQUIRE(folder.files() == 0);
 }
 
 TEST_CASE("scene records the world boxes of meshes, the same for the same seed") {

@@ -1,0 +1,249 @@
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh_bytes.hpp"
+#include "program.hpp"
+#include "temporary_folder.hpp"
+
+namespace {
+
+using refusals = std::vector<std::pair<std::vector<std::string>, std::string>>;
+
+/// Holds each command line against what it must say: status 2, nothing printed, one sentence, and no file left behind.
+/// @param before stands before the rest of each
+void check_all(const temporary_folder& folder, const std::vector<std::string>& before, const refusals& all) {
+    const std::size_t files = folder.files();
+    for (const auto& [rest, said] : all) {
+        const std::vector<std::string> arguments = joined(before, rest);
+        const program_result result = run_program(arguments);
+        CAPTURE(arguments, result.err);
+        CHECK(result.status == 2);
+        CHECK(result.out.empty());
+        CHECK(is_one_sentence(result.err));
+        CHECK(result.err.find(said) != std::string::npos);
+        CHECK(folder.files() == files);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("A command line that is wrong gets one sentence and status 2") {
+    check_all(
+        temporary_folder(), {},
+        {
+            {{}, "expected a command"},
+            {{"pairz", "x"}, "unknown command 'pairz'; did you mean 'pairs'?"},
+            {{"dta"}, "did you mean 'data'?"},
+            {{"data"}, "command of the script"},
+            {{"benchmark"}, "command of the script"},
+            {{"--verson"}, "did you mean '--version'?"},
+            {{"pairs"}, "pairs: SCENE is required"},
+            {{"pairs", "--sotr", "std"}, "pairs: unknown option '--sotr'; did you mean '--sort'?"},
+            {{"pairs", "x", "--sotr=std"}, "pairs: unknown option '--sotr'; did you mean '--sort'?"},
+            {{"pairs", "x", "y"}, "pairs: unexpected argument 'y'"},
+            {{"pairs", "x", "--out"}, "pairs: --out takes one value"},
+            {{"pairs", "x", "--sort", "std", "--sort", "std"}, "pairs: --sort takes one value"},
+            {{"collide", "icosphere"}, "collide: expected B, the other mesh, or --self"},
+            {{"scene", "brownian"}, "scene: expected --out, --motion or --picture"},
+            {{"list", "--jsn"}, "did you mean '--json'?"},
+            {{"list", "sorts"}, "list: unknown kind 'sorts'; did you mean 'sort'?\n"},
+            {{"list", "nothing"}, "list: unknown kind 'nothing'; see aabblab list --help\n"},
+            {{"nothing_at_all"}, "unknown command 'nothing_at_all'; see aabblab --help\n"},
+            {{"scene", "brownian", "--xyzzyq", "3"}, "scene: unknown option '--xyzzyq'; see aabblab scene --help\n"},
+            {{"validate", "stiff", "a", "--xyzzyq"},
+             "unknown option '--xyzzyq'; expected one of --help, --out, --quick\n"},
+            {{"validate", "stiff", "stak"}, "unknown study 'stak'; did you mean 'stack'?"},
+            {{"scene", "xyzzyq", "--out", "a.aabbs"}, "unknown scene 'xyzzyq'; see aabblab list scenes\n"},
+            {{"pairs", "x", "--engine", "xyzzyq"}, "unknown engine 'xyzzyq'; see aabblab list engines\n"},
+            {{"list", "--threads"}, "list: unknown option '--threads'; expected one of --help, --json\n"},
+            {{"pairs", "x", "--threads", "2"},
+             "'threads' is a parameter of a strategy, as in --partition columns:threads=…\n"},
+            {{"pairs", "x", "--partition", "bucket"}, "'bucket' is of the kind sort, not partition\n"},
+        });
+}
+
+TEST_CASE("pairs and scene refuse what they cannot do and leave no file behind") {
+    const temporary_folder folder;
+    const std::string scene = folder / "scene.aabbs";
+    REQUIRE(run_program({"scene", "brownian", "--n", "60", "--frames", "3", "--out", scene}).status == 0);
+    check_all(
+        folder, {"pairs", scene, "--out", folder / "pairs.csv"},
+        {
+            {{"--sort", "insertoin"}, "did you mean 'insertion'?"},
+            {{"--sort", "std:gaps=1"}, "takes no parameters"},
+            {{"--partition", "uniform_grid:cell_size"}, "name=value"},
+            {{"--engine", "brute_farce"}, "did you mean 'brute_force'?"},
+            {{"--engine", "brute_force", "--sweep", "one_axis"},
+             "--engine stands in for --prepare, --sort, --partition and --sweep, so give it alone\n"},
+            {{"--sort", "auto"}, "--sort auto: leave it out, since what is not named is selected"},
+            {{"--split-large", "2"}, "'split_large' is a strategy; write --prepare split_large"},
+            {{"--prepare", "split_large:size=0"}, "split_large: size must be a number above 0, not '0'"},
+            {{"--prepare", "split_mesh"}, "split_mesh divides meshes, and there are only boxes here"},
+            {{"--sort", "std", "--sweep", "incremental"}, "goes with insertion only"},
+            {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "it goes with none only"},
+            {{"--partition", "axial_cut:axes=4"},
+             "axial_cut: axes must be a whole number from 1 to 3 or auto, not '4'"},
+            {{"--partition", "axial_cut:segments=0"},
+             "axial_cut: segments must be a whole number from 1 to 65535 or auto"},
+        });
+    check_all(folder, {"scene", "--out", folder / "s.aabbs"},
+              {
+                  {{"browniann"}, "did you mean 'brownian'?"},
+                  {{"brownian", "--seed", "-1"}, "--seed must be a whole number from 0 to 18446744073709551615"},
+                  {{"brownian", "--n", "many"}, "objects must be"},
+                  {{"brownian", "--n", ""}, "objects must be"},
+                  {{"brownian", "--mesh", "icosphere"}, "no meshes"},
+                  {{"mesh_swarm", "--mesh", "icospher"}, "did you mean 'icosphere'"},
+                  {{"mesh_pair", "--motion", folder / "s.aabbs"}, "--out and --motion are the same file"},
+              });
+}
+
+TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    check_all(
+        folder, {"collide", a},
+        {
+            {{}, "collide: expected B, the other mesh, or --self"},
+            {{a, "--self"}, "--self holds one mesh against itself, so give no second one"},
+            {{"--self=appart"}, "did you mean 'apart'?"},
+            {{"--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "poses change nothing"},
+            {{"--self", "--poses", "poses.txt"}, "poses change nothing"},
+            {{"--self", "--first"}, "--self finds every pair, so --first does not go with it"},
+            {{a, "--first", "--count"}, "--first and --count ask for different things"},
+            {{a, "--count", "--out", folder / "x.csv"}, "--count keeps no pairs"},
+            {{a, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
+            {{a, "--geometry", "--count"}, "--count keeps no pairs, so --geometry does not go with it"},
+            {{a, "--geometry", "--first", "--engine", "cgal"}, "so --engine does not go with it"},
+            {{a, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
+             "--geometry: moller decides whether triangles intersect, not what they have in common; give "
+             "--triangle exact\n"},
+        });
+    check_all(
+        folder, {"collide", a, a, "--out", folder / "pairs.csv"},
+        {
+            {{"--pose-a", "1,0,0"}, "--pose-a: a pose is 12 numbers"},
+            {{"--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0,"}, "--pose-a: a number is missing after the last comma"},
+            {{"--pose-b", "1,0,0,x,0,1,0,0,0,0,1,0"}, "--pose-b: number 4 of 12: 'x' is not a number"},
+            {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,nan"}, "number 12 of 12: 'nan' is not finite"},
+            {{"--pose-b", "1,0,0,1e39,0,1,0,0,0,0,1,0"}, "a.off: seen from one mesh, the other lies beyond"},
+            {{"--pose-b", "2,0,0,0,0,1,0,0,0,0,1,0"}, "--pose-b: the pose is not rigid"},
+            {{"--pose-b", "-1,0,0,0,0,1,0,0,0,0,1,0"}, "reflection"},
+            {{"--pose-b", "1,0,0,0,0,1,0,0,0,0,1,0", "--poses", "nowhere.txt"},
+             "--pose-b and --poses both say where B is"},
+            {{"--poses", "nowhere.txt"}, "nowhere.txt"},
+            {{"--repeat", "0"}, "--repeat is how often to search: a whole number from 1 to 1,000,000, not '0'"},
+            {{"--repeat", "-3"}, "a whole number from 1 to 1,000,000, not '-3'"},
+            {{"--repeat", "99999999999999999999999"}, "from 1 to 1,000,000, not '99999999999999999999999'"},
+            {{"--repeat", "1000001"}, "not '1000001'"},
+            {{"--repeat", "1.5"}, "not '1.5'"},
+            {{"--repeat", "x"}, "not 'x'"},
+            {{"--tree", "canonicl"}, "did you mean 'canonical'?"},
+            {{"--engine", "cgl"}, "did you mean 'cgal'?"},
+            {{"--engine", "cgal", "--tree", "canonical"}, "--engine stands in for --build, --tree and --triangle"},
+        });
+}
+
+TEST_CASE("a line of a file of poses that is none is told") {
+    const temporary_folder folder;
+    const std::string a = folder.write("a.off", tetrahedron);
+    const std::string poses = folder.write("poses.txt", "");
+    const std::vector<std::pair<std::string, std::string>> texts = {
+        {"# nothing\n\n", "poses.txt: has no poses"},
+        {"# one\n1,0,0,0,0,1,0,0,0,0,1,0\n1,0,0,x,0,1,0,0,0,0,1,0\n",
+         "poses.txt:3: number 4 of 12: 'x' is not a number"},
+        {"0 0 1 0 0\n", "poses.txt:1: a pose is 12 numbers, the rows of [R t] with commas between, not 5"},
+        {"2,0,0,0,0,1,0,0,0,0,1,0", "poses.txt:1: the pose is not rigid"},
+        {"1,0,0,0,0,1,0,0,0,0,1,0\n\n1,0,0,1e39,0,1,0,0,0,0,1,0", "poses.txt:3: "},
+        {"1,0,0,1e39,0,1,0,0,0,0,1,0", "a.off: seen from one mesh, the other lies beyond the range of float"},
+    };
+    for (const auto& [text, said] : texts) {
+        folder.write("poses.txt", text);
+        check_all(folder, {"collide", a, a, "--poses", poses, "--out", folder / "pairs.csv"}, {{{}, said}});
+    }
+}
+
+TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves no file behind") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string motion = folder.write("m.txt", "");
+    const std::string one = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
+    const std::vector<std::pair<std::string, std::string>> texts = {
+        {"", ": is empty"},
+        {"# nothing\n", ": ends before the first pose"},
+        {"a 0\n", ":1: expected the number of a frame, found 'a'"},
+        {"0\n", ":1: expected the number of an object, found the end of the line"},
+        {"0 0 1 0 0 0 0 1 0 0 0 0 1\n", ":1: expected twelve numbers, the rows of [R t], found the end of the line"},
+        {"0 0 1 0 0 x 0 1 0 0 0 0 1 0\n", ":1: expected twelve numbers, the rows of [R t], found 'x'"},
+        {"0 0 1 0 0 nan 0 1 0 0 0 0 1 0\n", ":1: 'nan' is not a finite number"},
+        {"0 0 1 0 0 1e999 0 1 0 0 0 0 1 0\n", ":1: '1e999' is not a finite number"},
+        {"0 0 2 0 0 0 0 1 0 0 0 0 1 0\n", ":1: the pose is not rigid"},
+        {"0 0 1 0 0 0 0 1 0 0 0 0 1 0 7\n", ":1: expected the end of the line after frame, object and twelve numbers"},
+        {"1 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
+        {one + "99999999 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: a frame is a number below 10000000"},
+        {one + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + one, ":3: frame 0 follows frame 1; frames stand in order"},
+        {one + one, ":2: object 0 has two poses in frame 0"},
+        {one + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
+        {"0 2 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
+        {"0 4000000000 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: an object is a number below 10000000"},
+        {"0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n", ": frame 0: object 0 lies beyond the range of float"},
+    };
+    for (const auto& [text, said] : texts) {
+        folder.write("m.txt", text);
+        check_all(folder, {"contacts", motion, mesh, "--out", folder / "c.csv"}, {{{}, "m.txt" + said}});
+    }
+}
+
+TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    check_all(folder, {"contacts", motion},
+              {
+                  {{}, "MESH is required"},
+                  {{mesh, mesh}, "moves 1 objects, but there are 2 meshes"},
+                  {{mesh, "--engine", "cgal", "--tree", "canonical"},
+                   "--engine stands in for --build, --tree and --triangle, so give it without them\n"},
+                  {{mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
+                  {{mesh, "--geometry"}, "--geometry adds columns to the contacts, so give --out FILE"},
+                  {{mesh, "--geometry", "--out", folder / "x.csv", "--engine", "cgal"},
+                   "--geometry is constructed by the triangle test, so --engine does not go with it"},
+                  {{mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "separating_axes"},
+                   "--geometry: separating_axes decides whether triangles intersect"},
+                  {{mesh, "--out", motion}, "m.txt would write over "},
+                  {{mesh, "--out", mesh}, "a.off would write over "},
+              });
+    check_all(folder, {"scene"},
+              {
+                  {{"mesh_pair", "--mesh", mesh, "--out", mesh}, "a.off would write over "},
+                  {{"mesh_pair", "--mesh", mesh, "--picture", mesh}, "a.off would write over "},
+                  {{"mesh_pair", "--mesh", mesh, "--normalise", "no", "--motion", mesh}, "a.off would write over "},
+                  {{"brownian", "--motion", folder / "x"}, "brownian is a scene of boxes, which have no poses"},
+                  {{"deforming", "--motion", folder / "x"}, "deforming deforms its meshes, so poses alone"},
+                  {{"mesh_pair", "--motion", folder / "x"}, "so give --normalise no with it"},
+              });
+}
+
+TEST_CASE("order refuses what it does not know, and to write over the mesh that it reads") {
+    const temporary_folder folder;
+    const std::string mesh = folder.write("a.off", tetrahedron);
+    const std::string sorted = mesh + ":order=median";
+    check_all(folder, {"order"},
+              {
+                  {{mesh}, "--out is required"},
+                  {{mesh, "--build", "sha", "--out", folder / "b.off"}, "unknown build 'sha'; did you mean 'sah'?"},
+                  {{mesh, "--out", folder / "b.ply"}, "order writes OFF, so --out ends in .off, not '.ply'"},
+                  {{mesh, "--out", folder / "b.off", "--numbers", folder / "./b.off"},
+                   "--out and --numbers are the same file"},
+                  {{mesh, "--out", mesh}, "a.off would write over "},
+                  {{sorted, "--out", mesh}, "a.off would write over "},
+                  {{mesh, "--out", folder / "b.off", "--numbers", mesh}, "a.off would write over "},
+                  {{sorted, "--out", folder / "b.off", "--numbers", mesh}, "a.off would write over "},
+              });
+    for (const std::string& name : {mesh, sorted})
+        check_all(folder, {"collide", name}, {{{"--self", "--out", mesh}, "a.off would write over "}});
+    CHECK(bytes_of_file(mesh) == tetrahedron);
+    CHECK(run_program({"order", mesh, "--out", folder / "B.OFF"}).status == 0);
+}
