@@ -14,7 +14,6 @@
 #include "explain_savings.hpp"
 #include "kept_costs.hpp"
 #include "scene_texts.hpp"
-#include "wrapped_row.hpp"
 
 import aabb.base;
 import aabb.pipeline;

@@ -11,7 +11,7 @@
 
 // Imports, so they come last.
 #include "explain_omissions.hpp"
-#include "wrapped_row.hpp"
+#include "scene_texts.hpp"
 
 import aabb.pipeline;
 import aabb.policy;

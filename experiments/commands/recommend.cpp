@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -89,6 +88,12 @@ std::vector<std::string> legend() {
             ms_a_frame_text, build_ms_text};
 }
 
+std::string joined(const std::vector<std::string>& sentences) {
+    std::string text;
+    for (const std::string& one : sentences) text += (text.empty() ? "" : " ") + one;
+    return text;
+}
+
 /// By what, when and where it was measured.
 std::string origin() {
     const kept_costs here = costs_of(this_machine().processor, aabb::machine_costs());
@@ -99,9 +104,8 @@ std::string page_of(const std::string& scene, const race_result& race, const std
     return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(scene) +
            "</title>\n<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:"
            "0 .6em;text-align:left}</style></head><body>\n<h1>" +
-           html_text(scene) + "</h1>\n<p>" + html_text(fmt::format("{}", fmt::join(advice_of(race), " "))) + "</p>\n" +
-           to_html(table_of(race)) + "<p>" + html_text(fmt::format("{}", fmt::join(legend(), " "))) + "</p>\n" +
-           measured + to_html(dropped_table_of(race)) +
+           html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
+           "<p>" + html_text(joined(legend())) + "</p>\n" + measured + to_html(dropped_table_of(race)) +
            "<p>Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in "
            "those after the first; or how a play ended that did not come to its end. Strategies play with their "
            "default parameters.</p>\n<p>" +

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -8,7 +11,7 @@ import aabblab.output;
 import aabblab.scenes;
 import aabblab.tables;
 
-/// What several commands say of a scene.
+/// What several commands say of a scene, and how.
 namespace aabblab {
 
 /// What columns of times include, for the lines below a table.
@@ -26,6 +29,15 @@ inline constexpr const char* ms_a_frame_text =
     table t{{{"measured", false}, {"", false}}, {}};
     for (const told_measure& one : measures) t.rows.push_back({one.name, one.value});
     return t;
+}
+
+/// Adds a row of which one cell is broken into lines of at most so many bytes; the others stand in the first of them.
+inline void add_wrapped_row(table& t, std::vector<std::string> cells, std::size_t column, std::size_t room) {
+    std::istringstream lines(wrapped(cells[column], room));
+    while (std::getline(lines, cells[column])) {
+        t.rows.push_back(cells);
+        std::ranges::fill(cells, "");
+    }
 }
 
 }  // namespace aabblab

@@ -35,7 +35,6 @@ struct table {
     std::vector<column> columns;
     std::vector<std::vector<std::string>> rows;
 };
-
 /// A table of a report.
 struct named_table {
     std::string name;  ///< of its files
