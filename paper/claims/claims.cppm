@@ -38,13 +38,6 @@ struct endpoint {
     std::string source{};  ///< of which rows it is: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
 };
 
-/// A table of a report.
-struct named_table {
-    std::string name;  ///< of its files
-    std::string caption;
-    table content;
-};
-
 struct claim_result {
     std::string id;        ///< "C1"
     std::string claim;     ///< what the paper says

@@ -35,6 +35,13 @@ struct table {
     std::vector<column> columns;
     std::vector<std::vector<std::string>> rows;
 };
+/// A table of a report.
+struct named_table {
+    std::string name;  ///< of its files
+    std::string caption;
+    table content;
+};
+
 /// Columns lined up with spaces, for terminals.
 [[nodiscard]] std::string to_text(const table& t);
 /// The same in lines of at most `width` characters, as far as a name or a number is not longer. Spare columns are left
@@ -43,11 +50,10 @@ struct table {
 [[nodiscard]] std::string to_text(table t, std::size_t width);
 [[nodiscard]] std::string to_csv(const table& t);
 [[nodiscard]] std::string to_markdown(const table& t);
+/// As paper/tex takes it: a tabular with rules, long texts in columns that break lines.
 [[nodiscard]] std::string to_tex(const table& t);
-[[nodiscard]] std::string to_html(const table& t);
-/// Text as it stands in LaTeX and in HTML: what means something there is written so that it means itself.
+/// Text as it stands in LaTeX: what means something there is written so that it means itself.
 [[nodiscard]] std::string tex_text(std::string_view text);
-[[nodiscard]] std::string html_text(std::string_view text);
 
 /// All repeats of one composition or engine in one scene, over all seeds.
 struct summary_line {
@@ -116,8 +122,6 @@ struct scene_summary {
 // What the parts of the module share.
 namespace aabblab {
 
-/// In characters, not bytes.
-[[nodiscard]] std::size_t text_width(std::string_view text);
 /// Bytes as KiB, with three digits that count.
 [[nodiscard]] std::string kib_text(std::uint64_t bytes);
 /// "0.98-1.02", or "-" where there is none.
