@@ -152,7 +152,8 @@ public:
         to_.width = figure_width;
         to_.height = bottom + rows * row + (rows - 1) * row_gap + (titled ? gap / 2 : 1);
         for (std::size_t i = 0; i < panels_; ++i) {
-            const auto from_below = static_cast<double>(rows_ - 1 - i / columns_);
+            const std::size_t from_above = i / columns_;
+            const auto from_below = static_cast<double>(rows_ - 1 - from_above);
             add_plot(i, bottom + from_below * (row + row_gap), marks, flags[i]);
         }
         add_y_label((bottom + to_.plots.front().top) / 2);
@@ -387,9 +388,10 @@ private:
         std::size_t entry = 0;
         for (std::size_t i = 0; i < labels.entries.size(); ++i)
             for (const std::string& text : labels.entries[i]) {
-                const auto column = static_cast<double>(entry / labels.rows);
+                const std::size_t column = entry / labels.rows;
                 const auto from_below = static_cast<double>(labels.rows - 1 - entry % labels.rows);
-                const place at{labels.left + column * labels.column, bottom + (from_below + 0.5) * legend_row};
+                const place at{labels.left + static_cast<double>(column) * labels.column,
+                               bottom + (from_below + 0.5) * legend_row};
                 if (&text == labels.entries[i].data()) to_.samples.push_back({at, &d_.labels[i], false});
                 add({at.x + legend_sample - 0.8, at.y}, text);
                 ++entry;
