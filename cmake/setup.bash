@@ -9,7 +9,6 @@ needs=(
     'clang-tools-19               clang-tools-extra        clang-scan-deps'
     'cmake                        cmake                    CMake 3.28 or newer'
     'ninja-build                  ninja-build              ninja'
-    'gnuplot-nox                  gnuplot                  gnuplot'
     'catch2                       catch-devel              <catch2/catch_test_macros.hpp>'
     'librapidcheck-dev            -                        <rapidcheck.h>'
     'libbenchmark-dev             google-benchmark-devel   <benchmark/benchmark.h>'
@@ -292,12 +291,12 @@ find_tools() {
 
 # ----------------------------------------------------------------------------------------------------------------------
 
-# Debian's packages of what the build needs. Those of gnuplot exclude each other, and any of them will do.
+# Debian's packages of what the build needs.
 build_packages() {
-    local debian what need
+    local debian need
     for need in "${needs[@]}" "${optional_needs[@]}"; do
-        read -r debian _ what <<<"$need"
-        if [[ $what != gnuplot ]] || ! has gnuplot; then printf '%s\n' "${debian//,/$'\n'}"; fi
+        read -r debian _ <<<"$need"
+        printf '%s\n' "${debian//,/$'\n'}"
     done
 }
 

@@ -13,6 +13,7 @@ module aabblab.atlas;
 import aabblab.figures;
 import aabblab.files;
 import aabblab.numbers;
+import aabblab.page;
 import aabblab.statistics;
 import aabblab.tables;
 
@@ -101,27 +102,20 @@ void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_sc
     const std::vector<figure> figures = atlas_figures(atlas);
     std::filesystem::create_directories(folder);
     draw(folder / "figures", figures);
-    std::string markdown = "# Atlas of global search\n\n" + heading_of(atlas) + ".\n";
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Atlas of global search</title>\n"
-        "<style>body{font-family:sans-serif;max-width:70em;margin:2em auto}td,th{padding:0 .6em;text-align:left}"
-        "td.number,th.number{text-align:right}img{max-width:100%}</style></head><body>\n<h1>Atlas of global "
-        "search</h1>\n<p>" +
-        heading_of(atlas) + ".</p>\n";
-    for (const figure& f : figures) {
-        markdown += fmt::format("\n![{}](figures/{}.svg)\n\n{}\n", f.name, f.name, f.caption);
-        html += fmt::format("<p><img src=\"figures/{}.svg\" alt=\"{}\"></p>\n<p>{}</p>\n", f.name, f.name,
-                            html_text(f.caption));
-    }
+    constexpr const char* title = "Atlas of global search";
+    page out(title);
+    out.title(title);
+    out.paragraph(heading_of(atlas) + ".");
+    for (const figure& f : figures) out.add(f);
     for (const section& s : sections) {
         write_file(folder / (s.file + ".csv"), to_csv(s.content));
         if (!s.shown) continue;
-        markdown +=
-            fmt::format("\n## {}\n\n{}{}", s.title, s.text.empty() ? "" : s.text + "\n\n", to_markdown(s.content));
-        html += fmt::format("<h2>{}</h2>\n<p>{}</p>\n{}", html_text(s.title), html_text(s.text), to_html(s.content));
+        out.heading(s.title);
+        if (!s.text.empty()) out.paragraph(s.text);
+        out.add(s.content);
     }
-    write_file(folder / "atlas.md", markdown);
-    write_file(folder / "atlas.html", html + "</body></html>\n");
+    write_file(folder / "atlas.md", out.markdown());
+    write_file(folder / "atlas.html", out.html());
 }
 
 }  // namespace aabblab

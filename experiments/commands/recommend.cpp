@@ -19,6 +19,7 @@ import aabblab.machine;
 import aabblab.measures;
 import aabblab.numbers;
 import aabblab.output;
+import aabblab.page;
 import aabblab.play;
 import aabblab.race;
 import aabblab.results;
@@ -101,15 +102,19 @@ std::string origin() {
 }
 
 std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
-    return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_text(scene) +
-           "</title>\n<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:"
-           "0 .6em;text-align:left}</style></head><body>\n<h1>" +
-           html_text(scene) + "</h1>\n<p>" + html_text(joined(advice_of(race))) + "</p>\n" + to_html(table_of(race)) +
-           "<p>" + html_text(joined(legend())) + "</p>\n" + measured + to_html(dropped_table_of(race)) +
-           "<p>Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in "
-           "those after the first; or how a play ended that did not come to its end. Strategies play with their "
-           "default parameters.</p>\n<p>" +
-           html_text(origin()) + "</p>\n</body></html>\n";
+    page out(scene);
+    out.title(scene);
+    out.paragraph(joined(advice_of(race)));
+    out.add(table_of(race));
+    out.paragraph(joined(legend()));
+    out.add_html(measured);
+    out.add(dropped_table_of(race));
+    out.paragraph(
+        "Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in those "
+        "after the first; or how a play ended that did not come to its end. Strategies play with their default "
+        "parameters.");
+    out.paragraph(origin());
+    return out.html();
 }
 
 /// As a page has it: what the scene is like, or that there was no time to find out.

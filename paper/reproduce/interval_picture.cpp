@@ -11,64 +11,81 @@ module;
 module aabblab.reproduction;
 
 import aabblab.claims;
+import aabblab.markup;
+import aabblab.scale;
 import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 
 namespace {
 
 // The scale that all claims share, logarithmic and with 1 in its middle.
-constexpr double least = 0.2;
-constexpr double greatest = 5;
+const scale shared{0.2, 5, true};
 constexpr double margin = 4;  // at both ends, in percent, for arrows
 
-/// In percent of the picture's width. So the picture can be as wide as there is room, and its text keeps its size.
+// Places from left to right are in percent of the picture's width. So the picture can be as wide as there is room, and
+// its text keeps its size. Those from the upper edge are in pixels.
+
 double place_of(double ratio) {
-    const double part = std::log(std::clamp(ratio, least, greatest) / least) / std::log(greatest / least);
-    return margin + (100 - 2 * margin) * part;
+    return margin + (100 - 2 * margin) * shared.place(std::clamp(ratio, shared.from, shared.to));
 }
 
-// In pixels.
+std::string line(std::string_view kind, double x1, double x2, double y1, double y2) {
+    return element("line", {{"class", kind}, {"x1", percent(x1)}, {"x2", percent(x2)}, {"y1", y1}, {"y2", y2}});
+}
+
+std::string words_at(double x, double y, std::string_view text, std::string_view anchor, std::string_view kind = "") {
+    return element("text", {{"class", kind}, {"x", percent(x)}, {"y", y}, {"text-anchor", anchor}}, markup_text(text));
+}
+
+std::string disc(double x, double y, double radius) {
+    return element("circle", {{"cx", percent(x)}, {"cy", y}, {"r", radius}});
+}
+
+/// The band of no difference, and 1 in its middle.
+std::string band(double low, double one, double high, double top, double bottom) {
+    return element("rect", {{"class", "band"},
+                            {"x", percent(low)},
+                            {"width", percent(high - low)},
+                            {"y", top},
+                            {"height", bottom - top}}) +
+           line("one", one, one, top, bottom);
+}
+
+std::string picture(std::string_view kind, std::string_view label, double height, const std::string& content) {
+    return element("svg",
+                   {{"class", kind}, {"role", "img"}, {"aria-label", label}, {"width", "100%"}, {"height", height}},
+                   content);
+}
+
 constexpr double first_row = 16;
 constexpr double row_height = 12;
 
-/// @param axis how far down it is
-std::string band_and_axis(double axis) {
-    const double low = place_of(1 / (1 + equivalence_band));
-    const double high = place_of(1 + equivalence_band);
-    std::string svg = fmt::format(
-        "<rect class=\"band\" x=\"{:.2f}%\" width=\"{:.2f}%\" y=\"4\" height=\"{}\"/>"
-        "<line class=\"one\" x1=\"50%\" x2=\"50%\" y1=\"4\" y2=\"{}\"/>"
-        "<line class=\"axis\" x1=\"{}%\" x2=\"{}%\" y1=\"{}\" y2=\"{}\"/>",
-        low, high - low, axis - 4, axis, margin, 100 - margin, axis, axis);
-    constexpr std::array<std::pair<double, std::string_view>, 5> numbers{
-        {{0.25, "0.25"}, {0.5, "0.5"}, {1, "1"}, {2, "2"}, {4, "4"}}};
-    for (const auto& [ratio, text] : numbers)
-        svg += fmt::format(
-            "<line class=\"axis\" x1=\"{0:.2f}%\" x2=\"{0:.2f}%\" y1=\"{1}\" y2=\"{2}\"/>"
-            "<text x=\"{0:.2f}%\" y=\"{3}\" text-anchor=\"middle\">{4}</text>",
-            place_of(ratio), axis, axis + 3, axis + 14, text);
+/// @param y how far down it is
+std::string axis_at(double y) {
+    std::string svg = line("axis", margin, 100 - margin, y, y);
+    for (const double ratio : {0.25, 0.5, 1., 2., 4.})
+        svg += line("axis", place_of(ratio), place_of(ratio), y, y + 3) +
+               words_at(place_of(ratio), y + 14, short_number(ratio), "middle");
     return svg;
 }
 
 /// What lies beyond the scale is an arrow at its end, with the number.
 std::string arrow(bool to_left, double y, double number) {
-    return fmt::format(
-        "<svg x=\"{}%\" y=\"{}\" overflow=\"visible\"><path d=\"M{} -5 L0 0 L{} 5z\"/></svg>"
-        "<text x=\"{}%\" y=\"{}\" text-anchor=\"{}\">{}</text>",
-        to_left ? 1 : 99, y, to_left ? 8 : -8, to_left ? 8 : -8, to_left ? 4 : 96, y - 4, to_left ? "start" : "end",
-        ratio_digits_of(number));
+    const std::string_view head = to_left ? "M8 -5 L0 0 L8 5z" : "M-8 -5 L0 0 L-8 5z";
+    return element("svg", {{"x", percent(to_left ? 1 : 99)}, {"y", y}, {"overflow", "visible"}},
+                   element("path", {{"d", head}})) +
+           words_at(to_left ? margin : 100 - margin, y - 4, ratio_digits_of(number), to_left ? "start" : "end");
 }
 
 std::string interval_at(const endpoint& e, double y) {
     const auto& [low, high] = e.range;
-    std::string svg = fmt::format("<line class=\"range\" x1=\"{:.2f}%\" x2=\"{:.2f}%\" y1=\"{}\" y2=\"{}\"/>",
-                                  low < least ? 2 : place_of(low), high > greatest ? 98 : place_of(high), y, y);
-    if (least <= e.ratio && e.ratio <= greatest)
-        svg += fmt::format("<circle cx=\"{:.2f}%\" cy=\"{}\" r=\"4\"/>", place_of(e.ratio), y);
-    if (low < least) svg += arrow(true, y, e.ratio < least ? e.ratio : low);
-    if (high > greatest) svg += arrow(false, y, e.ratio > greatest ? e.ratio : high);
+    const bool below = low < shared.from;
+    const bool above = high > shared.to;
+    std::string svg = line("range", below ? 2 : place_of(low), above ? 98 : place_of(high), y, y);
+    if (shared.from <= e.ratio && e.ratio <= shared.to) svg += disc(place_of(e.ratio), y, 4);
+    if (below) svg += arrow(true, y, e.ratio < shared.from ? e.ratio : low);
+    if (above) svg += arrow(false, y, e.ratio > shared.to ? e.ratio : high);
     return svg;
 }
 
@@ -77,14 +94,13 @@ std::string interval_at(const endpoint& e, double y) {
 std::string interval_picture(std::span<const endpoint> all) {
     const double axis = first_row + row_height * static_cast<double>(all.size());
     std::string label;
-    std::string intervals;
+    std::string svg =
+        band(place_of(1 / (1 + equivalence_band)), 50, place_of(1 + equivalence_band), 4, axis) + axis_at(axis);
     for (const endpoint& e : all) {
         label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
-        intervals += interval_at(e, first_row + row_height * static_cast<double>(&e - all.data()));
+        svg += interval_at(e, first_row + row_height * static_cast<double>(&e - all.data()));
     }
-    return fmt::format("<svg class=\"interval\" role=\"img\" aria-label=\"{}\" width=\"100%\" height=\"{}\">",
-                       html_text(label), axis + 16) +
-           band_and_axis(axis) + intervals + "</svg>";
+    return picture("interval", label, axis + 16, svg);
 }
 
 std::string rule_picture() {
@@ -98,32 +114,24 @@ std::string rule_picture() {
                                                {0.965, 1.035, "the same"},
                                                {1.3, 1.8, "more"},
                                                {0.72, 1.35, "direction open"}}};
-    // The left part of the picture has the scale, from 0.4 to 2.5, and the right part the words.
+    // The left part of the picture has the scale, and the right part the words.
     constexpr double part = 64;
-    const auto x = [](double ratio) { return part / 2 + part / 2 * std::log(ratio) / std::log(2.5); };
+    const scale shown{0.4, 2.5, true};
+    const auto x = [&](double ratio) { return part * shown.place(ratio); };
     constexpr double row = 26;
     constexpr double first = 40;
     constexpr double end = first + row * examples.size() - 8;
-    const double low = x(1 / (1 + equivalence_band));
-    const double high = x(1 + equivalence_band);
-    std::string svg = fmt::format(
-        "<svg class=\"rule\" role=\"img\" aria-label=\"an interval against the band of no difference\" width=\"100%\" "
-        "height=\"{0}\"><rect class=\"band\" x=\"{1:.2f}%\" width=\"{2:.2f}%\" y=\"22\" height=\"{3}\"/>"
-        "<line class=\"one\" x1=\"{4}%\" x2=\"{4}%\" y1=\"22\" y2=\"{5}\"/>"
-        "<text x=\"{4}%\" y=\"14\" text-anchor=\"middle\">1</text>"
-        "<text x=\"0\" y=\"14\">\u2190 for the claim</text>"
-        "<text x=\"{6}%\" y=\"14\" text-anchor=\"end\">against \u2192</text>",
-        end + 26, low, high - low, end - 22, part / 2, end, part);
-    for (std::size_t i = 0; i < examples.size(); ++i) {
-        const example& e = examples[i];
-        const double y = first + row * static_cast<double>(i);
-        svg += fmt::format(
-            "<line class=\"range\" x1=\"{0:.2f}%\" x2=\"{1:.2f}%\" y1=\"{2}\" y2=\"{2}\"/>"
-            "<circle cx=\"{3:.2f}%\" cy=\"{2}\" r=\"5\"/><text class=\"outcome\" x=\"{4}%\" y=\"{5}\">{6}</text>",
-            x(e.low), x(e.high), y, x(std::sqrt(e.low * e.high)), part + 3, y + 5, e.outcome);
+    std::string svg = band(x(1 / (1 + equivalence_band)), part / 2, x(1 + equivalence_band), 22, end) +
+                      words_at(part / 2, 14, "1", "middle") + words_at(0, 14, "\u2190 for the claim", "") +
+                      words_at(part, 14, "against \u2192", "end");
+    double y = first;
+    for (const example& e : examples) {
+        svg += line("range", x(e.low), x(e.high), y, y) + disc(x(std::sqrt(e.low * e.high)), y, 5) +
+               words_at(part + 3, y + 5, e.outcome, "", "outcome");
+        y += row;
     }
-    return svg + fmt::format("<text x=\"{}%\" y=\"{}\" text-anchor=\"middle\">band of \u00b1{:.0f} %</text></svg>",
-                             part / 2, end + 18, 100 * equivalence_band);
+    svg += words_at(part / 2, end + 18, fmt::format("band of \u00b1{:.0f} %", 100 * equivalence_band), "middle");
+    return picture("rule", "an interval against the band of no difference", end + 26, svg);
 }
 
 }  // namespace aabblab

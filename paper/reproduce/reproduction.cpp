@@ -15,6 +15,7 @@ import aabblab.claims;
 import aabblab.conditions;
 import aabblab.figures;
 import aabblab.files;
+import aabblab.page;
 import aabblab.record;
 import aabblab.tables;
 import aabblab.statistics;
@@ -86,7 +87,7 @@ figure verdict_figure(const reproduction& all) {
 void write_table(const std::filesystem::path& folder, const named_table& t) {
     write_file(folder / (t.name + ".csv"), to_csv(t.content));
     write_file(folder / (t.name + ".md"), to_markdown(t.content));
-    write_file(folder / (t.name + ".tex"), paper_table(t.content));
+    write_file(folder / (t.name + ".tex"), to_tex(t.content));
 }
 
 }  // namespace
@@ -160,8 +161,9 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "verdicts.csv", to_csv(verdict_table(all)));
     write_file(folder / "endpoints.csv", to_csv(endpoints_of(all)));
     write_file(folder / "macros.tex", macros_of(all, made, failures));
-    write_file(folder / "report.md", markdown_of(all, sections, made, failures));
-    write_file(folder / "report.html", html_of(folder, all, sections, made, failures));
+    const page report = report_of(all, sections, made, failures);
+    write_file(folder / "report.md", report.markdown());
+    write_file(folder / "report.html", report.html());
 }
 
 }  // namespace aabblab

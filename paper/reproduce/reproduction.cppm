@@ -12,6 +12,7 @@ export module aabblab.reproduction;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.figures;
+import aabblab.page;
 import aabblab.statistics;
 import aabblab.tables;
 
@@ -28,14 +29,14 @@ struct report_section {
 
 /// Writes into the folder:
 /// - verdicts.csv and endpoints.csv, all claims in one table each;
-/// - tables/NAME.csv, .md, .tex, and figures/NAME.csv, .gp, .svg, .pdf;
+/// - tables/NAME.csv, .md, .tex, and figures/NAME.csv, .svg, .pdf;
 /// - report.html, one page that needs no other file, and report.md;
 /// - macros.tex, every number that the LaTeX report names.
 /// @param runs what was judged; the report shows the first one's figures
 /// @param sections of the reports alone
 /// @param failures what validation found, a sentence each
 /// @param agreement how the verdicts compare with published ones; empty where they are compared with none
-/// @throws aabb::input_error where a file cannot be read or written, or figures cannot be drawn.
+/// @throws aabb::input_error where a file cannot be read or written.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& all, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& agreement = {});
@@ -90,13 +91,8 @@ struct verdict_word {
 /// How a verdict comes about, from rule.md: a paragraph each, without line breaks.
 [[nodiscard]] std::vector<std::string> rule_paragraphs();
 
-[[nodiscard]] std::string html_of(const std::filesystem::path& folder, const reproduction& all,
-                                  std::span<const report_section> sections, const provenance& made,
-                                  const std::vector<std::string>& failures);
-[[nodiscard]] std::string markdown_of(const reproduction& all, std::span<const report_section> sections,
-                                      const provenance& made, const std::vector<std::string>& failures);
-/// As paper/tex takes it: a tabular with rules, long texts in columns that break lines.
-[[nodiscard]] std::string paper_table(const table& t);
+[[nodiscard]] page report_of(const reproduction& all, std::span<const report_section> sections, const provenance& made,
+                             const std::vector<std::string>& failures);
 [[nodiscard]] std::string macros_of(const reproduction& all, const provenance& made,
                                     const std::vector<std::string>& failures);
 

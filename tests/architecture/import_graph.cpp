@@ -50,6 +50,7 @@ const std::vector<std::string> rooms = {
     "experiments/analysis/tables",
     "experiments/analysis/comparison",
     "experiments/analysis/conditions",
+    "experiments/page",
     "experiments/configs",
     "experiments/play",
     "experiments/queries",

@@ -15,6 +15,7 @@
 
 import aabb;
 import aabb.registry;
+import aabblab.page;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.tables;
@@ -227,7 +228,7 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
 }
 
 TEST_CASE("Tables are written for programs too") {
-    REQUIRE(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}).find("a\\_b \\\\\n\\hline\n50\\% \\\\") !=
+    REQUIRE(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}).find("a\\_b \\\\\n\\midrule\n50\\% \\\\") !=
             std::string::npos);
     REQUIRE(aabblab::to_html({{{"a", false}}, {{"<x>"}}}).find("<td>&lt;x&gt;</td>") != std::string::npos);
 }

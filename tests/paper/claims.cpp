@@ -517,7 +517,7 @@ TEST_CASE(
 
     const std::regex drawn(R"(\\aabbfigure\{([^}#]*)\})");
     for (std::sregex_iterator i(paper.begin(), paper.end(), drawn), end; i != end; ++i)
-        for (const char* ending : {".svg", ".pdf", ".gp", ".csv"}) {
+        for (const char* ending : {".svg", ".pdf", ".csv"}) {
             CAPTURE((*i)[1].str(), ending);
             CHECK(std::filesystem::exists(folder / ("figures/" + (*i)[1].str() + ending)));
         }

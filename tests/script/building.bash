@@ -12,7 +12,7 @@ root=$(readlink -f -- "$(dirname -- "${BASH_SOURCE[0]}")/../..")
 # Everything is there. What is configured at a place prints that place, however often it is built, as with CMake.
 printf 'ID=other\n' >os-release
 printf '#!/bin/sh\necho 19.1\n' | program clang++-19
-for tool in clang-scan-deps ninja gnuplot; do printf '#!/bin/sh\n' | program "$tool"; done
+for tool in clang-scan-deps ninja; do printf '#!/bin/sh\n' | program "$tool"; done
 program cmake <<'SH'
 #!/bin/sh
 echo "$1" >>"$WORK/calls"

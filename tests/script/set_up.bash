@@ -83,7 +83,7 @@ printf 'Types: deb\nURIs: http://here/debian\nSuites: bookworm\nComponents: main
 printf 'bookworm http://here/debian %s/here.sources:1\n' "$work" >targets
 export PATH=$work/bin WORK=$work
 
-everything='clang\+\+ 19 or newer, clang-scan-deps, CMake 3.28 or newer, ninja, gnuplot, <catch2/catch_test_macros.hpp>,'
+everything='clang\+\+ 19 or newer, clang-scan-deps, CMake 3.28 or newer, ninja, <catch2/catch_test_macros.hpp>,'
 everything+=' <rapidcheck.h>, <benchmark/benchmark.h>, <CGAL/version.h>,'
 everything+=' <boost/math/distributions/students_t.hpp>, <toml\+\+/toml.h>, <CLI/CLI.hpp>, <fmt/core.h>,'
 everything+=' <nlohmann/json.hpp>, <xxhash.h>, <oneapi/tbb/task_arena.h>, <openssl/evp.h>, <archive.h>, <fcl/config.h>, <ccd/ccd.h>,'
@@ -92,13 +92,13 @@ tools='clang-19 libclang-rt-19-dev clang-tools-19'
 libraries='librapidcheck-dev libbenchmark-dev libcgal-dev libboost-dev'
 libraries+=' libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libssl-dev libarchive-dev'
 libraries+=' libfcl-dev libeigen3-dev libccd-dev libembree-dev libbullet-dev libode-dev valgrind'
-all="$tools cmake ninja-build gnuplot-nox catch2 $libraries"
+all="$tools cmake ninja-build catch2 $libraries"
 install='apt-get update && apt-get install -y --no-install-recommends'
 
 # ---- Where nothing is ever installed ----
 
 here='aabblab: packages are installed on Debian 12 and 13 only, and here is missing:'
-fedora='clang compiler-rt clang-tools-extra cmake ninja-build gnuplot catch-devel google-benchmark-devel CGAL-devel'
+fedora='clang compiler-rt clang-tools-extra cmake ninja-build catch-devel google-benchmark-devel CGAL-devel'
 fedora+=' boost-devel tomlplusplus-devel cli11-devel fmt-devel json-devel xxhash-devel tbb-devel openssl-devel'
 fedora+=' libarchive-devel libccd-devel embree-devel bullet-devel valgrind'
 unpackaged='Fedora has no package of <rapidcheck.h>, <fcl/config.h>, <ode/ode.h>'
@@ -129,7 +129,7 @@ case "$*" in
 *rapidcheck.h* | *xxhash.h*) exit 1 ;;
 esac
 SH
-for tool in clang-scan-deps-20 ninja gnuplot valgrind; do printf '#!/bin/sh\n' | program "$tool"; done
+for tool in clang-scan-deps-20 ninja valgrind; do printf '#!/bin/sh\n' | program "$tool"; done
 printf '#!/bin/sh\necho cmake version 3.27.9\n' | program cmake
 on ID=fedora
 expect 'some is there' 2 "here is missing: CMake 3.28 or newer, <rapidcheck.h>, <xxhash.h>; Fedora has no package of <rapidcheck.h>; " aabblab pairs
@@ -150,13 +150,13 @@ expect 'a study that lacks its library' 127 'integrators and tests that need <cv
 expect 'its line' 127 '^  dnf install -y sundials-devel$' aabblab validate stiff --quick
 AABBLAB_INSTALL=all expect 'its line, for the asking' 127 '^  dnf install -y sundials-devel$' aabblab pairs
 rm -r checkout/build
-rm bin/clang++-20 bin/clang-scan-deps-20 bin/ninja bin/gnuplot bin/valgrind bin/cmake
+rm bin/clang++-20 bin/clang-scan-deps-20 bin/ninja bin/valgrind bin/cmake
 
 # ---- Debian ----
 
 backports="printf '%s\\\\n' 'Types: deb' 'URIs: http://here/debian' 'Suites: bookworm-backports' 'Components: main'"
 backports+=" 'Signed-By: /keys/debian' >$work/sources/aabblab-backports.sources"
-newer="$tools cmake/bookworm-backports ninja-build gnuplot-nox catch2/bookworm-backports $libraries"
+newer="$tools cmake/bookworm-backports ninja-build catch2/bookworm-backports $libraries"
 on ID=debian VERSION_ID=12 VERSION_CODENAME=bookworm
 expect 'neither root nor sudo' 2 \
     "^aabblab: root or sudo is needed to install what is missing: ${all// /, }; as root, this installs it:$" aabblab pairs

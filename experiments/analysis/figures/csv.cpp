@@ -9,8 +9,8 @@ module aabblab.figures;
 
 import aabblab.digits;
 import aabblab.results;
+import aabblab.text;
 import :drawing;
-import :text;
 
 namespace aabblab {
 
@@ -25,7 +25,6 @@ namespace {
 }  // namespace
 
 std::string csv_of(const figure& f) {
-    // Text stands last, where gnuplot need not understand its quotes.
     std::vector<std::string> header{"number", "x", "y", "low", "high", "series"};
     if (!f.panels.empty()) header.emplace_back("panel");
     if (!f.x.names.empty()) header.emplace_back("x_name");

@@ -9,10 +9,9 @@ module;
 
 module aabblab.figures;
 
+import aabblab.scale;
+import aabblab.text;
 import :drawing;
-import :layout;
-import :scale;
-import :text;
 
 namespace aabblab {
 
@@ -40,7 +39,7 @@ struct extent {
         const auto same = std::ranges::find_if(first, [&](const series* other) {
             return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
         });
-        looks.push_back(static_cast<std::size_t>(same - first.begin()) + 1);
+        looks.push_back(static_cast<std::size_t>(same - first.begin()));
         if (same == first.end()) first.push_back(s.source);
     }
     return looks;
@@ -64,7 +63,7 @@ struct extent {
         to.marks = shown_marks(f, panel);
         for (std::size_t k = 0; k < all.size(); ++k) {
             if (all[k].panel != nullptr && all[k].panel != panel) continue;
-            shown_series s{all[k].source, all[k].number, looks[k], points_of(*all[k].source), false};
+            shown_series s{all[k].source, looks[k], points_of(*all[k].source), false};
             std::erase_if(s.points, [&](const figure_point& p) {
                 return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
             });
@@ -80,30 +79,15 @@ struct extent {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)
         for (const shown_series& s : panel.lines) {
-            const bool is_line = s.is(series_style::line) && s.points.size() > 1;
-            const series_style style = s.is(series_style::line) && !is_line ? series_style::points : s.source->style;
+            const bool is_dot = s.is(series_style::line) && !s.is_joined();
+            const series_style style = is_dot ? series_style::points : s.source->style;
             const auto known = std::ranges::find(labels, s.look, &shown_label::look);
             if (known == labels.end())
                 labels.push_back({s.source->label, s.look, style});
-            else if (is_line)
+            else if (s.is_joined())
                 known->style = style;
         }
     return labels;
-}
-
-/// Where the lines of a figure without panels end, if all with a label are lines that end near the right edge.
-[[nodiscard]] std::vector<double> ends_of(const drawing& d) {
-    constexpr double near_edge = 0.9;
-    std::vector<double> ends;
-    if (d.panels.size() > 1) return ends;
-    for (const shown_series& s : d.panels.front().lines) {
-        const auto last = std::ranges::max_element(s.points, {}, &figure_point::x);
-        const bool at_edge = s.is(series_style::level) ||
-                             (s.is(series_style::line) && s.points.size() > 1 && d.x.place(last->x) >= near_edge);
-        if (!at_edge && !s.source->label.empty()) return {};
-        ends.push_back(d.y.place(last->y));
-    }
-    return ends;
 }
 
 [[nodiscard]] scale axis_scale(const figure_axis& axis, extent values, scale_end end) {
@@ -111,24 +95,13 @@ struct extent {
     const double half = half_gap(axis);
     for (const auto& [at, name] : axis.names) {
         if (!has_place(axis, at)) continue;
-        names.push_back({at, name});
+        names.push_back({at, name, {}});
         values.include(axis.logarithmic ? at / half : at - half);
         values.include(axis.logarithmic ? at * half : at + half);
     }
     if (values.least > values.greatest) values = axis.logarithmic ? extent{1, 10} : extent{0, 1};
     if (names.empty()) return scale_of(values.least, values.greatest, axis.logarithmic, end);
     return {values.least, values.greatest, axis.logarithmic, names, true};
-}
-
-/// The labels of the ticks as wide as they look.
-[[nodiscard]] std::vector<placed_text> placed(const scale& s) {
-    std::vector<placed_text> texts;
-    for (const tick& t : s.ticks) {
-        std::string text = t.label;
-        if (!s.named) std::erase_if(text, [](char c) { return c == '^' || c == '{' || c == '}'; });
-        if (!text.empty()) texts.emplace_back(s.place(t.at), text);
-    }
-    return texts;
 }
 
 }  // namespace
@@ -179,25 +152,6 @@ drawing::drawing(const figure& of) : f(of), panels(shown(of)), labels(labels_of(
     y = axis_scale(f.y, y_values, scale_end::on_ticks);
     if (y.named)
         for (tick& name : y.ticks) name.label = with_breaks(name.label, y_name_length);
-    contents parts;
-    parts.x_label = f.x.label;
-    parts.y_label = f.y.label;
-    parts.x_named = x.named;
-    parts.y_named = y.named;
-    parts.x_ticks = placed(x);
-    parts.y_ticks = placed(y);
-    for (const shown_label& label : labels) parts.legend.push_back(label.text);
-    parts.ends = ends_of(*this);
-    for (const shown_panel& panel : panels) {
-        parts.titles.push_back(panel.title);
-        std::vector<placed_text>& marks = parts.marks.emplace_back();
-        for (const figure_mark& m : panel.marks) marks.emplace_back(x.place(m.x), m.label);
-    }
-    room = layout_of(parts);
-    // The numbers that there is no room for become small ticks.
-    std::size_t shown_number = 0;
-    for (tick& t : x.ticks)
-        if (!t.label.empty() && !room.x_tick_shown[shown_number++]) t.label.clear();
 }
 
 bool drawing::empty() const {

@@ -3,12 +3,11 @@ module;
 #include <string>
 #include <vector>
 
-/// A figure made ready to be written down: which points have a place in it, on which axes, and where all else goes.
+/// A figure made ready to be drawn: which points have a place in it, and on which axes.
 module aabblab.figures:drawing;
 
+import aabblab.scale;
 import :figure;
-import :layout;
-import :scale;
 
 namespace aabblab {
 
@@ -29,12 +28,12 @@ struct numbered_series {
 /// A series as far as it has a place in the figure.
 struct shown_series {
     const series* source;
-    std::size_t number;  ///< from 1, among all series of the figure
-    std::size_t look;    ///< from 1; the same for what has one label in several panels
+    std::size_t look;  ///< from 0; the same for what has one label in several panels
     std::vector<figure_point> points;
     bool varies;  ///< has quartiles to show
 
     [[nodiscard]] bool is(series_style style) const { return source->style == style; }
+    [[nodiscard]] bool is_joined() const { return is(series_style::line) && points.size() > 1; }
 };
 
 struct shown_panel {
@@ -50,16 +49,17 @@ struct shown_label {
     series_style style;  ///< points where a line has one point only
 };
 
+inline constexpr std::size_t y_name_length = 32;  ///< in characters, at which names on the y axis are broken into lines
+
 /// The figure must outlive it.
 struct drawing {
     explicit drawing(const figure& of);
 
     const figure& f;
     std::vector<shown_panel> panels;
-    std::vector<shown_label> labels;  ///< in the same order in `room`
+    std::vector<shown_label> labels;
     scale x;
     scale y;
-    layout room;
 
     [[nodiscard]] bool empty() const;
 };

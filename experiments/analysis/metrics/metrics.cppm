@@ -8,8 +8,8 @@ module;
 #include <string_view>
 #include <vector>
 
-/// Metrics: numbers computed from the rows of results, after the run that wrote them. One file each, listed in
-/// CMakeLists.txt.
+/// Metrics: numbers computed from the rows of results, after the run that wrote them. They stand
+/// in metric_list.cpp.
 export module aabblab.metrics;
 
 import aabblab.results;
@@ -45,7 +45,7 @@ struct metric {
     row_value of;
 };
 
-/// All of them, work counters too, in the order of CMakeLists.txt.
+/// All of them, work counters too, in the order of that list.
 [[nodiscard]] std::span<const metric> metrics();
 [[nodiscard]] std::vector<std::string> metric_names();
 

@@ -3,6 +3,7 @@ module;
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <string>
@@ -29,6 +30,22 @@ double least(const tested& t) {
     return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
 }
 
+/// The level at which each p-value is decided, by Holm's step-down rule from the least on; 0 from the first that is
+/// above its level.
+template <class Tested, class P>
+std::vector<double> holm_levels(std::span<const Tested> all, P p_of) {
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(std::invoke(p_of, all[i]), i); });
+    std::vector<double> levels(all.size(), 0);
+    for (std::size_t done = 0; done < order.size(); ++done) {
+        const double level = one_sided / static_cast<double>(order.size() - done);
+        if (std::invoke(p_of, all[order[done]]) > level) break;
+        levels[order[done]] = level;
+    }
+    return levels;
+}
+
 }  // namespace
 
 evidence evidence_of(const estimate& log_ratio) {
@@ -46,15 +63,10 @@ outcome decide(const evidence& e) {
 }
 
 std::vector<outcome> decide_together(std::span<const evidence> all) {
-    std::vector<std::size_t> order(all.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(all[i].p, i); });
-    std::vector<outcome> outcomes(all.size(), outcome::undecided);
-    for (std::size_t done = 0; done < order.size(); ++done) {
-        const evidence& next = all[order[done]];
-        if (next.p > one_sided / static_cast<double>(order.size() - done)) break;
-        outcomes[order[done]] = next.nearest;
-    }
+    const std::vector<double> levels = holm_levels(all, &evidence::p);
+    std::vector<outcome> outcomes;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        outcomes.push_back(levels[i] > 0 ? all[i].nearest : outcome::undecided);
     return outcomes;
 }
 
@@ -88,16 +100,7 @@ support support_of(expectation expected, const tails& p, double level) {
 }
 
 std::vector<double> levels_together(std::span<const tested> all) {
-    std::vector<std::size_t> order(all.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(least(all[i]), i); });
-    std::vector<double> levels(all.size(), 0);
-    for (std::size_t done = 0; done < order.size(); ++done) {
-        const double level = one_sided / static_cast<double>(order.size() - done);
-        if (least(all[order[done]]) > level) break;
-        levels[order[done]] = level;
-    }
-    return levels;
+    return holm_levels(all, least);
 }
 
 verdict_kind verdict_of(std::span<const support> primary) {

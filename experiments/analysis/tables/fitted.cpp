@@ -8,6 +8,8 @@ module;
 
 module aabblab.tables;
 
+import aabblab.text;
+
 namespace aabblab {
 
 namespace {
@@ -26,8 +28,8 @@ std::size_t name_count(const table& t) {
 }
 
 std::size_t width_of(const table& t, std::size_t k) {
-    std::size_t width = text_width(t.columns[k].name);
-    for (const auto& cells : t.rows) width = std::max(width, text_width(cells[k]));
+    std::size_t width = characters(t.columns[k].name);
+    for (const auto& cells : t.rows) width = std::max(width, characters(cells[k]));
     return width;
 }
 
@@ -72,7 +74,7 @@ std::string legend_of(const std::string& number, const std::vector<std::string>&
     for (const std::string& part : parts) {
         if (part.empty()) continue;
         if (!first) line += " +";
-        if (!first && text_width(line) + 1 + text_width(part) > width - gap) {
+        if (!first && characters(line) + 1 + characters(part) > width - gap) {
             text += std::exchange(line, indent) + "\n";
             first = true;
         }

@@ -10,6 +10,7 @@ module aabblab.tables;
 
 import aabb.registry;
 import aabblab.results;
+import aabblab.text;
 
 namespace aabblab {
 
@@ -49,7 +50,7 @@ std::string only_name_of(const contender_name& name) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (const std::string one = text_in_line(kind, name[kind]); !one.empty())
             text += (text.empty() ? "" : " + ") + one;
-    return text.empty() || text_width(text) > most ? "this composition" : text;
+    return text.empty() || characters(text) > most ? "this composition" : text;
 }
 
 }  // namespace aabblab

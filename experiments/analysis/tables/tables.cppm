@@ -50,11 +50,10 @@ struct named_table {
 [[nodiscard]] std::string to_text(table t, std::size_t width);
 [[nodiscard]] std::string to_csv(const table& t);
 [[nodiscard]] std::string to_markdown(const table& t);
+/// As paper/tex takes it: a tabular with rules, long texts in columns that break lines.
 [[nodiscard]] std::string to_tex(const table& t);
-[[nodiscard]] std::string to_html(const table& t);
-/// Text as it stands in LaTeX and in HTML: what means something there is written so that it means itself.
+/// Text as it stands in LaTeX: what means something there is written so that it means itself.
 [[nodiscard]] std::string tex_text(std::string_view text);
-[[nodiscard]] std::string html_text(std::string_view text);
 
 /// All repeats of one composition or engine in one scene, over all seeds.
 struct summary_line {
@@ -123,8 +122,6 @@ struct scene_summary {
 // What the parts of the module share.
 namespace aabblab {
 
-/// In characters, not bytes.
-[[nodiscard]] std::size_t text_width(std::string_view text);
 /// Bytes as KiB, with three digits that count.
 [[nodiscard]] std::string kib_text(std::uint64_t bytes);
 /// "0.98-1.02", or "-" where there is none.

@@ -2,11 +2,9 @@ module;
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +14,8 @@ module;
 module aabblab.picture;
 
 import aabb.geometry;
+import aabblab.markup;
+import aabblab.scale;
 import :panel;
 import :survey;
 
@@ -26,63 +26,32 @@ namespace {
 constexpr double wide_panel = 2 * panel_side + left_margin + gap;
 constexpr double narrowest = 1.0 / 8;  // a panel's one side over the other
 
-/// 1, 2 or 5 times a power of ten, so that at most `most` of them fit into the length.
-double tick_step(double length, double most) {
-    double step = std::pow(10, std::floor(std::log10(length / most)));
-    for (const double factor : {2.0, 2.5, 2.0})
-        if (length / step > most) step *= factor;
-    return step;
-}
-
 std::vector<double> ticks(const view_plane& view, int axis, double pixels, double pixels_each) {
-    const double least = view.least(axis);
-    const double step = tick_step(view.length(axis), std::max(2.0, pixels / pixels_each));
-    std::vector<double> values;
-    // Counted, since far from 0 the next tick may be rounded to the same value.
-    for (int i = 0; i <= view.length(axis) / step; ++i) {
-        const double value = (std::ceil(least / step) + i) * step;
-        if (value <= least + view.length(axis)) values.push_back(value + 0.0);  // -0 is 0
-    }
-    return values;
+    const double length = view.length(axis);
+    return round_values(view.least(axis), view.least(axis) + length,
+                        round_step(length, std::max(2.0, pixels / pixels_each)));
 }
 
 std::string axes_of(const view_plane& view) {
+    const double below = view.height();
     std::string svg;
     for (const double value : ticks(view, view.across(), view.width(), 80))
-        fmt::format_to(std::back_inserter(svg),
-                       "<path class=\"tick\" d=\"M{0:.1f} {1:.1f}v5\"/>"
-                       "<text x=\"{0:.1f}\" y=\"{2:.1f}\" text-anchor=\"middle\">{3:g}</text>\n",
-                       view.x(value), view.height(), view.height() + 19, value);
+        svg += element("path", {{"class", "tick"},
+                                {"d", "M" + short_number(view.x(value)) + " " + short_number(below) + "v5"}}) +
+               words_at(view.x(value), below + 19, fmt::format("{:g}", value), "", "middle");
     for (const double value : ticks(view, view.up(), view.height(), 40))
-        fmt::format_to(std::back_inserter(svg),
-                       "<path class=\"tick\" d=\"M0 {0:.1f}h-5\"/>"
-                       "<text x=\"-9\" y=\"{1:.1f}\" text-anchor=\"end\">{2:g}</text>\n",
-                       view.y(value), view.y(value) + 4, value);
-    constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
-    fmt::format_to(std::back_inserter(svg),
-                   "<text class=\"axis\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n"
-                   "<text class=\"axis\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                   view.width() / 2, view.height() + 36, names[static_cast<std::size_t>(view.across())],
-                   8 - left_margin, view.height() / 2 + 4, names[static_cast<std::size_t>(view.up())]);
-    return svg;
+        svg += element("path", {{"class", "tick"}, {"d", "M0 " + short_number(view.y(value)) + "h-5"}}) +
+               words_at(-9, view.y(value) + 4, fmt::format("{:g}", value), "", "end");
+    return svg + words_at(view.width() / 2, below + 36, name_of_axis(view.across()), "axis", "middle") +
+           words_at(8 - left_margin, below / 2 + 4, name_of_axis(view.up()), "axis");
 }
 
-struct rectangle {
-    double left, top, width, height;
-};
-
-rectangle shown(const view_plane& view, const aabb::box& b) {
+/// What is smaller than a pixel is still to be seen.
+box_on_plane shown(const view_plane& view, const aabb::box& b) {
     const double left = view.x(b.min[view.across()]);
     const double top = view.y(b.max[view.up()]);
-    // What is smaller than a pixel is still to be seen.
     return {left, top, std::max(1.0, view.x(b.max[view.across()]) - left),
             std::max(1.0, view.y(b.min[view.up()]) - top)};
-}
-
-void draw_box(std::string& svg, const rectangle& r, std::string_view kind) {
-    fmt::format_to(std::back_inserter(svg),
-                   "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kind, r.left,
-                   r.top, r.width, r.height);
 }
 
 std::string boxes_of(const view_plane& view, const survey::frame& frame, const frame_drawing& drawing) {
@@ -91,30 +60,46 @@ std::string boxes_of(const view_plane& view, const survey::frame& frame, const f
     std::string outlines;
     for (std::size_t i = 0; i < drawing.drawn.size(); ++i) {
         const std::size_t object = drawing.drawn[i];
-        const rectangle r = shown(view, frame.boxes[object]);
+        const box_on_plane r = shown(view, frame.boxes[object]);
         area += r.width * r.height;
-        draw_box(boxes, r, drawing.overlapping[object] != 0 ? "overlapping" : "apart");
-        if (i < drawing.huge) draw_box(outlines, r, "huge");
+        boxes += rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
+        if (i < drawing.huge) outlines += rectangle("huge", r);
     }
     // The more boxes lie behind one another, the more is seen through each.
     const double depth = area / (view.width() * view.height());
-    return fmt::format("<g fill-opacity=\"{:.2f}\" stroke-opacity=\"{:.2f}\">\n{}</g>\n{}",
-                       std::clamp(0.6 / depth, 0.03, 0.35), std::clamp(1.5 / depth, 0.1, 0.8), boxes, outlines);
+    return element("g",
+                   {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
+                    {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}},
+                   boxes) +
+           outlines;
 }
 
-void draw_path(std::string& svg, const view_plane& view, const survey::path& path) {
+std::string path_of(const view_plane& view, const survey::path& path) {
     std::string d;
     bool pen_down = false;
     for (const auto& place : path) {
         if (place)
-            fmt::format_to(std::back_inserter(d), "{}{:.1f} {:.1f}", pen_down ? 'L' : 'M',
-                           view.x((*place)[view.across()]), view.y((*place)[view.up()]));
+            d += (pen_down ? "L" : "M") + short_number(view.x((*place)[view.across()])) + " " +
+                 short_number(view.y((*place)[view.up()]));
         pen_down = place.has_value();
     }
-    if (!d.empty()) fmt::format_to(std::back_inserter(svg), "<path class=\"way\" d=\"{}\"/>\n", d);
+    return d.empty() ? "" : element("path", {{"class", "way"}, {"d", d}}) + "\n";
 }
 
 }  // namespace
+
+std::string words_at(double x, double y, std::string_view text, std::string_view kind, std::string_view anchor) {
+    return element("text", {{"class", kind}, {"x", x}, {"y", y}, {"text-anchor", anchor}}, markup_text(text)) + "\n";
+}
+
+std::string rectangle(std::string_view kind, const box_on_plane& r) {
+    return element("rect", {{"class", kind}, {"x", r.left}, {"y", r.top}, {"width", r.width}, {"height", r.height}}) +
+           "\n";
+}
+
+std::string_view name_of_axis(int axis) {
+    return std::string_view("xyz").substr(static_cast<std::size_t>(axis), 1);
+}
 
 view_plane::view_plane(const aabb::box& world, const aabb::vec3d& sides) {
     for (int k = 0; k < 3; ++k) {
@@ -144,14 +129,11 @@ view_plane::view_plane(const aabb::box& world, const aabb::vec3d& sides) {
 
 std::string panel_of(const view_plane& view, pixel corner, std::string_view title, const survey::frame& frame,
                      const frame_drawing& drawing, std::span<const survey::path> paths) {
-    std::string svg = fmt::format(
-        "<g transform=\"translate({:.1f} {:.1f})\">\n<text class=\"title\" x=\"0\" y=\"-10\">{}</text>\n"
-        "<rect class=\"world\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
-        corner.x, corner.y, title, view.width(), view.height());
-    svg += axes_of(view);
-    svg += boxes_of(view, frame, drawing);
-    for (const survey::path& path : paths) draw_path(svg, view, path);
-    return svg + "</g>\n";
+    std::string svg = "\n" + words_at(0, -10, title, "title") +
+                      rectangle("world", {0, 0, view.width(), view.height()}) + axes_of(view) +
+                      boxes_of(view, frame, drawing);
+    for (const survey::path& path : paths) svg += path_of(view, path);
+    return element("g", {{"transform", fmt::format("translate({:.1f} {:.1f})", corner.x, corner.y)}}, svg) + "\n";
 }
 
 std::size_t clear_paths(const view_plane& view, std::span<const survey::path> paths) {

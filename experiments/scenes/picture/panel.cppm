@@ -3,6 +3,7 @@ module;
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// The drawing of one frame, with its axes.
@@ -57,6 +58,18 @@ struct pixel {
     double x;
     double y;
 };
+
+/// In pixels, from the corner of a panel.
+struct box_on_plane {
+    double left, top, width, height;
+};
+
+/// @param kind a class of the style
+[[nodiscard]] std::string rectangle(std::string_view kind, const box_on_plane& r);
+[[nodiscard]] std::string words_at(double x, double y, std::string_view text, std::string_view kind = "",
+                                   std::string_view anchor = "");
+/// "x", "y" or "z"
+[[nodiscard]] std::string_view name_of_axis(int axis);
 
 /// What a panel shows of a frame.
 struct frame_drawing {

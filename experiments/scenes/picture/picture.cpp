@@ -2,6 +2,7 @@ module;
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,7 +18,9 @@ module aabblab.picture;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.validation;
+import aabblab.markup;
 import aabblab.numbers;
+import aabblab.text;
 import :panel;
 
 namespace aabblab {
@@ -32,11 +35,11 @@ constexpr std::size_t most_outlined = 10;  // where more are huge, none stands o
 
 // Blue and vermilion of Okabe and Ito (2008), which people with any colour vision tell apart.
 constexpr std::string_view style =
-    "<style>text{fill:#222}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
+    "text{fill:#222}.paper{fill:#fff}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
     ".world{fill:none;stroke:#999}.tick{stroke:#999}"
     ".apart{fill:#0072b2;stroke:#0072b2;stroke-width:.6}.overlapping{fill:#d55e00;stroke:#d55e00;stroke-width:.6}"
     ".huge{fill:none;stroke:#000;stroke-width:2.5;stroke-dasharray:8 4}"
-    ".way{fill:none;stroke:#000;stroke-width:1.2;stroke-opacity:.7}</style>\n";
+    ".way{fill:none;stroke:#000;stroke-width:1.2;stroke-opacity:.7}";
 
 double extent_of(const aabb::box& b) {
     const int k = aabb::longest_axis(b);
@@ -91,59 +94,30 @@ std::string title_of(std::string_view which, std::size_t number, const frame_dra
     return fmt::format("{} frame ({}): boxes {}, overlapping pairs {}", which, number, drawing.present, drawing.pairs);
 }
 
-std::string escaped(std::string_view text) {
-    std::string safe;
-    for (const char c : text) {
-        if (c == '<')
-            safe += "&lt;";
-        else if (c == '&')
-            safe += "&amp;";
-        else
-            safe += c;
-    }
-    return safe;
-}
-
-/// Broken between words; a word longer than a line stays whole.
-void add_wrapped(std::vector<std::string>& lines, std::string_view text) {
-    while (text.size() > line_length) {
-        std::size_t end = text.rfind(' ', line_length);
-        if (end == std::string_view::npos) end = text.find(' ');
-        if (end == std::string_view::npos) break;
-        lines.emplace_back(text.substr(0, end));
-        text.remove_prefix(end + 1);
-    }
-    lines.emplace_back(text);
-}
-
 std::vector<std::string> caption_lines(const survey& seen, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
-    add_wrapped(lines, caption.summary);
-    add_wrapped(lines, caption.parameters);
+    for (const std::string& text : {caption.summary, caption.parameters})
+        for (const std::string& line : lines_of(text, line_length)) lines.push_back(line);
     lines.push_back(fmt::format("{}, {}; {}", counted(seen.first().boxes.size(), "object"),
                                 counted(seen.frames(), "frame"), displacement_text(seen)));
-    constexpr std::string_view names = "xyz";
-    lines.push_back(fmt::format(
-        "seen along {}: {} across, {} upwards{}{}", names[static_cast<std::size_t>(3 - view.across() - view.up())],
-        names[static_cast<std::size_t>(view.across())], names[static_cast<std::size_t>(view.up())],
-        view.has_equal_scales() ? "" : ", each with a scale of its own",
-        is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
+    lines.push_back(
+        fmt::format("seen along {}: {} across, {} upwards{}{}", name_of_axis(3 - view.across() - view.up()),
+                    name_of_axis(view.across()), name_of_axis(view.up()),
+                    view.has_equal_scales() ? "" : ", each with a scale of its own",
+                    is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
     return lines;
 }
 
 std::string legend(double y, std::size_t paths, bool has_huge) {
-    std::string svg = fmt::format(
-        "<g transform=\"translate({} {:.1f})\"><rect class=\"apart\" y=\"-11\" width=\"13\" height=\"13\"/>"
-        "<text x=\"20\">overlaps no other</text>"
-        "<rect class=\"overlapping\" x=\"170\" y=\"-11\" width=\"13\" height=\"13\"/>"
-        "<text x=\"190\">overlaps another</text>"
-        "<path class=\"way\" d=\"M340 -4h30\"/><text x=\"378\">paths of {} objects through all frames</text>",
-        left_margin, y, paths);
+    std::string svg = rectangle("apart", {0, -11, 13, 13}) + words_at(20, 0, "overlaps no other") +
+                      rectangle("overlapping", {170, -11, 13, 13}) + words_at(190, 0, "overlaps another") +
+                      element("path", {{"class", "way"}, {"d", "M340 -4h30"}}) +
+                      words_at(378, 0, fmt::format("paths of {} objects through all frames", paths));
     if (has_huge)
-        svg += fmt::format("<path class=\"huge\" d=\"M680 -4h34\"/><text x=\"722\">longer than {} mean extents</text>",
-                           huge_extents);
-    return svg + "</g>\n";
+        svg += element("path", {{"class", "huge"}, {"d", "M680 -4h34"}}) +
+               words_at(722, 0, fmt::format("longer than {} mean extents", huge_extents));
+    return element("g", {{"transform", fmt::format("translate({} {:.1f})", left_margin, y)}}, svg) + "\n";
 }
 
 }  // namespace
@@ -154,10 +128,10 @@ std::string picture_of(const survey& seen, const picture_caption& caption) {
     const frame_drawing last = drawing_of(seen.last());
     const bool is_sampled = std::max(first.present, last.present) > most_boxes;
 
-    std::string body = fmt::format("<text class=\"name\" x=\"{}\" y=\"32\">{}</text>\n", left_margin, caption.name);
+    std::string body = words_at(left_margin, 32, caption.name, "name");
     double y = 58;
     for (const std::string& line : caption_lines(seen, caption, view, is_sampled)) {
-        body += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", left_margin, y, escaped(line));
+        body += words_at(left_margin, y, line);
         y += line_height;
     }
     const auto paths = seen.paths().first(clear_paths(view, seen.paths()));
@@ -168,11 +142,17 @@ std::string picture_of(const survey& seen, const picture_caption& caption) {
                                        : pixel{left.x + panel_side + left_margin + gap, left.y};
     body += panel_of(view, left, title_of("first", 0, first), seen.first(), first, {});
     body += panel_of(view, right, title_of("last", seen.frames() - 1, last), seen.last(), last, paths);
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{2}{3}</svg>\n",
-        2 * (panel_side + left_margin + gap), right.y + panel_height + 16, style, body);
+    const double width = 2 * (panel_side + left_margin + gap);
+    const double height = std::round(right.y + panel_height + 16);
+    return element("svg",
+                   {{"xmlns", "http://www.w3.org/2000/svg"},
+                    {"viewBox", fmt::format("0 0 {} {}", width, height)},
+                    {"width", width},
+                    {"height", height},
+                    {"font-family", "sans-serif"},
+                    {"font-size", 13}},
+                   "\n" + rectangle("paper", {0, 0, width, height}) + element("style", {}, style) + "\n" + body) +
+           "\n";
 }
 
 }  // namespace aabblab

@@ -10,9 +10,7 @@ module;
 #include <string_view>
 #include <vector>
 
-module aabblab.figures;
-
-import :scale;
+module aabblab.scale;
 
 namespace aabblab {
 
@@ -27,10 +25,8 @@ constexpr std::string_view minus_sign = "\u2212";
     return (value < 0 ? std::string(minus_sign) : std::string()) + digits;
 }
 
-[[nodiscard]] std::string power_text(double mantissa, int exponent, int decimals) {
-    const std::string power =
-        fmt::format("10^{{{}{}}}", exponent < 0 ? minus_sign : std::string_view(), std::abs(exponent));
-    return mantissa == 1 ? power : number_text(mantissa, decimals) + "\u00d7" + power;
+[[nodiscard]] tick power_tick(double at, double mantissa, int exponent, int decimals) {
+    return {at, mantissa == 1 ? "10" : number_text(mantissa, decimals) + "\u00d710", number_text(exponent, 0)};
 }
 
 /// The power of ten of the first digit.
@@ -38,29 +34,17 @@ constexpr std::string_view minus_sign = "\u2212";
     return static_cast<int>(std::floor(std::log10(value) + 1e-9));
 }
 
-/// 1, 2 or 5 times a power of ten, so that the span has about so many.
-[[nodiscard]] double step_of(double span, int wanted) {
-    const double least = span / wanted;
-    const double power = std::pow(10, exponent_of(least));
-    for (const double times : {1, 2, 5})
-        if (times * power >= least * (1 - 1e-9)) return times * power;
-    return 10 * power;
-}
-
 [[nodiscard]] std::vector<tick> linear_ticks(double from, double to, double step) {
-    const double first = std::ceil(from / step - 1e-6);
-    const double last = std::floor(to / step + 1e-6);
-    const double largest = std::max(std::abs(first), std::abs(last)) * step;
-    const int step_exponent = exponent_of(step);
+    const std::vector<double> values = round_values(from, to, step);
+    double largest = 0;
+    for (const double at : values) largest = std::max(largest, std::abs(at));
     const bool powers = largest >= 1e7 || step < 1e-5;
     const int exponent = powers ? exponent_of(largest) : 0;
-    const int decimals = std::max(0, exponent - step_exponent);
+    const int decimals = std::max(0, exponent - exponent_of(step));
     std::vector<tick> ticks;
-    for (double i = first; i <= last; ++i) {
-        const double at = i == 0 ? 0 : i * step;
-        ticks.push_back({at, powers && at != 0 ? power_text(at * std::pow(10, -exponent), exponent, decimals)
-                                               : number_text(at, at == 0 && powers ? 0 : decimals)});
-    }
+    for (const double at : values)
+        ticks.push_back(powers && at != 0 ? power_tick(at, at * std::pow(10, -exponent), exponent, decimals)
+                                          : tick{at, number_text(at, powers ? 0 : decimals)});
     return ticks;
 }
 
@@ -79,8 +63,8 @@ constexpr std::string_view minus_sign = "\u2212";
             if (at < from * (1 - 1e-9) || at > to * (1 + 1e-9)) continue;
             const bool of_these = std::ranges::find(multiples, times) != multiples.end();
             if (of_these && exponent % decades == 0)
-                ticks.push_back(
-                    {at, powers ? power_text(times, exponent, 0) : number_text(at, std::max(0, -exponent))});
+                ticks.push_back(powers ? power_tick(at, times, exponent, 0)
+                                       : tick{at, number_text(at, std::max(0, -exponent))});
             else if (decades == 1 || times == 1)
                 ticks.push_back({at, {}});
         }
@@ -95,17 +79,34 @@ constexpr std::string_view minus_sign = "\u2212";
     if (auto ticks = decade_ticks(from, to, ones, decades); std::ranges::count_if(ticks, labelled) >= enough)
         return ticks;
     if (auto ticks = decade_ticks(from, to, few, 1); std::ranges::count_if(ticks, labelled) >= enough) return ticks;
-    return linear_ticks(from, to, step_of(to - from, 6));
+    return linear_ticks(from, to, round_step(to - from, 6));
 }
 
 }  // namespace
+
+double round_step(double span, double most) {
+    const double least = span / most;
+    const double power = std::pow(10, exponent_of(least));
+    for (const double times : {1, 2, 5})
+        if (times * power >= least * (1 - 1e-9)) return times * power;
+    return 10 * power;
+}
+
+std::vector<double> round_values(double from, double to, double step) {
+    const double first = std::ceil(from / step - 1e-6);
+    std::vector<double> values;
+    // Counted, since far from 0 the next value may be rounded to the same.
+    for (int i = 0; i <= std::floor(to / step + 1e-6) - first; ++i)
+        values.push_back((first + i) * step + 0.0);  // -0 is 0
+    return values;
+}
 
 double scale::place(double value) const {
     return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
 }
 
 scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
-    scale s{least, greatest, logarithmic, {}, false};
+    scale s{least, greatest, logarithmic};
     if (logarithmic) {
         const double beyond = least == greatest ? 2 : std::pow(greatest / least, 0.04);
         s.from = least / beyond;
@@ -120,7 +121,7 @@ scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
     }
     if (end == scale_end::on_ticks) {
         if (s.from > 0 && s.from <= s.to / 2) s.from = 0;
-        const double step = step_of(s.to - s.from, 5);
+        const double step = round_step(s.to - s.from, 5);
         s.from = std::floor(s.from / step + 1e-6) * step;
         s.to = std::ceil(s.to / step - 1e-6) * step;
         s.ticks = linear_ticks(s.from, s.to, step);
@@ -128,7 +129,7 @@ scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
         const double beyond = 0.03 * (s.to - s.from);
         s.from = s.from >= 0 && s.from <= 3 * beyond ? 0 : s.from - beyond;
         s.to += beyond;
-        s.ticks = linear_ticks(s.from, s.to, step_of(s.to - s.from, 6));
+        s.ticks = linear_ticks(s.from, s.to, round_step(s.to - s.from, 6));
     }
     return s;
 }

@@ -2,23 +2,23 @@ module;
 #include <string>
 #include <vector>
 
-/// The range of an axis and its ticks. They are chosen here, not by gnuplot, because its own choice leaves a
-/// logarithmic axis of less than a decade with one number or none.
-module aabblab.figures:scale;
+/// The range of an axis and its ticks.
+export module aabblab.scale;
 
-namespace aabblab {
+export namespace aabblab {
 
 struct tick {
     double at;
-    std::string label;  ///< in gnuplot's enhanced text; empty for a small tick
+    std::string label;    ///< empty for a small tick
+    std::string power{};  ///< raised behind it: "6" of a million written as a power of ten
 };
 
 struct scale {
     double from;
     double to;
     bool logarithmic;
-    std::vector<tick> ticks;
-    bool named = false;  ///< ticks have names, not numbers, which are no enhanced text
+    std::vector<tick> ticks{};
+    bool named = false;  ///< ticks have names, not numbers
 
     /// 0 at the left or lower end, 1 at the other.
     [[nodiscard]] double place(double value) const;
@@ -31,5 +31,10 @@ enum class scale_end : unsigned char {
 
 /// Of an axis that shows all from `least` to `greatest`, which may be equal; both are positive where it is logarithmic.
 [[nodiscard]] scale scale_of(double least, double greatest, bool logarithmic, scale_end end);
+
+/// 1, 2 or 5 times a power of ten, so that at most so many of them fit into the span.
+[[nodiscard]] double round_step(double span, double most);
+/// The multiples of the step in a range, its ends among them, as far as rounding tells them apart.
+[[nodiscard]] std::vector<double> round_values(double from, double to, double step);
 
 }  // namespace aabblab

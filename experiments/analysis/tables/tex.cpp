@@ -4,13 +4,13 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
-module aabblab.reproduction;
+module aabblab.tables;
 
-import aabblab.tables;
+import aabblab.text;
 
 namespace aabblab {
 
@@ -54,34 +54,46 @@ std::string columns_of(const table& t) {
     return spec;
 }
 
+std::string line_of(std::vector<std::string> cells) {
+    for (std::string& cell : cells) cell = tex_text(cell);
+    return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
+}
+
 /// A head in lines, so that no column of numbers is wider than its numbers need.
 std::string head_of(const column& c) {
     constexpr std::size_t longest_line = 14;
-    std::vector<std::string> lines;
-    std::istringstream words(c.name);
-    for (std::string word; words >> word;)
-        if (!lines.empty() && lines.back().size() + 1 + word.size() <= longest_line)
-            lines.back() += " " + word;
-        else
-            lines.push_back(word);
+    std::vector<std::string> lines = lines_of(c.name, longest_line);
     if (lines.size() < 2) return tex_text(c.name);
-    std::string text = c.is_number ? "\\shortstack[r]{" : "\\shortstack[l]{";
-    for (const std::string& line : lines) text += (&line == lines.data() ? "" : "\\\\") + tex_text(line);
-    return text + "}";
+    for (std::string& line : lines) line = tex_text(line);
+    return fmt::format("\\shortstack[{}]{{{}}}", c.is_number ? 'r' : 'l', fmt::join(lines, "\\\\"));
 }
 
 }  // namespace
 
-std::string paper_table(const table& t) {
-    const auto line = [](const std::vector<std::string>& cells) {
-        std::string text;
-        for (const std::string& cell : cells) text += (&cell == cells.data() ? "" : " & ") + tex_text(cell);
-        return text + " \\\\\n";
-    };
-    std::string head;
-    for (const column& c : t.columns) head += (&c == t.columns.data() ? "" : " & ") + head_of(c);
-    std::string text = "\\begin{tabular}{" + columns_of(t) + "}\n\\toprule\n" + head + " \\\\\n\\midrule\n";
-    for (const std::vector<std::string>& cells : t.rows) text += line(cells);
+std::string tex_text(std::string_view text) {
+    std::string safe;
+    for (const char c : text) switch (c) {
+            case '\\': safe += "\\textbackslash{}"; break;
+            case '~': safe += "\\textasciitilde{}"; break;
+            case '^': safe += "\\textasciicircum{}"; break;
+            case '_':
+            case '%':
+            case '&':
+            case '#':
+            case '$':
+            case '{':
+            case '}': safe += '\\'; [[fallthrough]];
+            default: safe += c;
+        }
+    return safe;
+}
+
+std::string to_tex(const table& t) {
+    std::vector<std::string> heads;
+    for (const column& c : t.columns) heads.push_back(head_of(c));
+    std::string text = fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{} \\\\\n\\midrule\n", columns_of(t),
+                                   fmt::join(heads, " & "));
+    for (const std::vector<std::string>& cells : t.rows) text += line_of(cells);
     return text + "\\bottomrule\n\\end{tabular}\n";
 }
 

@@ -1,0 +1,166 @@
+module;
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+module aabblab.figures;
+
+import aabblab.markup;
+import :sheet;
+
+namespace aabblab {
+
+namespace {
+
+constexpr double em = 9;  // in points
+
+/// Of Helvetica's characters from the blank on, in thousandths of an em (Adobe's font metrics).
+constexpr std::array<int, 95> widths = {278,  278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278,
+                                        556,  556, 556, 556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556,
+                                        1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
+                                        667,  778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556,
+                                        333,  556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556,
+                                        556,  556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584};
+constexpr int usual_width = 556;  // of letters with accents
+constexpr int sign_width = 584;   // of what stands between numbers
+
+/// The code points that the font has and the encoding of western Windows has elsewhere, or not: these take the codes of
+/// control characters.
+constexpr std::array<std::pair<char32_t, char>, 12> codes = {{{U'\u2212', '\x01'},
+                                                              {U'\u2264', '\x02'},
+                                                              {U'\u2265', '\x03'},
+                                                              {U'\u20ac', '\x80'},
+                                                              {U'\u2026', '\x85'},
+                                                              {U'\u2018', '\x91'},
+                                                              {U'\u2019', '\x92'},
+                                                              {U'\u201c', '\x93'},
+                                                              {U'\u201d', '\x94'},
+                                                              {U'\u2022', '\x95'},
+                                                              {U'\u2013', '\x96'},
+                                                              {U'\u2014', '\x97'}}};
+constexpr std::string_view encoding =
+    "<</Type/Encoding/BaseEncoding/WinAnsiEncoding/Differences[1/minus/lessequal/greaterequal]>>";
+
+/// A question mark for what the font has not.
+char code_of(char32_t character) {
+    if ((character >= ' ' && character < 0x7f) || (character >= 0xa0 && character <= 0xff))
+        return static_cast<char>(character);
+    for (const auto& [known, code] : codes)
+        if (known == character) return code;
+    return '?';
+}
+
+std::string encoded(std::string_view utf8) {
+    std::string text;
+    for (std::size_t i = 0; i < utf8.size();) {
+        const auto first = static_cast<unsigned char>(utf8[i++]);
+        char32_t character = first < 0x80   ? first
+                             : first < 0xe0 ? first & 0x1fU
+                             : first < 0xf0 ? first & 0x0fU
+                                            : first & 0x07U;
+        for (; i < utf8.size() && (static_cast<unsigned char>(utf8[i]) & 0xc0U) == 0x80; ++i)
+            character = character << 6U | (static_cast<unsigned char>(utf8[i]) & 0x3fU);
+        text += code_of(character);
+    }
+    return text;
+}
+
+/// In ems.
+double width_of(std::string_view encoded_text) {
+    double width = 0;
+    for (const char c : encoded_text)
+        width += c >= ' ' && c < 0x7f ? widths[static_cast<std::size_t>(c - ' ')]
+                 : c > 0 && c < ' '   ? sign_width
+                                      : usual_width;
+    return width / 1000;
+}
+
+/// A string as PDF has it.
+std::string in_brackets(std::string_view encoded_text) {
+    std::string text = "(";
+    for (const char c : encoded_text) {
+        if (c == '(' || c == ')' || c == '\\') text += '\\';
+        text += c;
+    }
+    return text + ")";
+}
+
+std::string colour_of(std::string_view hexadecimal) {
+    std::string text;
+    for (std::size_t i = 1; i < hexadecimal.size(); i += 2)
+        text += fmt::format("{:.3f} ", std::stoi(std::string(hexadecimal.substr(i, 2)), nullptr, 16) / 255.0);
+    return text;
+}
+
+std::string operators_of(const strokes& s) {
+    const bool is_area = s.width == 0;
+    std::string text = "q ";
+    if (is_area) {
+        text += colour_of(s.colour) + (s.faint ? "rg /Faint gs\n" : "rg\n");
+    } else {
+        text += colour_of(s.colour) + "RG " + short_number(s.width * em) + " w " + (s.round ? "1 J [" : "0 J [");
+        for (const double length : s.dashes) text += short_number(length * em) + " ";
+        text += "] 0 d\n";
+    }
+    for (const std::vector<place>& line : s.lines) {
+        const auto add = [&](const place& p, char by) {
+            text += short_number(p.x * em) + " " + short_number(p.y * em) + " " + by + "\n";
+        };
+        for (const place& p : line) add(p, &p == line.data() ? 'm' : 'l');
+        if (line.size() == 1) add(line.front(), 'l');
+        if (s.closed) text += "h\n";
+    }
+    return text + (is_area ? "f Q\n" : "S Q\n");
+}
+
+std::string operators_of(const words& w) {
+    const std::string text = encoded(w.text);
+    const std::string power = encoded(w.power);
+    const double width = width_of(text) + power_size * width_of(power);
+    const double before = w.end == words::anchor::left ? 0 : w.end == words::anchor::middle ? width / 2 : width;
+    const double turn = w.angle * std::numbers::pi / 180;
+    const double x = w.at.x - before * std::cos(turn) + baseline * std::sin(turn);
+    const double y = w.at.y - before * std::sin(turn) - baseline * std::cos(turn);
+    std::string all = fmt::format("BT /F {} Tf {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj", em, std::cos(turn),
+                                  std::sin(turn), -std::sin(turn), std::cos(turn), x * em, y * em, in_brackets(text));
+    if (!power.empty())
+        all += fmt::format(" /F {} Tf {} Ts {} Tj 0 Ts", short_number(power_size * em), short_number(power_rise * em),
+                           in_brackets(power));
+    return all + " ET\n";
+}
+
+}  // namespace
+
+std::string pdf_of(const sheet& s) {
+    std::string page;
+    for (const auto& part : s.parts) page += std::visit([](const auto& one) { return operators_of(one); }, part);
+    const std::vector<std::string> objects = {
+        "<</Type/Catalog/Pages 2 0 R>>", "<</Type/Pages/Kids[3 0 R]/Count 1>>",
+        fmt::format("<</Type/Page/Parent 2 0 R/MediaBox[0 0 {} {}]/Contents 4 0 R/Resources<</Font<</F 5 0 R>>/"
+                    "ExtGState<</Faint<</ca {}>>>>>>>>",
+                    short_number(s.width * em), short_number(s.height * em), faint_opacity),
+        fmt::format("<</Length {}>>stream\n{}\nendstream", page.size(), page),
+        fmt::format("<</Type/Font/Subtype/Type1/BaseFont/Helvetica/Encoding{}>>", encoding)};
+    // The second line says that bytes are no text.
+    std::string pdf = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n";
+    std::string places;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        places += fmt::format("{:010} 00000 n \n", pdf.size());
+        pdf += fmt::format("{} 0 obj\n{}\nendobj\n", i + 1, objects[i]);
+    }
+    const std::size_t count = objects.size() + 1;
+    return pdf +
+           fmt::format("xref\n0 {}\n0000000000 65535 f \n{}trailer\n<</Size {}/Root 1 0 R>>\nstartxref\n{}\n%%EOF\n",
+                       count, places, count, pdf.size());
+}
+
+}  // namespace aabblab

@@ -1,0 +1,272 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+module aabblab.figures;
+
+import aabblab.scale;
+import aabblab.text;
+import :drawing;
+import :arrangement;
+import :sheet;
+
+namespace aabblab {
+
+namespace {
+
+// What tells series apart: a colour, and for black and white a dash and a sign of its own.
+
+/// Okabe and Ito's colours for every eye, without their yellow, which white paper swallows, and with a grey.
+constexpr std::array<std::string_view, 8> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                     "#E69F00", "#56B4E9", "#000000", "#8C8C8C"};
+
+/// In tenths of an em: lengths of dash, gap, dash, gap; the first is solid.
+const std::array<std::vector<double>, 10> dashes = {{{},
+                                                     {8, 3},
+                                                     {2.5, 2.5},
+                                                     {10, 2.5, 2.5, 2.5},
+                                                     {16, 4},
+                                                     {10, 2.5, 2.5, 2.5, 2.5, 2.5},
+                                                     {5, 2.5},
+                                                     {16, 3, 2.5, 3},
+                                                     {1.5, 4},
+                                                     {10, 3, 5, 3}}};
+
+/// A regular polygon, as points of series are drawn; a disc without corners, a cross with none but two lines.
+struct sign {
+    int corners;
+    double turn;  ///< of the first corner from the right, in degrees
+    bool is_open;
+    double size;  ///< radius in ems, which makes all look equally large
+};
+constexpr int is_disc = 0;
+constexpr int is_cross = 2;
+/// As far apart as they are: discs, open squares, triangles, …
+constexpr std::array<sign, 10> signs = {{{is_disc, 0, false, 0.25},
+                                         {4, 45, true, 0.33},
+                                         {3, 90, false, 0.38},
+                                         {4, 0, true, 0.4},
+                                         {4, 45, false, 0.33},
+                                         {20, 0, true, 0.26},
+                                         {3, -90, false, 0.38},
+                                         {is_cross, 45, true, 0.33},
+                                         {4, 0, false, 0.36},
+                                         {3, 90, true, 0.38}}};
+
+constexpr std::string_view ink = "#000000";
+constexpr std::string_view frame_colour = "#404040";
+constexpr std::string_view grid_colour = "#E0E0E0";
+constexpr double line_width = 0.14;
+constexpr double frame_width = 0.09;
+constexpr double thin = 0.06;
+
+using places = std::vector<place>;
+
+/// The outlines of a sign about a place.
+void add_sign(const sign& s, place at, std::vector<places>& to) {
+    if (s.corners == is_disc) return to.push_back({at});
+    const auto corner = [&](int i, int of) {
+        const double angle = (s.turn + 360. * i / of) * std::numbers::pi / 180;
+        return place{at.x + s.size * std::cos(angle), at.y + s.size * std::sin(angle)};
+    };
+    if (s.corners == is_cross) {
+        to.push_back({corner(0, 4), corner(2, 4)});
+        to.push_back({corner(1, 4), corner(3, 4)});
+        return;
+    }
+    places& outline = to.emplace_back();
+    for (int i = 0; i < s.corners; ++i) outline.push_back(corner(i, s.corners));
+}
+
+class painter {
+public:
+    explicit painter(const figure& f) : d_(f), r_(aabblab::arranged(d_)), to_{r_.width, r_.height, {}} {}
+
+    sheet painted() && {
+        for (std::size_t i = 0; i < d_.panels.size(); ++i) {
+            plot_ = &r_.plots[i];
+            panel_ = &d_.panels[i];
+            grid();
+            for (const shown_series& s : panel_->lines) band(s);
+            marks();
+            for (const shown_series& s : panel_->lines) {
+                bars(s);
+                line(s);
+            }
+            frame();
+        }
+        if (d_.empty()) write({{middle_x(), middle_y()}, "no data", words::anchor::middle});
+        for (const words& text : r_.texts) write(text);
+        for (const arrangement::sample& s : r_.samples) sample(s);
+        return std::move(to_);
+    }
+
+private:
+    void write(words w) {
+        w.text = one_line(w.text);
+        to_.parts.emplace_back(std::move(w));
+    }
+    void write(const std::vector<std::string>& lines, place top, words::anchor end, const std::string& power) {
+        const places at = lines_below(top, lines.size());
+        for (std::size_t i = 0; i < lines.size(); ++i) write({at[i], lines[i], end, power});
+    }
+    void stroke(std::vector<places> lines, std::string_view colour, double width, std::vector<double> dashes = {}) {
+        to_.parts.emplace_back(strokes{std::move(lines), colour, width, std::move(dashes)});
+    }
+    void stroke_look(std::vector<places> lines, std::size_t look, bool dashed) {
+        std::vector<double> lengths;
+        if (dashed)
+            for (const double tenths : dashes[look % dashes.size()]) lengths.push_back(tenths / 10);
+        stroke(std::move(lines), colour_of(look), line_width, std::move(lengths));
+    }
+    void put_signs(const places& at, std::size_t look) {
+        const sign& s = signs[look % signs.size()];
+        strokes drawn{{}, colour_of(look)};
+        for (const place& p : at) add_sign(s, p, drawn.lines);
+        drawn.closed = s.corners > is_cross;
+        drawn.round = s.corners == is_disc;
+        if (s.is_open) drawn.width = frame_width;
+        if (drawn.round) drawn.width = 2 * s.size;
+        if (!at.empty()) to_.parts.emplace_back(std::move(drawn));
+    }
+    void fill(places outline, std::size_t look) {
+        to_.parts.emplace_back(
+            strokes{.lines = {std::move(outline)}, .colour = colour_of(look), .closed = true, .faint = true});
+    }
+    static std::string_view colour_of(std::size_t look) { return colours[look % colours.size()]; }
+
+    [[nodiscard]] double x(double value) const {
+        return plot_->left + d_.x.place(value) * (plot_->right - plot_->left);
+    }
+    [[nodiscard]] double y(double value) const {
+        return plot_->bottom + d_.y.place(value) * (plot_->top - plot_->bottom);
+    }
+    [[nodiscard]] double middle_x() const { return (plot_->left + plot_->right) / 2; }
+    [[nodiscard]] double middle_y() const { return (plot_->bottom + plot_->top) / 2; }
+    /// Of a point's quartile; on a logarithmic axis the lower one may have no place.
+    [[nodiscard]] double low(const figure_point& p) const {
+        return y(d_.y.logarithmic ? std::max(p.low, d_.y.from) : p.low);
+    }
+
+    /// Points of several series over one name stand side by side.
+    [[nodiscard]] double shift_of(const shown_series& s) const {
+        if (!d_.x.named || d_.x.logarithmic || !s.is(series_style::points)) return 0;
+        double count = 0;
+        double before = 0;
+        for (const shown_series& other : panel_->lines) {
+            if (!other.is(series_style::points)) continue;
+            if (&other < &s) ++before;
+            ++count;
+        }
+        return (before - (count - 1) / 2) * std::min(0.3, 1.4 / count) * half_gap(d_.f.x);
+    }
+
+    void grid() {
+        std::vector<places> lines;
+        for (const tick& t : r_.x_ticks)
+            if (!t.label.empty()) lines.push_back({{x(t.at), plot_->bottom}, {x(t.at), plot_->top}});
+        for (const tick& t : d_.y.ticks)
+            if (!t.label.empty()) lines.push_back({{plot_->left, y(t.at)}, {plot_->right, y(t.at)}});
+        stroke(std::move(lines), grid_colour, thin);
+    }
+
+    void band(const shown_series& s) {
+        if (!s.varies) return;
+        if (s.is(series_style::level)) {
+            const double bottom = low(s.points.front());
+            const double top = y(s.points.front().high);
+            fill({{plot_->left, bottom}, {plot_->left, top}, {plot_->right, top}, {plot_->right, bottom}}, s.look);
+        } else if (s.is_joined()) {
+            places outline;
+            for (const figure_point& p : s.points) outline.push_back({x(p.x), y(p.high)});
+            for (auto p = s.points.rbegin(); p != s.points.rend(); ++p) outline.push_back({x(p->x), low(*p)});
+            fill(std::move(outline), s.look);
+        }
+    }
+
+    void bars(const shown_series& s) {
+        if (!s.varies || s.is(series_style::level) || s.is_joined()) return;
+        const double shift = shift_of(s);
+        std::vector<places> lines;
+        for (const figure_point& p : s.points)
+            if (p.low < p.high) lines.push_back({{x(p.x + shift), low(p)}, {x(p.x + shift), y(p.high)}});
+        stroke_look(std::move(lines), s.look, false);
+    }
+
+    void line(const shown_series& s) {
+        if (s.is(series_style::level)) {
+            const double height = y(s.points.front().y);
+            return stroke_look({{{plot_->left, height}, {plot_->right, height}}}, s.look, true);
+        }
+        const double shift = shift_of(s);
+        places all;
+        for (const figure_point& p : s.points) all.push_back({x(p.x + shift), y(p.y)});
+        if (s.is_joined()) stroke_look({all}, s.look, true);
+        // The points of a line that has many would be one thick line.
+        constexpr std::size_t readable = 20;
+        const std::size_t step = s.is_joined() && all.size() > readable ? all.size() / (readable / 2) : 1;
+        places some;
+        for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+        put_signs(some, s.look);
+    }
+
+    void marks() {
+        for (std::size_t i = 0; i < panel_->marks.size(); ++i) {
+            const double at = x(panel_->marks[i].x);
+            stroke({{{at, plot_->bottom}, {at, plot_->mark_tops[i]}}}, frame_colour, thin, {0.15, 0.25});
+        }
+    }
+
+    /// The two axes with their ticks, and their labels where they are not those of a panel below or beside.
+    void frame() {
+        const auto& [left, right, bottom, top, has_x, has_y, mark_tops] = *plot_;
+        std::vector<places> lines{{{left, top}, {left, bottom}, {right, bottom}}};
+        const auto length = [](const tick& t) { return t.label.empty() ? 0.2 : 0.4; };
+        for (const tick& t : r_.x_ticks) lines.push_back({{x(t.at), bottom}, {x(t.at), bottom - length(t)}});
+        for (const tick& t : d_.y.ticks) lines.push_back({{left, y(t.at)}, {left - length(t), y(t.at)}});
+        stroke(std::move(lines), frame_colour, frame_width);
+        constexpr double to_label = tick_room - 0.2;
+        for (const tick& t : r_.x_ticks)
+            if (has_x && r_.x_name_angle != 0)
+                write({{x(t.at), bottom - to_label}, t.label, words::anchor::right, {}, r_.x_name_angle});
+            else if (has_x && !t.label.empty())
+                write(lines_of(d_.x, t, r_.x_name_length), {x(t.at), bottom - to_label}, words::anchor::middle,
+                      t.power);
+        for (const tick& t : d_.y.ticks) {
+            if (!has_y || t.label.empty()) continue;
+            const std::vector<std::string> texts = lines_of(d_.y, t, y_name_length);
+            const double half = line_height * static_cast<double>(texts.size()) / 2;
+            write(texts, {left - to_label, y(t.at) + half}, words::anchor::right, t.power);
+        }
+    }
+
+    void sample(const arrangement::sample& s) {
+        if (s.is_end) return put_signs({s.at}, s.of->look);
+        constexpr double length = 4.4;
+        const auto [x, y] = s.at;
+        if (s.of->style != series_style::points) stroke_look({{{x, y}, {x + length, y}}}, s.of->look, true);
+        if (s.of->style != series_style::level) put_signs({{x + length / 2, y}}, s.of->look);
+    }
+
+    drawing d_;
+    arrangement r_;
+    sheet to_;
+    const arrangement::box* plot_ = nullptr;
+    const shown_panel* panel_ = nullptr;
+};
+
+}  // namespace
+
+sheet sheet_of(const figure& f) {
+    return painter(f).painted();
+}
+
+}  // namespace aabblab

@@ -1,0 +1,144 @@
+module;
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabblab.metrics;
+
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+using number = std::optional<double>;
+using member = number row::*;
+
+/// What one clock measured of a row.
+struct times {
+    member build, first, update, search, detect;
+};
+constexpr times wall{&row::build_ms, &row::first_ms, &row::update_ms, &row::search_ms, &row::detect_ms};
+constexpr times processor{&row::build_cpu_ms, &row::first_cpu_ms, &row::update_cpu_ms, &row::search_cpu_ms,
+                          &row::detect_cpu_ms};
+
+metric time_of(std::string name, std::string summary, row_value of) {
+    return {std::move(name), "ms", std::move(summary), metric_group::time, better::less, std::move(of)};
+}
+
+metric error_of(std::string name, std::string summary, row_value of) {
+    return {std::move(name), "", std::move(summary), metric_group::error, better::less, std::move(of)};
+}
+
+row_value all_frames_after_first(const times& by) {
+    return [by](const row& r) -> number {
+        if (!(r.*by.update) || r.frames == 1) return r.*by.first;
+        return (*(r.*by.update) + *(r.*by.search) + *(r.*by.detect)) / frames_after_first(r);
+    };
+}
+
+row_value whole(const times& by) {
+    return [by](const row& r) -> number {
+        if (!(r.*by.update)) return std::nullopt;
+        return *(r.*by.build) + *(r.*by.first) + *(r.*by.update) + *(r.*by.search) + *(r.*by.detect);
+    };
+}
+
+number global_cpu_ms(const row& r) {
+    if (!r.update_cpu_ms || r.frames == 1) return std::nullopt;
+    return (*r.update_cpu_ms + *r.search_cpu_ms) / frames_after_first(r);
+}
+
+number global_share(const row& r) {
+    if (!r.update_cpu_ms || !r.detect_cpu_ms || r.frames == 1) return std::nullopt;
+    const double global = *r.update_cpu_ms + *r.search_cpu_ms;
+    return 100 * global / (global + *r.detect_cpu_ms);
+}
+
+number waiting(const row& r) {
+    if (!r.update_cpu_ms || !r.update_ms) return std::nullopt;
+    const double all = *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
+    const double cpu = *r.first_cpu_ms + *r.update_cpu_ms + *r.search_cpu_ms + *r.detect_cpu_ms;
+    return all > 0 ? number(100 * std::max(0.0, 1 - cpu / all)) : std::nullopt;
+}
+
+number all_bytes(const row& r) {
+    std::uint64_t all = 0;
+    for (std::size_t i = 0; i < byte_columns.size(); ++i)
+        if (byte_columns[i] != "triangles" && byte_columns[i] != "vertices") all += r.bytes[i].value_or(0);
+    // An engine need not say.
+    return all > 0 ? number(static_cast<double>(all)) : std::nullopt;
+}
+
+/// What of an engine's bytes is its tree is not known.
+number tree_bytes(const row& r) {
+    static const row_value ours = a_triangle(bytes_of({"nodes", "indices"}));
+    return r.name.is_reference() ? std::nullopt : ours(r);
+}
+
+number wrong_share(const row& r) {
+    if (!r.missing) return std::nullopt;
+    const auto found = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
+    const auto missing = static_cast<double>(*r.missing);
+    const auto invented = static_cast<double>(*r.invented);
+    return (missing + invented) / std::max(found - invented + missing, 1.0);
+}
+
+std::vector<metric> listed() {
+    using enum metric_group;
+    const std::string cpu = "processor ";
+    const std::string to_update = "time a frame to take the boxes: to sort and to partition them";
+    const std::string to_search = "time a frame to find overlapping boxes";
+    const std::string to_detect = "time a frame to find intersecting triangles";
+    const std::string to_build = "time to make the stages and build the trees";
+    const std::string of_frame = "time a frame after frame 0, all of it; of frame 0 where there is no other";
+    const std::string of_whole = "time of all frames, frame 0 and the making of the stages with them";
+    return {
+        time_of("frame_ms", of_frame, all_frames_after_first(wall)),
+        time_of("update_ms", to_update, a_frame(wall.update)),
+        time_of("search_ms", to_search, a_frame(wall.search)),
+        time_of("detect_ms", to_detect, a_frame(wall.detect)),
+        {"global_share", "%", "share of global search in the processor time of the frames after frame 0", time,
+         better::neither, global_share},
+        time_of("build_ms", to_build, &row::build_ms),
+        time_of("first_ms", "time of frame 0", &row::first_ms),
+        time_of("whole_ms", of_whole, whole(wall)),
+        time_of("frame_cpu_ms", cpu + of_frame, all_frames_after_first(processor)),
+        time_of("update_cpu_ms", cpu + to_update, a_frame(processor.update)),
+        time_of("search_cpu_ms", cpu + to_search, a_frame(processor.search)),
+        time_of("global_cpu_ms", "processor time of global search a frame after frame 0", global_cpu_ms),
+        time_of("detect_cpu_ms", cpu + to_detect, a_frame(processor.detect)),
+        time_of("build_cpu_ms", cpu + to_build, &row::build_cpu_ms),
+        time_of("whole_cpu_ms", cpu + of_whole, whole(processor)),
+        {"waiting", "%", "share of the wall time of all frames in which the thread had no processor", time,
+         better::less, waiting},
+        {"all_bytes", "bytes", "memory of all parts but the meshes, which every composition reads", bytes, better::less,
+         all_bytes},
+        {"tree_bytes", "bytes a triangle", "memory of the trees", bytes, better::less, tree_bytes},
+        error_of("missing", "pairs of the exact answer that are not found, over all frames", &row::missing),
+        error_of("invented", "pairs that are found and not in the exact answer, over all frames", &row::invented),
+        error_of("wrong_share",
+                 "pairs missing and invented, over those of the exact answer, or over one where it has none",
+                 wrong_share),
+        error_of("box_inflation", "area of the boxes of a tree over that of the smallest ones, less 1",
+                 &row::box_inflation),
+    };
+}
+
+}  // namespace
+
+std::span<const metric> metrics() {
+    static const std::vector<metric> all = [] {
+        std::vector<metric> made = listed();
+        for (const metric& counted : work_metrics()) made.push_back(counted);
+        return made;
+    }();
+    return all;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,53 @@
+module;
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+module aabblab.markup;
+
+namespace aabblab {
+
+namespace {
+
+[[nodiscard]] std::string opened(std::string_view tag, attributes all) {
+    std::string text = "<" + std::string(tag);
+    for (const attribute& one : all)
+        if (!one.value.empty()) text += fmt::format(" {}=\"{}\"", one.name, one.value);
+    return text;
+}
+
+}  // namespace
+
+std::string markup_text(std::string_view text) {
+    std::string safe;
+    for (const char c : text) switch (c) {
+            case '<': safe += "&lt;"; break;
+            case '>': safe += "&gt;"; break;
+            case '&': safe += "&amp;"; break;
+            case '"': safe += "&quot;"; break;
+            default: safe += c;
+        }
+    return safe;
+}
+
+std::string short_number(double value) {
+    std::string text = fmt::format("{:.2f}", value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text == "-0" ? "0" : text;
+}
+
+std::string percent(double value) {
+    return short_number(value) + "%";
+}
+
+std::string element(std::string_view tag, attributes all, std::string_view content) {
+    return fmt::format("{}>{}</{}>", opened(tag, all), content, tag);
+}
+
+std::string element(std::string_view tag, attributes all) {
+    return opened(tag, all) + "/>";
+}
+
+}  // namespace aabblab

@@ -1,0 +1,37 @@
+module;
+#include <concepts>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+/// HTML and SVG, element by element.
+export module aabblab.markup;
+
+export namespace aabblab {
+
+/// Text as it stands between tags and in attributes.
+[[nodiscard]] std::string markup_text(std::string_view text);
+
+/// With at most two decimals: a picture shows no more.
+[[nodiscard]] std::string short_number(double value);
+/// "12.5%": a place in a picture that is as wide as there is room.
+[[nodiscard]] std::string percent(double value);
+
+/// A name and a value; one whose value is empty is left out.
+struct attribute {
+    std::string_view name;
+    std::string value;
+
+    attribute(std::string_view of, std::string_view text) : name(of), value(markup_text(text)) {}
+    template <class Number>
+        requires std::integral<Number> || std::floating_point<Number>
+    attribute(std::string_view of, Number number) : name(of), value(short_number(static_cast<double>(number))) {}
+};
+using attributes = std::initializer_list<attribute>;
+
+/// @param content markup, in which text is `markup_text`
+[[nodiscard]] std::string element(std::string_view tag, attributes all, std::string_view content);
+/// One that has no content.
+[[nodiscard]] std::string element(std::string_view tag, attributes all);
+
+}  // namespace aabblab
