@@ -35,7 +35,7 @@ import aabb.selection;
 import aabb.validation;
 import aabblab.numbers;
 import aabblab.pair_output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.stopwatch;
 
 namespace aabblab {

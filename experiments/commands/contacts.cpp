@@ -30,7 +30,7 @@ import aabblab.digits;
 import aabblab.files;
 import aabblab.numbers;
 import aabblab.pair_output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.progress;
 import aabblab.stopwatch;
 

@@ -28,7 +28,7 @@ import aabblab.files;
 import aabblab.metrics;
 import aabblab.tables;
 import aabblab.results;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.processor;
 import aabblab.scenes;
 import aabblab.stopwatch;

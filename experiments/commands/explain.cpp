@@ -30,7 +30,7 @@ import aabb.validation;
 import aabblab.configs;
 import aabblab.measures;
 import aabblab.numbers;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.scenes;
 import aabblab.stopwatch;

@@ -27,7 +27,7 @@ import aabblab.digits;
 import aabblab.files;
 import aabblab.numbers;
 import aabblab.pair_output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.progress;
 
 namespace aabblab {

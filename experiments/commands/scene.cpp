@@ -30,7 +30,7 @@ import aabblab.configs;
 import aabblab.files;
 import aabblab.numbers;
 import aabblab.picture;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.progress;
 import aabblab.scenes;
 

@@ -6,7 +6,7 @@ module aabblab.stiff;
 
 import :study;
 import aabb.registry;
-import aabblab.play;
+import aabblab.trials;
 
 namespace aabblab {
 

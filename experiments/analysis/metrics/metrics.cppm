@@ -8,8 +8,7 @@ module;
 #include <string_view>
 #include <vector>
 
-/// Metrics: numbers computed from the rows of results, after the run that wrote them. One file each, listed in
-/// CMakeLists.txt.
+/// Metrics: numbers computed from the rows of results, after the run that wrote them; metric_list.cpp lists them.
 export module aabblab.metrics;
 
 import aabblab.results;
@@ -45,7 +44,7 @@ struct metric {
     row_value of;
 };
 
-/// All of them, work counters too, in the order of CMakeLists.txt.
+/// All of them, work counters too, in the order in which they are listed.
 [[nodiscard]] std::span<const metric> metrics();
 [[nodiscard]] std::vector<std::string> metric_names();
 
