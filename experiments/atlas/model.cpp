@@ -65,8 +65,8 @@ std::vector<double> work_of(const scene_measures& m) {
     return work;
 }
 
-std::vector<observation> seen_by(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
-    std::vector<observation> all;
+std::vector<timed_work> seen_by(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
+    std::vector<timed_work> all;
     for (const atlas_scene& scene : atlas) {
         const atlas_line* line = scene.find(label);
         if (!line || scene.unseen != unseen) continue;
@@ -93,11 +93,11 @@ std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         const std::string& label = labels[i];
         shown.at(i);
-        const std::vector<observation> seen = seen_by(atlas, label, false);
+        const std::vector<timed_work> seen = seen_by(atlas, label, false);
         if (seen.size() <= terms.size()) continue;
         line_model m{label, fit_costs(seen), {}, {}};
         m.seen = accuracy_of(seen, m.costs);
-        if (const std::vector<observation> unseen = seen_by(atlas, label, true); !unseen.empty())
+        if (const std::vector<timed_work> unseen = seen_by(atlas, label, true); !unseen.empty())
             m.unseen = accuracy_of(unseen, m.costs);
         all.push_back(std::move(m));
     }

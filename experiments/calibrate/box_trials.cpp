@@ -20,7 +20,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabb.simd;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 namespace aabblab {
@@ -89,7 +89,8 @@ std::vector<frame_seen> frames_seen(const box_play& what, aabb::instrumentation 
     aabb::work_counters before;
     std::vector<frame_seen> all;
     play(scene, p, [&](const played_frame& frame) {
-        frame_seen seen{1e6 * (frame.update.cpu_ms + frame.search.cpu_ms), static_cast<double>(frame.pairs.size()), {}};
+        frame_seen seen{
+            1e6 * (frame.took.update.cpu_ms + frame.took.search.cpu_ms), static_cast<double>(frame.pairs.size()), {}};
         const aabb::work_counters now = p.counters();
         for (std::size_t k = 0; k < now.counts.size(); ++k) seen.work.counts[k] = now.counts[k] - before.counts[k];
         before = now;

@@ -22,8 +22,8 @@ namespace {
 
 /// What was seen of a group, in scenes to fit to and in others.
 struct group_observations {
-    std::vector<observation> fitted;
-    std::vector<observation> held_out;
+    std::vector<timed_work> fitted;
+    std::vector<timed_work> held_out;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point began) {
@@ -56,7 +56,7 @@ std::vector<group_observations> observe(std::vector<trial> trials, double second
     for (std::size_t i = 0; i < counted.size(); ++i) {
         const auto& [what, pieces] = counted[i];
         for (std::size_t p = 0; p < pieces.size(); ++p) {
-            observation seen{what.scene, pieces[p].work, {}};
+            timed_work seen{what.scene, pieces[p].work, {}};
             for (const std::vector<double>& repeat : times[i]) seen.ns.push_back(repeat[p]);
             group_observations& group = all[static_cast<std::size_t>(pieces[p].group)];
             (what.held_out ? group.held_out : group.fitted).push_back(std::move(seen));

@@ -16,7 +16,7 @@ import aabblab.statistics;
 export namespace aabblab {
 
 /// How much work of each kind a piece of play takes, and how long that took.
-struct observation {
+struct timed_work {
     std::string scene;         ///< pieces of one scene are no evidence of each other
     std::vector<double> work;  ///< times of each kind of work that there is a cost for
     std::vector<double> ns;    ///< of each repeat; all observations have as many
@@ -26,7 +26,7 @@ struct observation {
 /// error; those far off count less (Huber, "Robust estimation of a location parameter", 1964). How far a cost may be
 /// off is bootstrapped over scenes and repeats.
 /// @param seen not empty; all with the same kinds of work
-[[nodiscard]] std::vector<estimate> fit_costs(std::span<const observation> seen);
+[[nodiscard]] std::vector<estimate> fit_costs(std::span<const timed_work> seen);
 
 /// How many times too long, or too short, times are that costs predict.
 struct accuracy {
@@ -34,7 +34,7 @@ struct accuracy {
     double median = 1;
     double worst = 1;
 };
-[[nodiscard]] accuracy accuracy_of(std::span<const observation> seen, std::span<const estimate> costs);
+[[nodiscard]] accuracy accuracy_of(std::span<const timed_work> seen, std::span<const estimate> costs);
 
 enum class calibration_size : unsigned char { quick, full };
 

@@ -56,20 +56,20 @@ double sum_of(std::span<const double> work, std::span<const double> costs) {
     return sum;
 }
 
-/// How much each observation counts: less, the further it is off, once that is more than is usual.
-std::vector<double> weights_of(std::span<const observation> seen, std::span<const double> costs) {
+/// How much each timed_work counts: less, the further it is off, once that is more than is usual.
+std::vector<double> weights_of(std::span<const timed_work> seen, std::span<const double> costs) {
     constexpr double usual = 1.345;  // deviations: 95 % as efficient as least squares where errors are normal
     constexpr double deviations_a_median = 1.4826;
     constexpr double least_scale = 1e-9;
     std::vector<double> off;
-    for (const observation& o : seen) off.push_back(std::abs(sum_of(o.work, costs) / median_of(o.ns) - 1));
+    for (const timed_work& o : seen) off.push_back(std::abs(sum_of(o.work, costs) / median_of(o.ns) - 1));
     const double reach = usual * std::max(least_scale, deviations_a_median * median_of(off));
     std::vector<double> weights;
     for (const double one : off) weights.push_back(one <= reach ? 1 : reach / one);
     return weights;
 }
 
-normal_equations equations_of(std::span<const observation> seen, std::span<const double> weights) {
+normal_equations equations_of(std::span<const timed_work> seen, std::span<const double> weights) {
     const std::size_t count = seen.front().work.size();
     normal_equations all(count);
     for (std::size_t o = 0; o < seen.size(); ++o) {
@@ -86,7 +86,7 @@ normal_equations equations_of(std::span<const observation> seen, std::span<const
 /// The same as sums that are drawn anew. Scenes stand in the place of processes: what is drawn together.
 class drawn_equations {
 public:
-    drawn_equations(std::span<const observation> seen, std::span<const double> weights)
+    drawn_equations(std::span<const timed_work> seen, std::span<const double> weights)
         : count_(seen.front().work.size()) {
         std::map<std::string, std::vector<std::size_t>> scenes;
         for (std::size_t o = 0; o < seen.size(); ++o) scenes[seen[o].scene].push_back(o);
@@ -135,7 +135,7 @@ private:
 
 }  // namespace
 
-std::vector<estimate> fit_costs(std::span<const observation> seen) {
+std::vector<estimate> fit_costs(std::span<const timed_work> seen) {
     constexpr int rounds = 30;
     const std::size_t count = seen.front().work.size();
     std::vector<double> weights(seen.size(), 1.0);
@@ -157,11 +157,11 @@ std::vector<estimate> fit_costs(std::span<const observation> seen) {
     return all;
 }
 
-accuracy accuracy_of(std::span<const observation> seen, std::span<const estimate> costs) {
+accuracy accuracy_of(std::span<const timed_work> seen, std::span<const estimate> costs) {
     std::vector<double> values;
     for (const estimate& one : costs) values.push_back(one.value);
     std::vector<double> ratios;
-    for (const observation& o : seen) {
+    for (const timed_work& o : seen) {
         const double ratio = sum_of(o.work, values) / median_of(o.ns);
         ratios.push_back(std::max(ratio, 1 / ratio));
     }

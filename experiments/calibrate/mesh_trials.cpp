@@ -1,6 +1,5 @@
 module;
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,45 +10,33 @@ import aabb.counters;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
-import aabblab.stopwatch;
 
 namespace aabblab {
 
 namespace {
 
 /// Two meshes, one of which passes through the other.
-struct mesh_seen {
-    double build_ns = 0;
-    double query_ns = 0;
-    double triangles = 0;
-    double visits = 0;
-};
-
-mesh_seen seen_of(const scene_choice& choice, const std::string& build, aabb::instrumentation counted) {
+observation seen_of(const scene_choice& choice, const std::string& build, aabb::instrumentation counted) {
     aabb::composition c;
     c[aabb::strategy_kind::build] = {build, {}};
-    scene_play scene(choice);
-    mesh_seen seen;
-    std::optional<player> p;
-    seen.build_ns = 1e6 * elapsed_in([&] { p.emplace(contender_of(c, true), scene, counted); }).cpu_ms;
-    play(scene, *p, [&](const played_frame& frame) { seen.query_ns += 1e6 * frame.detect.cpu_ms; });
-    seen.triangles = static_cast<double>(outlook_of(scene).triangles);
-    seen.visits = static_cast<double>(p->counters()[aabb::work::node_visits]);
-    return seen;
+    return observe(choice, contender_of(c, true), {.counted = counted});
 }
 
 void add_trial(std::vector<trial>& all, const scene_choice& choice, bool held_out, const std::string& build,
                cost_group group) {
     all.push_back({choice.kind + " " + settings_text(choice), held_out,
                    [=] {
-                       const mesh_seen seen = seen_of(choice, build, aabb::instrumentation::counters);
-                       return std::vector{piece{group, {seen.triangles}}, piece{cost_group::queries, {seen.visits}}};
+                       const observation seen = seen_of(choice, build, aabb::instrumentation::counters);
+                       const auto triangles = static_cast<double>(outlook_of(scene_play(choice)).triangles);
+                       const auto visits = static_cast<double>(seen.work[aabb::work::node_visits]);
+                       return std::vector{piece{group, {triangles}}, piece{cost_group::queries, {visits}}};
                    },
                    [=] {
-                       const mesh_seen seen = seen_of(choice, build, aabb::instrumentation::none);
-                       return std::vector{seen.build_ns, seen.query_ns};
+                       const observation seen = seen_of(choice, build, aabb::instrumentation::none);
+                       return std::vector{1e6 * seen.build.cpu_ms,
+                                          1e6 * (seen.first.detect.cpu_ms + seen.rest.detect.cpu_ms)};
                    }});
 }
 

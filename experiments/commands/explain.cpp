@@ -26,7 +26,7 @@ import aabblab.inputs;
 import aabblab.measures;
 import aabblab.numbers;
 import aabblab.output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.scenes;
 import aabblab.stopwatch;

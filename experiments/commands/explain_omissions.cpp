@@ -18,7 +18,7 @@ import aabb.policy;
 import aabb.registry;
 import aabblab.numbers;
 import aabblab.output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.results;
 import aabblab.scenes;
@@ -29,7 +29,7 @@ namespace aabblab {
 
 namespace {
 
-double median_ms(std::span<const race_time> times) {
+double median_ms(std::span<const observation> times) {
     return quartiles_of(frame_ms_of(times)).median;
 }
 
@@ -90,7 +90,7 @@ std::string called(const other_way& one) {
 }
 
 void print_omissions(std::span<const other_way> all) {
-    const std::vector<race_time>& times = all[0].times;
+    const std::vector<observation>& times = all[0].times;
     const std::vector<std::string> heads{"left out", "is had with", "ms/frame", "bytes"};
     std::vector<std::vector<std::string>> rows;
     for (const std::string& what : omitted_by(all[0])) {

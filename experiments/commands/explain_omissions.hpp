@@ -7,7 +7,7 @@
 
 import aabb.pipeline;
 import aabb.registry;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.results;
 
@@ -23,7 +23,7 @@ struct other_way {
     std::string kind;  ///< in which it differs from what is selected; empty where it does not
     std::string name;  ///< of what stands in its place
     contender who;
-    std::vector<race_time> times;       ///< none where no play came to its end
+    std::vector<observation> times;     ///< none where no play came to its end
     std::optional<attempt> broken_off;  ///< its first play, where that did not
     bool is_hopeless;                   ///< it takes far longer than what is selected
 };

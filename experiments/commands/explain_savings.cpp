@@ -19,7 +19,7 @@ import aabb.policy;
 import aabb.registry;
 import aabblab.numbers;
 import aabblab.output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -59,7 +59,7 @@ contender with_counters(contender who) {
 }
 
 /// Ratio and range.
-std::vector<std::string> ratio_cells(const other_way& one, std::span<const race_time> selected) {
+std::vector<std::string> ratio_cells(const other_way& one, std::span<const observation> selected) {
     if (one.is_hopeless) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
     if (one.times.empty()) return {"-", "-"};
     const paired_ratio ratio = paired_ratio_of(frame_ms_of(one.times), frame_ms_of(selected));
@@ -75,7 +75,7 @@ void add_row(table& t, const other_way& one, const other_way& selected) {
         return;
     }
     std::vector<double> build_ms;
-    for (const race_time& time : one.times) build_ms.push_back(time.build_ms);
+    for (const observation& time : one.times) build_ms.push_back(time.build.wall_ms);
     t.rows.push_back({one.kind, one.name, fmt::format("{:.4g}", quartiles_of(frame_ms_of(one.times)).median), ratio[0],
                       ratio[1], fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
 }
@@ -92,7 +92,7 @@ void print_unfinished(const std::vector<other_way>& all) {
 bool print_disagreements(const std::vector<other_way>& all) {
     // What is inexact, or moves a scene that reacts, finds others by design.
     if (!all.front().who.exact || !all.front().who.exact_boxes) return true;
-    std::vector<std::vector<race_time>> times;
+    std::vector<std::vector<observation>> times;
     for (const other_way& one : all) times.push_back(one.times);
     const std::vector<std::size_t> wrong = who_disagrees(times);
     for (const std::size_t i : wrong)

@@ -16,7 +16,7 @@ import aabblab.inputs;
 import aabblab.numbers;
 import aabblab.output;
 import aabblab.pair_output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.queries;
 
 namespace aabblab {

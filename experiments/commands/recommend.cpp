@@ -20,7 +20,7 @@ import aabblab.measures;
 import aabblab.numbers;
 import aabblab.output;
 import aabblab.page;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.results;
 import aabblab.scenes;
@@ -49,14 +49,14 @@ table table_of(const race_result& race) {
              {"KiB"}},
             {}};
     for (const racer& r : race.finalists) {
-        const race_time& time = *r.last;
+        const observation& time = *r.last;
         const auto [low, high] = r.ratio_range();
         t.rows.push_back(
             {std::to_string(t.rows.size() + 1), r.name, fmt::format("{:.4g}", time.whole_ms()),
              fmt::format("{:.2f}", r.ratio()),
              &r == &race.finalists.front() || !r.has_range() ? "-" : fmt::format("{:.2f}-{:.2f}", low, high),
-             fmt::format("{:.4g}", time.frame_ms()), fmt::format("{:.3g}", time.first_ms),
-             fmt::format("{:.3g}", time.build_ms), time.bytes > 0 ? grouped(time.bytes / 1024) : "-"});
+             fmt::format("{:.4g}", time.frame_ms()), fmt::format("{:.3g}", time.first.wall_ms()),
+             fmt::format("{:.3g}", time.build.wall_ms), time.bytes > 0 ? grouped(time.bytes / 1024) : "-"});
     }
     return t;
 }

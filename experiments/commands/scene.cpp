@@ -27,7 +27,7 @@ import aabblab.inputs;
 import aabblab.numbers;
 import aabblab.output;
 import aabblab.picture;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.progress;
 import aabblab.scenes;
 

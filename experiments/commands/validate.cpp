@@ -14,7 +14,7 @@ import aabb.registry;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.suites;
@@ -50,7 +50,7 @@ experiment built_in_experiment() {
 }
 
 /// "exact", "wrong", or what is different by class.
-std::string answer_of(const contender_validation& v) {
+std::string answer_of(const validated_row& v) {
     if (!v.failure.empty()) return "WRONG";
     if (v.differences.empty()) return "exact";
     std::string text = "inexact:";
@@ -75,7 +75,7 @@ int validate(const validate_request& request) {
         print(heading_of(scene) + ", all pairs of " + std::to_string(result.frames) + " frames against " +
               result.exact_by + ", digest " + result.digest + "\n\n");
         table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
-        for (const contender_validation& v : result.contenders) {
+        for (const validated_row& v : result.contenders) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
                               v.contacts ? std::to_string(*v.contacts) : "-", answer_of(v)});
             if (v.failure.empty()) continue;

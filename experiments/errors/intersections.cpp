@@ -2,11 +2,10 @@ module;
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,7 +13,7 @@ module;
 
 module aabblab.errors;
 
-import aabb.base;
+import :turns;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;
@@ -23,8 +22,6 @@ import aabblab.configs;
 import aabblab.numbers;
 import aabblab.progress;
 import aabblab.scenes;
-import aabblab.statistics;
-import aabblab.stopwatch;
 import aabblab.tables;
 
 namespace aabblab {
@@ -36,15 +33,6 @@ constexpr std::uint64_t most_pairs_a_hit = 1000;
 /// Tests of libraries take part in one batch of so many: CGAL's takes a hundred times as long as ours.
 constexpr std::size_t library_share = 16;
 
-/// A test on its way through the hits of one class.
-struct constructor {
-    hit_point point;
-    std::size_t share = 1;  ///< takes part in one batch of so many
-    std::unique_ptr<aabb::triangle_test> test;
-    std::vector<aabb::triangle_intersection> made;  ///< of the batch
-    std::vector<double> ns;                         ///< a hit, of each batch
-};
-
 void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
     greatest.of_bound = std::max(greatest.of_bound, errors.of_bound);
     if (errors.greatest <= greatest.greatest) return;
@@ -52,59 +40,47 @@ void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
     greatest.bound = errors.bound;
 }
 
+/// The tests that construct on their way through the hits of one class.
 class one_class {
 public:
     explicit one_class(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
-            constructor& c = constructors_.emplace_back();
-            c.point.pairs = set.pair_class;
-            c.point.in_double = set.in_double;
-            c.point.triangle = name;
-            c.test = triangle_test_named({name, {}});
-            if (std::ranges::find(strategies, name) == strategies.end()) c.share = library_share;
+            const bool of_library = std::ranges::find(strategies, name) == strategies.end();
+            tests_.add({{.pairs = set.pair_class, .in_double = set.in_double, .triangle = name},
+                        triangle_test_named({name, {}}),
+                        of_library ? library_share : 1,
+                        {}});
         }
     }
 
-    /// Each batch begins with another test, so that none always finds the cache as the same one left it.
     void play(std::span<const aabb::triangle_pair<double>> hits) {
-        for (std::size_t i = 0; i < constructors_.size(); ++i) {
-            constructor& c = constructors_[(i + batches_) % constructors_.size()];
-            if (batches_ % c.share != 0) continue;
-            c.made.resize(hits.size());
-            const double ms = milliseconds_of([&] {
-                for (std::size_t k = 0; k < hits.size(); ++k) c.made[k] = c.test->intersection(hits[k].a, hits[k].b);
-            });
-            c.ns.push_back(ms * 1e6 / static_cast<double>(hits.size()));
-            c.point.count += hits.size();
-        }
-        for (std::size_t k = 0; k < hits.size(); ++k) {
-            const aabb::exact_intersection exact(hits[k].a, hits[k].b);
-            for (constructor& c : constructors_) {
-                if (batches_ % c.share != 0) continue;
-                const aabb::corner_errors errors = exact.errors_of(c.made[k]);
-                ++c.point.kinds[static_cast<std::size_t>(exact.kind())];
-                c.point.different += static_cast<std::uint64_t>(!errors.same);
-                c.point.outside += static_cast<std::uint64_t>(errors.same && !errors.within);
-                take(c.point.greatest, errors);
+        std::deque<aabb::exact_intersection> exact;
+        for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);
+        std::vector<aabb::triangle_intersection> made(hits.size());
+        const auto construct = [&](aabb::triangle_test& test) {
+            for (std::size_t k = 0; k < hits.size(); ++k) made[k] = test.intersection(hits[k].a, hits[k].b);
+        };
+        tests_.play(hits.size(), construct, [&](hit_point& point) {
+            point.count += hits.size();
+            for (std::size_t k = 0; k < hits.size(); ++k) {
+                const aabb::corner_errors errors = exact[k].errors_of(made[k]);
+                ++point.kinds[static_cast<std::size_t>(exact[k].kind())];
+                point.different += static_cast<std::uint64_t>(!errors.same);
+                point.outside += static_cast<std::uint64_t>(errors.same && !errors.within);
+                take(point.greatest, errors);
             }
-        }
-        ++batches_;
+        });
     }
 
     [[nodiscard]] std::vector<hit_point> points(std::uint64_t tried) {
-        std::vector<hit_point> all;
-        for (constructor& c : constructors_) {
-            c.point.tried = tried;
-            if (!c.ns.empty()) c.point.ns_a_hit = quartiles_of(c.ns);
-            all.push_back(std::move(c.point));
-        }
-        return all;
+        std::vector<hit_point> points = tests_.points(&hit_point::ns_a_hit);
+        for (hit_point& p : points) p.tried = tried;
+        return points;
     }
 
 private:
-    std::vector<constructor> constructors_;
-    std::size_t batches_ = 0;
+    tests_in_turn<hit_point> tests_;
 };
 
 template <class Real>
@@ -153,26 +129,6 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
         shown.at(done += set.count);
     }
     return points;
-}
-
-table hit_rows(std::span<const hit_point> points) {
-    table t{{{"pairs", false}, {"precision", false}, {"triangle", false}, {"tried"}, {"hits"}}, {}};
-    constexpr std::array kinds = {aabb::intersection_kind::point, aabb::intersection_kind::segment,
-                                  aabb::intersection_kind::transversal, aabb::intersection_kind::overlap};
-    for (const aabb::intersection_kind kind : kinds) t.columns.push_back({std::string(name_of(kind))});
-    for (const char* name : {"different", "outside", "of_bound", "error", "bound", "ns", "ns_low", "ns_high"})
-        t.columns.push_back({name});
-    for (const hit_point& p : points) {
-        std::vector<std::string>& row = t.rows.emplace_back();
-        row = {p.pairs, p.in_double ? "double" : "float", p.triangle, std::to_string(p.tried), std::to_string(p.count)};
-        for (const aabb::intersection_kind kind : kinds)
-            row.push_back(std::to_string(p.kinds[static_cast<std::size_t>(kind)]));
-        for (const std::uint64_t number : {p.different, p.outside}) row.push_back(std::to_string(number));
-        for (const double number : {p.greatest.of_bound, p.greatest.greatest, p.greatest.bound, p.ns_a_hit.median,
-                                    p.ns_a_hit.low, p.ns_a_hit.high})
-            row.push_back(aabb::shortest(number));
-    }
-    return t;
 }
 
 table hit_summary(std::span<const hit_point> points, bool in_double) {

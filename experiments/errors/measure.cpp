@@ -13,6 +13,7 @@ module;
 
 module aabblab.errors;
 
+import :turns;
 import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
@@ -21,8 +22,6 @@ import aabb.validation;
 import aabblab.configs;
 import aabblab.progress;
 import aabblab.scenes;
-import aabblab.statistics;
-import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -31,55 +30,31 @@ namespace {
 /// As many pairs as stay in the processor's cache with their answers.
 constexpr std::size_t batch_size = 4096;
 
-/// A method on its way through one set of pairs.
-struct method {
-    error_point point;
-    bool takes_part = true;
-    std::unique_ptr<aabb::triangle_test> test;
-    std::vector<double> ns;  ///< a pair, of each batch
-};
-
+/// The methods of a study on their way through one set of pairs.
 class one_set {
 public:
     one_set(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
             for (const aabb::strategy_choice& choice : curve.triangles) {
-                method& m = methods_.emplace_back();
-                m.point.pairs = name;
-                m.point.in_double = in_double;
-                m.point.curve = curve.label;
-                m.point.triangle = choice;
-                m.test = triangle_test_named(choice);
-                m.takes_part = !in_double || m.test->takes_double();
+                std::unique_ptr<aabb::triangle_test> test = triangle_test_named(choice);
+                if (in_double && !test->takes_double()) continue;
+                error_point point{.pairs = name, .in_double = in_double, .curve = curve.label, .triangle = choice};
+                methods_.add({std::move(point), std::move(test), 1, {}});
             }
     }
 
-    /// Each batch begins with another method, so that none always finds the cache as the same one left it.
     template <class Real>
     void play(std::span<const aabb::triangle_pair<Real>> batch) {
         truth_.resize(batch.size());
         for (std::size_t i = 0; i < batch.size(); ++i)
             truth_[i] = static_cast<std::uint8_t>(aabb::exactly_intersect(batch[i].a, batch[i].b));
         answers_.resize(batch.size());
-        for (std::size_t i = 0; i < methods_.size(); ++i) {
-            method& m = methods_[(i + batches_) % methods_.size()];
-            if (!m.takes_part) continue;
-            const double ms = milliseconds_of([&] { m.test->intersect(batch, answers_); });
-            m.ns.push_back(ms * 1e6 / static_cast<double>(batch.size()));
-            count(m.point);
-        }
-        ++batches_;
+        methods_.play(
+            batch.size(), [&](aabb::triangle_test& test) { test.intersect(batch, answers_); },
+            [&](error_point& point) { count(point); });
     }
 
-    [[nodiscard]] std::vector<error_point> points() {
-        std::vector<error_point> all;
-        for (method& m : methods_) {
-            if (!m.takes_part) continue;
-            m.point.ns_a_pair = quartiles_of(m.ns);
-            all.push_back(std::move(m.point));
-        }
-        return all;
-    }
+    [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_a_pair); }
 
 private:
     void count(error_point& point) const {
@@ -91,10 +66,9 @@ private:
         }
     }
 
-    std::vector<method> methods_;
+    tests_in_turn<error_point> methods_;
     std::vector<std::uint8_t> truth_;
     std::vector<std::uint8_t> answers_;
-    std::size_t batches_ = 0;
 };
 
 template <class Real>

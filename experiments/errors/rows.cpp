@@ -1,19 +1,16 @@
 module;
-#include <charconv>
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
-#include <type_traits>
 #include <vector>
 
 module aabblab.errors;
 
-import aabb.base;
+import aabb.geometry;
 import aabb.policy;
 import aabblab.files;
 import aabblab.results;
@@ -23,98 +20,79 @@ namespace aabblab {
 
 namespace {
 
-/// The columns in one place: calls `field(name, member)` for each.
-template <class Point, class Field>
-void for_each_column(Point& p, Field field) {
+constexpr std::array<std::string_view, 2> precisions{"float", "double"};
+
+template <class Choice>
+struct written_choice {
+    Choice& choice;
+};
+template <class Choice>
+written_choice(Choice&) -> written_choice<Choice>;
+template <class Choice>
+std::string written(const written_choice<Choice>& one) {
+    return to_text(one.choice);
+}
+bool taken(const written_choice<aabb::strategy_choice>& to, const std::string& text) {
+    to.choice = aabb::parse_strategy(text);
+    return true;
+}
+
+constexpr auto columns_of_point = [](auto& p, auto field) {
     field("pairs", p.pairs);
-    field("precision", p.in_double);
+    field("precision", one_of_words(p.in_double, precisions));
     field("curve", p.curve);
-    field("triangle", p.triangle);
+    field("triangle", written_choice(p.triangle));
     field("count", p.count);
     field("intersecting", p.intersecting);
     field("false_negatives", p.false_negatives);
     field("false_positives", p.false_positives);
-    field("ns", p.ns_a_pair.median);
-    field("ns_low", p.ns_a_pair.low);
-    field("ns_high", p.ns_a_pair.high);
-}
+    field("ns", all_digits(p.ns_a_pair.median));
+    field("ns_low", all_digits(p.ns_a_pair.low));
+    field("ns_high", all_digits(p.ns_a_pair.high));
+};
 
-std::string written(const std::string& text) {
-    return text;
-}
-std::string written(bool in_double) {
-    return in_double ? "double" : "float";
-}
-std::string written(const aabb::strategy_choice& triangle) {
-    return to_text(triangle);
-}
-std::string written(std::uint64_t number) {
-    return std::to_string(number);
-}
-std::string written(double number) {
-    return aabb::shortest(number);
-}
+constexpr auto columns_of_hit = [](auto& p, auto field) {
+    field("pairs", p.pairs);
+    field("precision", one_of_words(p.in_double, precisions));
+    field("triangle", p.triangle);
+    field("tried", p.tried);
+    field("hits", p.count);
+    for (const aabb::intersection_kind kind : {aabb::intersection_kind::point, aabb::intersection_kind::segment,
+                                               aabb::intersection_kind::transversal, aabb::intersection_kind::overlap})
+        field(std::string(name_of(kind)), p.kinds[static_cast<std::size_t>(kind)]);
+    field("different", p.different);
+    field("outside", p.outside);
+    field("of_bound", all_digits(p.greatest.of_bound));
+    field("error", all_digits(p.greatest.greatest));
+    field("bound", all_digits(p.greatest.bound));
+    field("ns", all_digits(p.ns_a_hit.median));
+    field("ns_low", all_digits(p.ns_a_hit.low));
+    field("ns_high", all_digits(p.ns_a_hit.high));
+};
 
-bool taken(std::string& to, const std::string& text) {
-    to = text;
-    return true;
-}
-bool taken(bool& in_double, const std::string& text) {
-    in_double = text == "double";
-    return in_double || text == "float";
-}
-bool taken(aabb::strategy_choice& to, const std::string& text) {
-    to = aabb::parse_strategy(text);
-    return true;
-}
-template <class Number>
-bool taken(Number& to, const std::string& text) {
-    const char* end = text.data() + text.size();
-    if (std::from_chars(text.data(), end, to) != std::from_chars_result{end, std::errc{}}) return false;
-    // Times are drawn on a logarithmic axis.
-    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(to) && to > 0;
-    return true;
-}
-
-std::vector<column> columns() {
-    std::vector<column> all;
-    error_point any;
-    for_each_column(any, [&]<class Value>(const char* name, const Value&) {
-        all.push_back({name, std::is_same_v<Value, double> || std::is_same_v<Value, std::uint64_t>});
-    });
-    return all;
+/// @param words columns at the beginning that are no numbers
+template <class Row, class Columns>
+table table_of(std::span<const Row> rows, Columns columns, std::size_t words) {
+    table t;
+    for (const std::string& name : names_of<Row>(columns)) t.columns.push_back({name, t.columns.size() >= words});
+    for (const Row& r : rows) t.rows.push_back(fields_of(r, columns));
+    return t;
 }
 
 }  // namespace
 
 table error_rows(std::span<const error_point> points) {
-    table t{columns(), {}};
-    for (const error_point& p : points) {
-        std::vector<std::string>& cells = t.rows.emplace_back();
-        for_each_column(p, [&](const char*, const auto& value) { cells.push_back(written(value)); });
-    }
-    return t;
+    return table_of(points, columns_of_point, 4);
+}
+
+table hit_rows(std::span<const hit_point> points) {
+    return table_of(points, columns_of_hit, 3);
 }
 
 std::vector<error_point> read_error_rows(const std::filesystem::path& file) {
     const std::vector<csv_record> records = whole_records_of(text_of_file(file), file.string());
-    std::vector<std::string> header;
-    for (const column& c : columns()) header.push_back(c.name);
-    if (records.empty() || records[0].fields != header)
-        throw aabb::input_error(file.string() + ":1: these are not the columns of this version");
-    std::vector<error_point> points;
-    for (const auto& [fields, line] : std::span(records).subspan(1)) {
-        const std::string place = file.string() + ":" + std::to_string(line) + ": ";
-        if (fields.size() != header.size())
-            throw aabb::input_error(place + "expected " + std::to_string(header.size()) + " fields, not " +
-                                    std::to_string(fields.size()));
-        std::size_t at = 0;
-        for_each_column(points.emplace_back(), [&](const char* name, auto& value) {
-            if (!taken(value, fields[at])) throw aabb::input_error(place + name + " cannot be '" + fields[at] + "'");
-            ++at;
-        });
-    }
-    return points;
+    if (records.empty()) require_header(file.string(), {}, names_of<error_point>(columns_of_point));
+    return rows_in<error_point>(records, file.string(), columns_of_point, {}, [](const error_point&, std::size_t) {});
 }
 
 }  // namespace aabblab

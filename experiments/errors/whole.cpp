@@ -18,7 +18,7 @@ import aabblab.configs;
 import aabblab.figures;
 import aabblab.metrics;
 import aabblab.numbers;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.tables;

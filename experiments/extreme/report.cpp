@@ -12,6 +12,7 @@ module aabblab.extreme;
 
 import aabb.extreme;
 import aabb.validation;
+import aabblab.results;
 import aabblab.tables;
 
 namespace aabblab {
@@ -21,39 +22,34 @@ namespace {
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
 constexpr std::array<std::string_view, 3> role_names = {"composition", "engine", "triangle_test"};
 
-template <class Enum>
-std::string name_in(const std::array<std::string_view, 3>& names, Enum value) {
-    return std::string(names[static_cast<std::size_t>(value)]);
-}
+constexpr std::array<std::string_view, 2> answers = {"no", "yes"};
+
+constexpr auto columns_of_row = [](auto& r, auto field) {
+    field("group", one_of_words(r.group, group_names));
+    field("scene", r.scene);
+    field("class", r.kind);
+    field("contender", r.contender);
+    field("role", one_of_words(r.role, role_names));
+    field("must_be_exact", one_of_words(r.must_be_exact, answers));
+    field("answer", one_of_words(r.made.said, aabb::verdict_names));
+    field("as_expected", one_of_words(r.as_expected, answers));
+    field("missing", r.made.missing);
+    field("invented", r.made.invented);
+    for (std::size_t i = 0; i < aabb::difference_class_names.size(); ++i)
+        field("missing_" + std::string(aabb::difference_class_names[i]), r.made.classes.missing[i]);
+    for (std::size_t i = 0; i < aabb::difference_class_names.size(); ++i)
+        field("invented_" + std::string(aabb::difference_class_names[i]), r.made.classes.invented[i]);
+    field("bytes", r.made.bytes);
+    field("reason", r.made.reason);
+    field("about", r.about);
+};
 
 }  // namespace
 
 table extreme_rows(std::span<const extreme_row> rows) {
     table t;
-    for (const char* name : {"group", "scene", "class", "contender", "role", "must_be_exact", "answer", "as_expected",
-                             "missing", "invented"})
-        t.columns.push_back({name});
-    for (const char* what : {"missing_", "invented_"})
-        for (const std::string_view name : aabb::difference_class_names)
-            t.columns.push_back({what + std::string(name)});
-    for (const char* name : {"bytes", "reason", "about"}) t.columns.push_back({name});
-    const auto yes = [](bool value) { return std::string(value ? "yes" : "no"); };
-    for (const extreme_row& row : rows) {
-        std::vector<std::string> cells{name_in(group_names, row.group),
-                                       row.scene,
-                                       row.kind,
-                                       row.contender,
-                                       name_in(role_names, row.role),
-                                       yes(row.must_be_exact),
-                                       name_in(aabb::verdict_names, row.made.said),
-                                       yes(row.as_expected),
-                                       std::to_string(row.made.missing),
-                                       std::to_string(row.made.invented)};
-        for (const auto* counts : {&row.made.classes.missing, &row.made.classes.invented})
-            for (const std::size_t count : *counts) cells.push_back(std::to_string(count));
-        cells.insert(cells.end(), {std::to_string(row.made.bytes), row.made.reason, row.about});
-        t.rows.push_back(std::move(cells));
-    }
+    for (const std::string& name : names_of<extreme_row>(columns_of_row)) t.columns.push_back({name});
+    for (const extreme_row& row : rows) t.rows.push_back(fields_of(row, columns_of_row));
     return t;
 }
 

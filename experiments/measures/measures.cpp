@@ -14,7 +14,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;
 import aabblab.numbers;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 namespace aabblab {

@@ -11,7 +11,7 @@ module;
 export module aabblab.measures;
 
 import aabb.geometry;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 export namespace aabblab {

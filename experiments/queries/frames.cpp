@@ -14,7 +14,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabblab.digits;
 import aabblab.pair_output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.progress;
 import aabblab.stopwatch;
 

@@ -22,7 +22,7 @@ import aabb.selection;
 import aabblab.configs;
 import aabblab.inputs;
 import aabblab.pair_output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.stopwatch;
 
 namespace aabblab {

@@ -62,8 +62,8 @@ struct crossing {
 /// None where the repeats do not show it.
 std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
     if (!other.has_range()) return std::nullopt;
-    const auto begin = shown_difference(other, winner, [](const race_time& t) { return t.over(1); });
-    const auto steady = shown_difference(other, winner, [](const race_time& t) { return t.steady_ms(); });
+    const auto begin = shown_difference(other, winner, [](const observation& t) { return t.over(1); });
+    const auto steady = shown_difference(other, winner, [](const observation& t) { return t.steady_ms(); });
     if (!begin || !steady || (*begin > 0) == (*steady > 0)) return std::nullopt;
     return crossing{1 - *begin / *steady, *begin < 0};
 }

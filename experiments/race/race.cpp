@@ -16,14 +16,13 @@ module;
 
 module aabblab.race;
 
-import :apart;
 import aabb.base;
 import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;
 import aabblab.numbers;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.progress;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -92,11 +91,11 @@ private:
         attempt tried = scene_.play(one.who, frames, std::min(seconds, time_left));
         if (tried.end != ending::done) {
             tried.is_hopeless = tried.end == ending::stopped && seconds < time_left;
-            one.frames = std::max(one.frames, tried.time.frames);
+            one.frames = std::max(one.frames, tried.seen.frames);
             one.broken_off = std::move(tried);
             return false;
         }
-        one.last = std::move(tried.time);
+        one.last = std::move(tried.seen);
         one.seconds = tried.seconds;
         one.frames = frames;
         return true;
@@ -115,7 +114,7 @@ private:
             if (!ends && !std::isfinite(least) && one.broken_off->end == ending::stopped && one.frames > 0) {
                 frames = one.frames;
                 one.seconds = one.broken_off->seconds_of_frames;
-                one.last = std::move(one.broken_off->time);
+                one.last = std::move(one.broken_off->seen);
                 one.broken_off.reset();
                 ends = true;
             }
@@ -190,7 +189,7 @@ private:
         for (racer& r : running_) {
             if (r.broken_off || r.behind <= margin || r.behind > far * margin || left() < whole_ / 2) continue;
             const attempt second = scene_.play(r.who, frames, std::min(patience(r.seconds, margin), left()));
-            if (second.end == ending::done && second.time.whole_ms() < r.last->whole_ms()) r.last = second.time;
+            if (second.end == ending::done && second.seen.whole_ms() < r.last->whole_ms()) r.last = second.seen;
         }
         set_behind();
     }
@@ -276,7 +275,7 @@ private:
                 return false;
             }
             if (tried.end == ending::done) {
-                r.times.push_back(std::move(tried.time));
+                r.times.push_back(std::move(tried.seen));
                 r.frames = frames;
             } else {
                 r.broken_off = std::move(tried);
@@ -299,11 +298,11 @@ private:
         const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
         const attempt exact = scene_.play(*contender_of(*cgal, scene_.scene().meshes() != nullptr),
                                           result_.final_frames, limits_.to_end());
-        result_.validated = exact.time.frames;
+        result_.validated = exact.seen.frames;
         if (result_.validated == 0) return;
         const auto right = [&](const racer& r) {
             return std::ranges::all_of(
-                r.times, [&](const race_time& t) { return t.digests[result_.validated - 1] == exact.time.digest; });
+                r.times, [&](const observation& t) { return t.digests[result_.validated - 1] == exact.seen.digest; });
         };
         const auto first_wrong = std::stable_partition(running_.begin(), running_.end(), right);
         result_.wrong.assign(std::move_iterator(first_wrong), std::move_iterator(running_.end()));

@@ -34,9 +34,9 @@ double lead_of(const racer& one, const std::vector<racer>& all) {
     return least;
 }
 
-race_time median_of(std::vector<race_time> times) {
+observation median_of(std::vector<observation> times) {
     const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-    std::ranges::nth_element(times, middle, {}, &race_time::whole_ms);
+    std::ranges::nth_element(times, middle, {}, &observation::whole_ms);
     return *middle;
 }
 

@@ -20,6 +20,7 @@ export module aabblab.results;
 import aabb.counters;
 import aabb.registry;
 import aabblab.scenes;
+export import :columns;
 export import :csv;
 
 export namespace aabblab {

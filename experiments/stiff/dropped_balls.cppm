@@ -5,7 +5,7 @@ module;
 /// Balls that fall in a lattice on a floor, with whoever finds their contacts.
 module aabblab.stiff:dropped_balls;
 
-import aabblab.play;
+import aabblab.trials;
 import aabblab.stepping;
 import :simulation;
 

@@ -13,7 +13,7 @@ import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabb.validation;
-import aabblab.play;
+import aabblab.trials;
 
 namespace aabblab {
 

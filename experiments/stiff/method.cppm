@@ -6,7 +6,7 @@ module;
 /// Compositions and engines whose effect on a trajectory is told.
 module aabblab.stiff:method;
 
-import aabblab.play;
+import aabblab.trials;
 
 namespace aabblab {
 

@@ -12,7 +12,7 @@ module aabblab.stiff;
 import :simulation;
 import aabb.geometry;
 import aabb.pipeline;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.stepping;
 import aabblab.stopwatch;
 

@@ -8,7 +8,7 @@ module aabblab.stiff:simulation;
 
 import aabb.geometry;
 import aabb.pipeline;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.stepping;
 
 namespace aabblab {

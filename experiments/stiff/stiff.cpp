@@ -1,7 +1,7 @@
 module aabblab.stiff;
 
 import aabb.registry;
-import aabblab.play;
+import aabblab.trials;
 
 namespace aabblab {
 

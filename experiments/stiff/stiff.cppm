@@ -4,7 +4,7 @@ module;
 /// The stiff suite: bodies stepped in time through detection, held against closed forms and published results.
 export module aabblab.stiff;
 
-import aabblab.play;
+import aabblab.trials;
 export import :study;
 
 export namespace aabblab {

@@ -7,7 +7,7 @@ module;
 export module aabblab.stiff:study;
 
 import aabblab.figures;
-import aabblab.play;
+import aabblab.trials;
 
 export namespace aabblab {
 

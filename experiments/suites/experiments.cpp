@@ -25,7 +25,7 @@ import aabblab.files;
 import aabblab.inputs;
 import aabblab.metrics;
 import aabblab.output;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.processes;
 import aabblab.processor;
 import aabblab.results;

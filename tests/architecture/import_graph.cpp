@@ -52,7 +52,7 @@ const std::vector<std::string> rooms = {
     "experiments/analysis/conditions",
     "experiments/page",
     "experiments/configs",
-    "experiments/play",
+    "experiments/trials",
     "experiments/queries",
     "experiments/measures",
     "experiments/race",
@@ -92,7 +92,7 @@ bool is_forbidden(const arrow& one) {
     return (is_kind(one.from) && is_kind(one.to)) ||
            (one.from.starts_with("experiments") && to_paper && !knows_paper) ||
            (judges &&
-            (one.to == "experiments/play" || one.to == "experiments/configs" || one.to == "experiments/results"));
+            (one.to == "experiments/trials" || one.to == "experiments/configs" || one.to == "experiments/results"));
 }
 
 /// The room that a file stands in: the longest name that its path begins with.
@@ -150,7 +150,7 @@ std::vector<arrow> arrows_in(const std::filesystem::path& root) {
     return arrows;
 }
 
-/// "experiments/play <- paper/claims: FILE imports MODULE", a line each.
+/// "experiments/trials <- paper/claims: FILE imports MODULE", a line each.
 std::string arrows_back(const std::vector<arrow>& arrows) {
     std::string text;
     for (const arrow& one : arrows)

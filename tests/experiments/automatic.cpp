@@ -17,7 +17,7 @@
 import aabb;
 import aabblab.configs;
 import aabblab.measures;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 using aabblab::experiment_size;

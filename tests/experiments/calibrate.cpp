@@ -21,11 +21,11 @@ import aabblab.statistics;
 
 namespace {
 
-using aabblab::observation;
+using aabblab::timed_work;
 
 /// Observations whose times are these costs of the work, and a little noise.
-std::vector<observation> made_of(const std::vector<double>& costs, double noise) {
-    std::vector<observation> all;
+std::vector<timed_work> made_of(const std::vector<double>& costs, double noise) {
+    std::vector<timed_work> all;
     std::uint64_t random = 1;
     const auto next = [&] {
         random = random * 6364136223846793005U + 1442695040888963407U;
@@ -33,7 +33,7 @@ std::vector<observation> made_of(const std::vector<double>& costs, double noise)
     };
     for (int scene = 0; scene < 12; ++scene)
         for (int piece = 0; piece < 2; ++piece) {
-            observation one{"scene " + std::to_string(scene), {}, {}};
+            timed_work one{"scene " + std::to_string(scene), {}, {}};
             double ns = 0;
             for (const double cost : costs) {
                 one.work.push_back(std::pow(10.0, 2 + 3 * next()) / cost);  // none is lost in the others
@@ -107,7 +107,7 @@ TEST_CASE("A fit finds the costs that times were made of") {
     const std::vector<aabblab::estimate> exact = aabblab::fit_costs(made_of(costs, 0));
     REQUIRE(exact.size() == costs.size());
     for (std::size_t k = 0; k < costs.size(); ++k) CHECK(is_near(exact[k].value, costs[k], 1e-6));
-    const std::vector<observation> noisy = made_of(costs, 0.1);
+    const std::vector<timed_work> noisy = made_of(costs, 0.1);
     const std::vector<aabblab::estimate> found = aabblab::fit_costs(noisy);
     for (std::size_t k = 0; k < costs.size(); ++k) {
         CHECK(is_near(found[k].value, costs[k], 0.1));
@@ -120,7 +120,7 @@ TEST_CASE("A fit finds the costs that times were made of") {
 
 TEST_CASE("A fit is not led astray by a few times that are far off, nor below 0") {
     const std::vector<double> costs{8, 0.75, 250};
-    std::vector<observation> seen = made_of(costs, 0.01);
+    std::vector<timed_work> seen = made_of(costs, 0.01);
     for (const std::size_t off : {3U, 10U})
         for (double& ns : seen[off].ns) ns *= 5;
     const std::vector<aabblab::estimate> found = aabblab::fit_costs(seen);
@@ -130,7 +130,7 @@ TEST_CASE("A fit is not led astray by a few times that are far off, nor below 0"
     CHECK(off.median < 1.02);
     CHECK(is_near(off.worst, 5, 0.05));
     // More of the second work goes with less time.
-    const std::vector<observation> contrary{{"a", {10, 1}, {100}}, {"b", {10, 5}, {90}}, {"c", {10, 9}, {80}}};
+    const std::vector<timed_work> contrary{{"a", {10, 1}, {100}}, {"b", {10, 5}, {90}}, {"c", {10, 9}, {80}}};
     const std::vector<aabblab::estimate> none_below = aabblab::fit_costs(contrary);
     CHECK(none_below[1].value == 0);
     CHECK(is_near(none_below[0].value, 9, 0.1));

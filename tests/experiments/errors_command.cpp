@@ -358,10 +358,11 @@ TEST_CASE("an errors.csv is read as it was written, and refused with its line wh
         }
         return std::string("accepted");
     };
-    CHECK(refused("pairs\n") == ":1: these are not the columns of this version");
+    CHECK(refused("pairs\n") ==
+          ":1: these are not the columns of this version; column 2 is missing; expected 'precision'");
     const std::string head = text.substr(0, text.find('\n') + 1);
-    CHECK(refused(head + "random,flat,c,exact,1,1,0,0,1,1,1\n") == ":2: precision cannot be 'flat'");
-    CHECK(refused(head + "random,float,c,exact,1,1,0,0,1,1\n") == ":2: expected 11 fields, not 10");
+    CHECK(refused(head + "random,flat,c,exact,1,1,0,0,1,1,1\n") == ":2: precision must be float or double, not 'flat'");
+    CHECK(refused(head + "random,float,c,exact,1,1,0,0,1,1\n") == ":2: the column ns_high is missing");
 }
 
 TEST_CASE("every config of errors reads") {

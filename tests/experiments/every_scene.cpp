@@ -12,7 +12,7 @@
 import aabb;
 import aabb.validation;
 import aabblab.configs;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 TEST_CASE("every composition is exact on every scene of boxes") {
@@ -33,7 +33,7 @@ TEST_CASE("every composition is exact on every scene of boxes") {
                 std::span(contenders).subspan(begin, std::min<std::size_t>(250, contenders.size() - begin));
             const aabblab::scene_validation all = aabblab::validate_scene(scene, some);
             REQUIRE(all.contenders.size() == some.size());
-            for (const aabblab::contender_validation& v : all.contenders) {
+            for (const aabblab::validated_row& v : all.contenders) {
                 INFO(info.name << ": " << v.failure);
                 REQUIRE(v.failure.empty());
                 REQUIRE(v.digest == all.digest);
@@ -66,7 +66,7 @@ TEST_CASE("every exact local composition is exact on every scene of meshes, and 
         REQUIRE(all.contenders.size() == contenders.size());
         REQUIRE(all.contenders[0].contacts.value() > 100);
         for (std::size_t i = 0; i < contenders.size(); ++i) {
-            const aabblab::contender_validation& v = all.contenders[i];
+            const aabblab::validated_row& v = all.contenders[i];
             INFO(info.name << ": " << v.failure);
             REQUIRE(v.failure.empty());
             if (contenders[i].exact) REQUIRE(v.digest == all.digest);

@@ -17,7 +17,7 @@
 
 import aabb.validation;
 import aabblab.configs;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 using aabblab::contender;
@@ -142,16 +142,16 @@ TEST_CASE("What is asked is answered by each contender, and a wrong answer is to
         for (const bool cold : {false, true}) {
             std::string digest;
             for (const contender& who : contenders) {
-                const aabblab::timing times = aabblab::time_scene(choice, who, {ask, cold});
+                const aabblab::observation times = aabblab::observe(choice, who, {.asked = {ask, cold}});
                 INFO(aabblab::text_of(who.name) << ": " << times.wrong);
                 CHECK(times.wrong.empty());
-                CHECK(times.detect.wall_ms > 0);
+                CHECK(times.rest.detect.wall_ms > 0);
                 if (digest.empty()) digest = times.digest;
                 CHECK(times.digest == digest);
             }
             contender wrong = contenders[0];
             wrong.make_local = [](aabb::instrumentation) { return std::make_unique<wrong_answers>(); };
-            CHECK_FALSE(aabblab::time_scene(choice, wrong, {ask, cold}).wrong.empty());
+            CHECK_FALSE(aabblab::observe(choice, wrong, {.asked = {ask, cold}}).wrong.empty());
         }
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("A scene that reacts to contacts shows every contender the same frames
             CHECK(all.contenders[i].failure.empty());
             CHECK(all.contenders[i].digest == all.digest);
             scene_play again = made();
-            CHECK(aabblab::time_scene(again, contenders[i]).digest == all.digest);
+            CHECK(aabblab::observe(again, contenders[i]).digest == all.digest);
         }
         // Each stops where it first touches the one before: nothing passes, and no pair but neighbours ever meets.
         scene_play last = made();
@@ -196,8 +196,8 @@ TEST_CASE("A scene is handed over frame by frame, all of it or the first frames"
             scene, p,
             [&](const played_frame& frame) {
                 CHECK(frame.number == frames++);
-                CHECK(frame.ms() == frame.update.wall_ms + frame.search.wall_ms + frame.detect.wall_ms);
-                CHECK(frame.update.wall_ms > 0);
+                CHECK(frame.ms() == frame.took.update.wall_ms + frame.took.search.wall_ms + frame.took.detect.wall_ms);
+                CHECK(frame.took.update.wall_ms > 0);
                 CHECK(std::ranges::is_sorted(frame.pairs));
                 CHECK(std::ranges::is_sorted(frame.contacts));
                 contacts += frame.contacts.size();
@@ -252,7 +252,7 @@ TEST_CASE("What is wrong with poses of a file is said with file and frame") {
     const std::string sentence = "object 0 lies beyond the range of float";
     for (const auto& [file, place] : {std::pair<std::string, std::string>{"a b.txt", "a b.txt: frame 2: "}, {"", ""}}) {
         scene_play timed(std::make_unique<leaving>(), file);
-        CHECK_THROWS_MATCHES(aabblab::time_scene(timed, exact_contenders(true)[0]), aabb::input_error,
+        CHECK_THROWS_MATCHES(aabblab::observe(timed, exact_contenders(true)[0]), aabb::input_error,
                              Catch::Matchers::Message(place + sentence));
         scene_play validated(std::make_unique<leaving>(), file);
         CHECK_THROWS_MATCHES(aabblab::validate_scene({"leaving", {}, {}, 1}, validated, {}), aabb::input_error,

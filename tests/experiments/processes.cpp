@@ -24,7 +24,7 @@
 import aabb;
 import aabblab.configs;
 import aabblab.results;
-import aabblab.play;
+import aabblab.trials;
 
 using aabblab::existing_results;
 using aabblab::results_folder;

@@ -32,7 +32,7 @@
 import aabb;
 import aabb.registry;
 import aabb.validation;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.race;
 import aabblab.results;
 import aabblab.scenes;
@@ -379,11 +379,21 @@ TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
 
 namespace {
 
+aabblab::observation played_in(double build_ms, double first_ms, double rest_ms, std::size_t frames) {
+    aabblab::observation seen;
+    seen.build.wall_ms = build_ms;
+    seen.first.update.wall_ms = first_ms;
+    seen.rest.update.wall_ms = rest_ms;
+    seen.frames = frames;
+    seen.digest = "answer";
+    return seen;
+}
+
 /// A finalist who took so many milliseconds for a scene of two frames, repeat by repeat.
 racer finished(const std::string& name, std::initializer_list<double> all_ms) {
     racer r;
     r.name = name;
-    for (const double ms : all_ms) r.times.push_back({0, 0, ms, 2, 0, "answer", {}});
+    for (const double ms : all_ms) r.times.push_back(played_in(0, 0, ms, 2));
     return r;
 }
 
@@ -395,7 +405,7 @@ racer finished(const std::string& name, double build_ms, double frame_ms, bool s
     for (const double noise : {1.0, 1.02, 0.99, 1.01, 0.98, 1.0, 1.01}) {
         slow = !slow;
         const double ms = slow_and_fast ? frame_ms * (slow ? 1.1 : 0.9) : frame_ms;
-        r.times.push_back({build_ms * noise, ms * noise, 99 * ms * noise, 100, 0, "answer", {}});
+        r.times.push_back(played_in(build_ms * noise, ms * noise, 99 * ms * noise, 100));
     }
     return r;
 }
@@ -571,7 +581,7 @@ TEST_CASE("Those who play in turn have as many frames and rounds as there is tim
     CHECK(some.times[0].size() == some.rounds);
     CHECK(some.times[1].empty());
     REQUIRE(some.broken_off[1].has_value());
-    CHECK(some.broken_off[1]->time.frames == 1);
+    CHECK(some.broken_off[1]->seen.frames == 1);
     CHECK_FALSE(some.times[2].empty());
     const aabblab::turns none = turns_of({delayed("first", stuck_in(0)), delayed("fast", stuck_in(4))}, 1);
     CHECK(none.rounds == 0);

@@ -21,7 +21,7 @@ import aabb;
 import aabb.registry;
 import aabblab.configs;
 import aabblab.results;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 import aabblab.tables;
 
@@ -179,14 +179,14 @@ TEST_CASE("Differences of an inexact triangle test are counted by class and fail
     const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
     const aabblab::scene_validation result = aabblab::validate_scene(e.scenes[0], contenders);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        const aabblab::contender_validation& v = result.contenders[i];
+        const aabblab::validated_row& v = result.contenders[i];
         INFO(aabblab::text_of(v.name));
         REQUIRE(contenders[i].exact ==
                 (v.name[aabb::strategy_kind::triangle] == "exact" ? v.name.engine.empty() : v.name.engine == "cgal"));
         REQUIRE(v.failure.empty());
         std::uint64_t by_class = 0;
         for (const aabblab::difference& d : v.differences) by_class += d.count;
-        REQUIRE(by_class == v.missing + v.invented);
+        REQUIRE(by_class == *v.missing + *v.invented);
         if (contenders[i].exact) REQUIRE((by_class == 0 && v.digest == result.digest));
     }
 }

@@ -24,7 +24,7 @@ import aabblab.conditions;
 import aabblab.configs;
 import aabblab.figures;
 import aabblab.reproduction;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.statistics;
 import aabblab.tables;
 

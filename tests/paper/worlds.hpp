@@ -19,7 +19,7 @@ import aabb.registry;
 import aabblab.configs;
 import aabblab.metrics;
 import aabblab.results;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 
 // Imports modules, so it is included after every other header.

@@ -10,7 +10,7 @@
 
 import aabb;
 import aabb.registry;
-import aabblab.play;
+import aabblab.trials;
 import aabblab.scenes;
 import aabblab.stepping;
 

@@ -7,7 +7,7 @@
 
 #include "../validation/altered_stages.hpp"
 
-import aabblab.play;
+import aabblab.trials;
 import aabblab.stepping;
 import aabblab.stiff;
 

@@ -14,7 +14,7 @@ import :study;
 import aabb.geometry;
 import aabb.pipeline;
 import aabblab.figures;
-import aabblab.play;
+import aabblab.trials;
 
 namespace aabblab {
 

@@ -11,7 +11,7 @@ module;
 #include <utility>
 #include <vector>
 
-module aabblab.play;
+module aabblab.trials;
 
 import :player;
 import aabb.base;
@@ -201,8 +201,8 @@ void play(scene_play& scene, player& who, const std::function<void(const played_
     for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
         const elapsed update = elapsed_in([&] { who.update(); });
         const elapsed search = elapsed_in([&] { who.search(); });
-        const elapsed asked = detect(who);
-        const played_frame played{frame, update, search, asked, who.sorted_pairs(), who.sorted_contacts()};
+        const phases took{update, search, detect(who)};
+        const played_frame played{frame, took, who.sorted_pairs(), who.sorted_contacts()};
         each(played);
         scene.tell(played.pairs, played.contacts);
     }

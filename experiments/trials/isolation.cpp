@@ -18,9 +18,9 @@ module;
 #include <string>
 #include <string_view>
 
-module aabblab.race;
+module aabblab.trials;
 
-import :apart;
+import :isolation;
 import aabb.base;
 
 namespace aabblab {

@@ -2,15 +2,14 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-module aabblab.play;
+module aabblab.trials;
 
+import :observation;
 import :player;
 import aabb.geometry;
 import aabb.pipeline;
@@ -22,16 +21,14 @@ namespace aabblab {
 
 namespace {
 
-void add_told(std::span<const told_times> told, timing& times) {
-    times.build = {};
+/// In place of what was timed, which was reading its answer.
+void take_told(std::span<const told_times> told, observation& seen) {
+    seen.build = {};
+    seen.first = seen.rest = {};
     for (std::size_t frame = 0; frame < told.size(); ++frame) {
-        const auto [update, search] = told[frame];
-        if (frame == 0) {
-            times.first.wall_ms = update + search;
-        } else {
-            times.update.wall_ms += update;
-            times.search.wall_ms += search;
-        }
+        phases& took = frame == 0 ? seen.first : seen.rest;
+        took.update.wall_ms += told[frame].update_ms;
+        took.search.wall_ms += told[frame].search_ms;
     }
 }
 
@@ -75,35 +72,30 @@ elapsed ask(player& who, const asking& how, std::string& wrong) {
 
 }  // namespace
 
-timing time_scene(const scene_choice& choice, const contender& who, const asking& how) {
-    scene_play scene(choice);
-    return time_scene(scene, who, how);
-}
-
-timing time_scene(scene_play& scene, const contender& who, const asking& how) {
-    timing times;
+observation observe(scene_play& scene, const contender& who, const protocol& how) {
+    observation seen;
     std::optional<player> p;
-    times.build = elapsed_in([&] { p.emplace(who, scene, aabb::instrumentation::none); });
+    seen.build = elapsed_in([&] { p.emplace(who, scene, how.counted); });
     tally found(scene.meshes() != nullptr);
-    const bool timed = !who.told;
     const auto take = [&](const played_frame& frame) {
         found.add(frame.pairs, frame.contacts);
-        if (!timed) return;
-        if (frame.number == 0) {
-            times.first += frame.update;
-            times.first += frame.search;
-            times.first += frame.detect;
-        } else {
-            times.update += frame.update;
-            times.search += frame.search;
-            times.detect += frame.detect;
-        }
+        (seen.frames++ == 0 ? seen.first : seen.rest) += frame.took;
+        if (!how.each) return;
+        seen.digest = found.digest();
+        how.each(seen);
     };
-    play(scene, *p, take, std::numeric_limits<std::size_t>::max(),
-         [&](player& asked) { return ask(asked, how, times.wrong); });
-    if (!timed) add_told(*who.told, times);
-    times.digest = found.digest();
-    return times;
+    play(scene, *p, take, how.frames, [&](player& asked) { return ask(asked, how.asked, seen.wrong); });
+    if (who.told) take_told(*who.told, seen);
+    seen.digest = found.digest();
+    seen.bytes = p->held_bytes();
+    seen.work = p->counters();
+    seen.left_out = p->left_out();
+    return seen;
+}
+
+observation observe(const scene_choice& choice, const contender& who, const protocol& how) {
+    scene_play scene(choice);
+    return observe(scene, who, how);
 }
 
 }  // namespace aabblab

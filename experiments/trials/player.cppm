@@ -10,7 +10,7 @@ module;
 #include <vector>
 
 /// Scenes and those who play them.
-export module aabblab.play:player;
+export module aabblab.trials:player;
 
 import aabb.base;
 import aabb.counters;
@@ -148,16 +148,30 @@ private:
     std::vector<aabb::contact> contacts_;
 };
 
+/// What the phases of a frame took, or of several.
+struct phases {
+    elapsed update;
+    elapsed search;
+    elapsed detect;  ///< the query that is asked
+
+    phases& operator+=(const phases& other) {
+        update += other.update;
+        search += other.search;
+        detect += other.detect;
+        return *this;
+    }
+    [[nodiscard]] double wall_ms() const { return update.wall_ms + search.wall_ms + detect.wall_ms; }
+    [[nodiscard]] double cpu_ms() const { return update.cpu_ms + search.cpu_ms + detect.cpu_ms; }
+};
+
 /// A frame that was played.
 struct played_frame {
     std::uint32_t number;
-    elapsed update;
-    elapsed search;
-    elapsed detect;
+    phases took;
     std::span<const aabb::index_pair> pairs;  ///< of boxes, sorted; duplicates stay
     std::span<const aabb::contact> contacts;  ///< the same; empty in a scene of boxes
 
-    [[nodiscard]] double ms() const { return update.wall_ms + search.wall_ms + detect.wall_ms; }
+    [[nodiscard]] double ms() const { return took.wall_ms(); }
 };
 
 /// Detects the contacts of a frame, and says how long the query took that is asked: the detection itself, or another.

@@ -9,9 +9,11 @@ module;
 #include <string>
 #include <vector>
 
-module aabblab.play;
+module aabblab.trials;
 
+import :observation;
 import :player;
+import :turns;
 import aabblab.configs;
 import aabblab.metrics;
 import aabblab.progress;
@@ -30,29 +32,16 @@ struct timed_contender {
     bool strayed = false;  ///< it is not repeated
 };
 
-row row_of(const experiment& e, const scene_choice& scene, const scene_validation& all, const contender& who,
-           const contender_validation& v) {
-    row r;
+/// With what the experiment records.
+row row_of(const experiment& e, const validated_row& v) {
+    row r = v;
     r.experiment = e.name;
-    r.scene = scene;
-    r.objects = all.objects;
-    r.frames = all.frames;
-    r.name = v.name;
-    r.candidates = v.candidates;
-    r.contacts = v.contacts;
-    r.digest = v.digest;
-    r.triangles = v.triangles;
-    // Engines count nothing.
-    const bool counted = std::ranges::any_of(v.counts, [](std::uint64_t n) { return n > 0; });
-    if (e.records(metric_group::counts) && counted) std::ranges::copy(v.counts, r.counts.begin());
-    // What an external engine holds nobody knows.
-    if (e.records(metric_group::bytes) && !who.told) std::ranges::copy(v.bytes, r.bytes.begin());
-    if (e.records(metric_group::error)) {
-        r.missing = v.missing;
-        r.invented = v.invented;
-        r.box_inflation = v.box_inflation;
+    if (!e.records(metric_group::counts)) r.counts = {};
+    if (!e.records(metric_group::bytes)) r.bytes = {};
+    if (!e.records(metric_group::error)) {
+        r.missing = r.invented = std::nullopt;
+        r.box_inflation = std::nullopt;
     }
-    r.status = v.differences.empty() ? "exact" : "inexact";
     return r;
 }
 
@@ -137,17 +126,17 @@ bool goes_its_own_way(const scene_choice& scene, const contender& who) {
 /// @returns what is wrong; empty when nothing is
 std::string time_into(const scene_choice& scene, const asking& how, timed_contender& timed) {
     row& r = timed.result;
-    const timing times = time_scene(scene, *timed.who, how);
+    const observation times = observe(scene, *timed.who, {.asked = how});
     const bool told = timed.who->told != nullptr;
-    const auto take = [told](const elapsed& time, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
-        wall_ms = time.wall_ms;
-        if (!told) cpu_ms = time.cpu_ms;
+    const auto take = [told](double wall, double cpu, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
+        wall_ms = wall;
+        if (!told) cpu_ms = cpu;
     };
-    take(times.build, r.build_ms, r.build_cpu_ms);
-    take(times.first, r.first_ms, r.first_cpu_ms);
-    take(times.update, r.update_ms, r.update_cpu_ms);
-    take(times.search, r.search_ms, r.search_cpu_ms);
-    take(times.detect, r.detect_ms, r.detect_cpu_ms);
+    take(times.build.wall_ms, times.build.cpu_ms, r.build_ms, r.build_cpu_ms);
+    take(times.first.wall_ms(), times.first.cpu_ms(), r.first_ms, r.first_cpu_ms);
+    take(times.rest.update.wall_ms, times.rest.update.cpu_ms, r.update_ms, r.update_cpu_ms);
+    take(times.rest.search.wall_ms, times.rest.search.cpu_ms, r.search_ms, r.search_cpu_ms);
+    take(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
     if (wrong.empty() && times.digest != r.digest && !goes_its_own_way(scene, *timed.who))
         wrong = "timed, its digest is " + times.digest + ", validated it was " + r.digest;
@@ -171,11 +160,11 @@ admission validated(const experiment& e, const scene_choice& scene, std::span<co
     std::vector<contender_name> names;
     std::vector<difference> differences;
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        const contender_validation& v = found.contenders[i];
+        const validated_row& v = found.contenders[i];
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())
-            all.timed.push_back({&contenders[i], row_of(e, scene, found, contenders[i], v)});
+            all.timed.push_back({&contenders[i], row_of(e, v)});
         else
             all.failures.push_back(v.failure);
     }

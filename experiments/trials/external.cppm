@@ -11,7 +11,7 @@ module;
 #include <vector>
 
 /// External engines: programs of others that read a recording, and write what they found and how long they took.
-module aabblab.play:external;
+module aabblab.trials:external;
 
 import aabb.counters;
 import aabb.geometry;

@@ -20,7 +20,7 @@ module;
 #include <utility>
 #include <vector>
 
-module aabblab.play;
+module aabblab.trials;
 
 import :external;
 import :player;

@@ -8,8 +8,9 @@ module;
 #include <string>
 #include <vector>
 
-/// Plays the scenes of an experiment through every composition and engine: validates, then times.
-export module aabblab.play;
+/// Everything that is tried: who plays which scene, what is asked and what is seen of that; exact or not, in turn, in a
+/// copy of this process where it may take too long, and into a folder that can be resumed.
+export module aabblab.trials;
 
 import aabb.counters;
 import aabb.registry;
@@ -18,19 +19,13 @@ import aabb.validation;
 import aabblab.configs;
 import aabblab.results;
 import aabblab.scenes;
-import aabblab.stopwatch;
+export import :isolation;
+export import :observation;
 export import :player;
+export import :staged_scene;
+export import :turns;
 
 export namespace aabblab {
-
-/// Who plays at a place of a round, so that it matters to nobody alone after whom one plays: each begins a round, and
-/// in as many rounds as there are players, if these are even, follows each other one once; else about so (Williams,
-/// "Experimental designs balanced for the estimation of residual effects of treatments", 1949).
-[[nodiscard]] constexpr std::size_t in_turn(std::size_t place, std::size_t round, std::size_t players) noexcept {
-    // 0, 1, -1, 2, -2 and so on.
-    const std::size_t apart = place % 2 == 1 ? (place + 1) / 2 : players - place / 2;
-    return (round + apart) % players;
-}
 
 /// "insertion + none + one_axis + canonical + exact", "cgal".
 [[nodiscard]] std::string text_of(const contender_name& name);
@@ -48,21 +43,10 @@ export namespace aabblab {
 /// engines.
 [[nodiscard]] std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene);
 
-/// What came out of playing a scene beside the exact answer, untimed.
-struct contender_validation {
-    contender_name name;
+/// A contender that played a scene beside the exact answer, untimed: its row with all that a run may record of that.
+struct validated_row : row {
     std::string failure;  ///< the first difference where the contender must be exact, or that it took too long
-    std::uint64_t candidates = 0;
-    std::optional<std::uint64_t> contacts;
-    std::string digest;
-    std::uint64_t missing = 0;
-    std::uint64_t invented = 0;
-    std::optional<std::uint64_t> triangles;  ///< of the scene's meshes; empty in scenes of boxes
-    std::optional<double> box_inflation;     ///< empty where no tree is to be seen
-    std::vector<difference> differences;     ///< the same by class
-    /// Over the frames after frame 0, as times are; of frame 0 where there is no other.
-    std::array<std::uint64_t, aabb::work_names.size()> counts{};
-    std::array<std::uint64_t, byte_columns.size()> bytes{};
+    std::vector<difference> differences;  ///< by class
 };
 
 struct scene_validation {
@@ -70,7 +54,7 @@ struct scene_validation {
     std::uint64_t frames = 0;
     std::string exact_by;  ///< what gave the exact answer
     std::string digest;    ///< of the exact answer
-    std::vector<contender_validation> contenders;
+    std::vector<validated_row> contenders;
 };
 
 /// Plays all contenders in step with the exact answer and compares whole sets, frame by frame. Work is counted on the
@@ -80,21 +64,6 @@ struct scene_validation {
 /// @param choice what it is, for messages
 [[nodiscard]] scene_validation validate_scene(const scene_choice& choice, scene_play& scene,
                                               std::span<const contender> contenders);
-
-/// One repeat.
-struct timing {
-    elapsed build;
-    elapsed first;
-    elapsed update;
-    elapsed search;
-    elapsed detect;  ///< of the query that is asked
-    std::string digest;
-    std::string wrong;  ///< what was asked for and answered otherwise than by `digest`; empty where all was right
-};
-/// Of an external engine, what it says of itself, of wall time alone. The scene is told what the contender itself
-/// finds.
-[[nodiscard]] timing time_scene(const scene_choice& scene, const contender& who, const asking& how = {});
-[[nodiscard]] timing time_scene(scene_play& scene, const contender& who, const asking& how = {});
 
 /// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
 /// adds a row for each. What the folder has already is not played again; later processes take what the first one

@@ -1,6 +1,5 @@
 module;
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -13,7 +12,7 @@ module;
 #include <utility>
 #include <vector>
 
-module aabblab.play;
+module aabblab.trials;
 
 import :player;
 import aabb.counters;
@@ -89,8 +88,11 @@ public:
         classify(contacts);
     }
 
-    [[nodiscard]] contender_validation result() const {
-        contender_validation v;
+    [[nodiscard]] validated_row result() const {
+        validated_row v;
+        v.scene = choice_;
+        v.objects = scene_.objects();
+        v.frames = scene_.frames();
         v.name = who_.name;
         v.failure = failure_;
         v.candidates = found_.candidates();
@@ -100,24 +102,38 @@ public:
         v.invented = scene_.meshes() ? contacts_invented_ : boxes_invented_;
         add_differences(v.differences, "missing", boxes_missing_, classes_.missing);
         add_differences(v.differences, "invented", boxes_invented_, classes_.invented);
+        v.status = v.differences.empty() ? "exact" : "inexact";
         if (scene_.meshes()) {
             v.triangles = 0;
             for (const aabb::mesh& m : scene_.meshes()->meshes) *v.triangles += m.triangles.size();
             v.box_inflation = player_.box_inflation();
         }
-        v.counts = player_.counters().counts;
-        if (scene_.frames() > 1)
-            for (std::size_t i = 0; i < v.counts.size(); ++i) v.counts[i] -= first_frame_.counts[i];
-        for (const auto& parts : {player_.global_bytes(), player_.local_bytes()})
-            for (const aabb::part_bytes& part : parts) {
-                auto column = std::ranges::find(byte_columns, part.part);
-                if (column == byte_columns.end()) --column;
-                v.bytes[static_cast<std::size_t>(column - byte_columns.begin())] += part.bytes;
-            }
+        take_counts(v);
+        // What an external engine holds nobody knows.
+        if (!who_.told) take_bytes(v);
         return v;
     }
 
 private:
+    /// Engines count nothing.
+    void take_counts(row& r) const {
+        aabb::work_counters work = player_.counters();
+        if (scene_.frames() > 1)
+            for (std::size_t i = 0; i < work.counts.size(); ++i) work.counts[i] -= first_frame_.counts[i];
+        if (std::ranges::any_of(work.counts, [](std::uint64_t n) { return n > 0; }))
+            std::ranges::copy(work.counts, r.counts.begin());
+    }
+
+    void take_bytes(row& r) const {
+        r.bytes.fill(0);
+        for (const auto& parts : {player_.global_bytes(), player_.local_bytes()})
+            for (const aabb::part_bytes& part : parts) {
+                auto column = std::ranges::find(byte_columns, part.part);
+                if (column == byte_columns.end()) --column;
+                *r.bytes[static_cast<std::size_t>(column - byte_columns.begin())] += part.bytes;
+            }
+    }
+
     void note(std::size_t frame, const std::string& difference) {
         if (!failure_.empty() || difference.empty()) return;
         failure_ = text_of(who_.name) + " is wrong on " + choice_.kind + " (" + parameters_text(choice_) + "), frame " +
@@ -178,7 +194,7 @@ scene_validation validate_scene(const scene_choice& choice, scene_play& scene, s
     aabb::exact_answer exact(scene.objects(), scene.meshes());
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<validated_player> players;
-    std::vector<contender_validation> results(contenders.size());
+    std::vector<validated_row> results(contenders.size());
     std::vector<std::size_t> places;  // of the players among the contenders
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         try {

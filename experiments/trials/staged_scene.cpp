@@ -4,18 +4,18 @@ module;
 #include <chrono>
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
 
-module aabblab.race;
+module aabblab.trials;
 
-import :apart;
+import :isolation;
+import :observation;
+import :player;
+import :staged_scene;
 import aabb.pipeline;
-import aabblab.play;
 import aabblab.scenes;
-import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -28,29 +28,33 @@ constexpr char bytes_line = 'b';
 constexpr char omission_line = 'o';
 
 /// @param seconds since the play began
-std::string line_of(const race_time& t, double seconds) {
+std::string line_of(const observation& seen, double seconds) {
     std::ostringstream text;
     text.precision(17);
-    text << frame_line << ' ' << seconds << ' ' << t.build_ms << ' ' << t.first_ms << ' ' << t.rest_ms << ' '
-         << t.frames << ' ' << t.digest << '\n';
+    text << frame_line << ' ' << seconds << ' ' << seen.build.wall_ms << ' ' << seen.frames << ' ' << seen.digest;
+    for (const phases* const took : {&seen.first, &seen.rest})
+        text << ' ' << took->update.wall_ms << ' ' << took->search.wall_ms << ' ' << took->detect.wall_ms;
+    text << '\n';
     return text.str();
 }
 
 /// A last line that was cut off is none.
 attempt attempt_from(const work_apart& played) {
-    attempt one{.end = played.end, .time = {}, .reason = played.reason, .seconds = played.seconds};
-    race_time& t = one.time;
+    attempt one{.end = played.end, .seen = {}, .reason = played.reason, .seconds = played.seconds};
+    observation& seen = one.seen;
     std::istringstream lines(played.told.substr(0, played.told.rfind('\n') + 1));
     for (std::string line; std::getline(lines, line);) {
         std::istringstream text(line.substr(1));
         if (line[0] == frame_line) {
-            text >> one.seconds_of_frames >> t.build_ms >> t.first_ms >> t.rest_ms >> t.frames >> t.digest;
-            t.digests.push_back(t.digest);
+            text >> one.seconds_of_frames >> seen.build.wall_ms >> seen.frames >> seen.digest;
+            for (phases* const took : {&seen.first, &seen.rest})
+                text >> took->update.wall_ms >> took->search.wall_ms >> took->detect.wall_ms;
+            seen.digests.push_back(seen.digest);
         } else if (line[0] == bytes_line) {
-            text >> t.bytes;
+            text >> seen.bytes;
         } else {
             const std::size_t between = line.find('\t');
-            t.left_out.push_back({line.substr(1, between - 1), line.substr(between + 1)});
+            seen.left_out.push_back({line.substr(1, between - 1), line.substr(between + 1)});
         }
     }
     return one;
@@ -58,22 +62,12 @@ attempt attempt_from(const work_apart& played) {
 
 void tell_play(scene_play& scene, const contender& who, std::size_t frames, const telling& tell) {
     const auto begin = std::chrono::steady_clock::now();
-    race_time time;
-    std::optional<player> p;
-    time.build_ms = milliseconds_of([&] { p.emplace(who, scene, aabb::instrumentation::none); });
-    tally found(scene.meshes() != nullptr);
-    play(
-        scene, *p,
-        [&](const played_frame& frame) {
-            found.add(frame.pairs, frame.contacts);
-            (frame.number == 0 ? time.first_ms : time.rest_ms) += frame.ms();
-            ++time.frames;
-            time.digest = found.digest();
-            tell(line_of(time, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
-        },
-        frames);
-    tell(fmt::format("{} {}\n", bytes_line, p->held_bytes()));
-    for (const aabb::omission& one : p->left_out()) tell(omission_line + one.what + "\t" + one.why + "\n");
+    const auto each = [&](const observation& so_far) {
+        tell(line_of(so_far, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+    };
+    const observation seen = observe(scene, who, {.frames = frames, .each = each});
+    tell(fmt::format("{} {}\n", bytes_line, seen.bytes));
+    for (const aabb::omission& one : seen.left_out) tell(omission_line + one.what + "\t" + one.why + "\n");
 }
 
 }  // namespace
@@ -95,7 +89,7 @@ attempt staged_scene::play(const contender& who, std::size_t frames, double seco
 }
 
 std::string text_of(const attempt& one) {
-    const std::string where = one.time.frames > 0 ? fmt::format(", in frame {}", one.time.frames) : "";
+    const std::string where = one.seen.frames > 0 ? fmt::format(", in frame {}", one.seen.frames) : "";
     const std::string after = fmt::format("after {:.2g} s{}", one.seconds, where);
     switch (one.end) {
         case ending::done: return "played to its end";

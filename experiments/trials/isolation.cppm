@@ -5,7 +5,7 @@ module;
 #include <string_view>
 
 /// Work that may take too long or too much memory.
-export module aabblab.race:apart;
+export module aabblab.trials:isolation;
 
 export namespace aabblab {
 

@@ -7,10 +7,13 @@ module;
 #include <utility>
 #include <vector>
 
-module aabblab.race;
+module aabblab.trials;
 
-import :apart;
-import aabblab.play;
+import :isolation;
+import :observation;
+import :player;
+import :staged_scene;
+import :turns;
 import aabblab.progress;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -22,24 +25,24 @@ namespace {
 /// Of the time that is left nobody takes more, unless that is less than twice what the first takes.
 constexpr double greatest_share = 0.25;
 
-bool is_hopeless(const race_time& time, const race_time& first) {
+bool is_hopeless(const observation& time, const observation& first) {
     return time.whole_ms() > hopeless_ms && time.frame_ms() > hopeless_ratio * first.frame_ms();
 }
 
 /// The first of all, who decides how many frames there is time for.
 void play_first(turns& played, staged_scene& scene, const contender& who, const time_limits& limits) {
     attempt first = scene.play(who, played.frames, greatest_share * limits.to_play());
-    if (first.end == ending::stopped && first.time.frames > 0) {
+    if (first.end == ending::stopped && first.seen.frames > 0) {
         // What is held and left out only a play tells that comes to its end.
-        played.frames = first.time.frames;
+        played.frames = first.seen.frames;
         first = scene.play(who, played.frames, 2 * greatest_share * limits.to_play());
     }
     if (first.end != ending::done) {
         played.broken_off[0] = std::move(first);
         return;
     }
-    played.frames = first.time.frames;
-    played.times[0].push_back(std::move(first.time));
+    played.frames = first.seen.frames;
+    played.times[0].push_back(std::move(first.seen));
 }
 
 /// @param first seconds that the first took
@@ -52,7 +55,7 @@ void play_once(turns& played, staged_scene& scene, std::size_t at, const contend
     one.is_hopeless = one.end == ending::stopped && hopeless < share;
     if (one.is_hopeless) played.hopeless[at] = true;
     if (one.end == ending::done)
-        played.times[at].push_back(std::move(one.time));
+        played.times[at].push_back(std::move(one.seen));
     else if (played.times[at].empty())
         played.broken_off[at] = std::move(one);
 }
@@ -62,7 +65,7 @@ void play_once(turns& played, staged_scene& scene, std::size_t at, const contend
 turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::size_t frames, std::size_t rounds,
                    const time_limits& limits) {
     progress shown("plays", rounds * all.size());
-    turns played{frames, 0, std::vector<std::vector<race_time>>(all.size()),
+    turns played{frames, 0, std::vector<std::vector<observation>>(all.size()),
                  std::vector<std::optional<attempt>>(all.size()), std::vector<bool>(all.size())};
     const double before_first = limits.to_play();
     play_first(played, scene, all[0], limits);
@@ -89,16 +92,16 @@ turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::siz
     return played;
 }
 
-std::vector<std::size_t> who_disagrees(std::span<const std::vector<race_time>> times) {
+std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times) {
     std::vector<std::size_t> all;
     for (std::size_t i = 1; i < times.size(); ++i)
         if (!times[i].empty() && times[i].front().digest != times[0].front().digest) all.push_back(i);
     return all;
 }
 
-std::vector<double> frame_ms_of(std::span<const race_time> times) {
+std::vector<double> frame_ms_of(std::span<const observation> times) {
     std::vector<double> ms;
-    for (const race_time& t : times) ms.push_back(t.frame_ms());
+    for (const observation& t : times) ms.push_back(t.frame_ms());
     return ms;
 }
 

@@ -1,0 +1,164 @@
+module;
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+/// Tables of rows of one type. Its columns are told once, by a function that calls `field(name, member)` for each, and
+/// are written and read by that.
+export module aabblab.results:columns;
+
+import aabb.base;
+import aabblab.files;
+import :csv;
+
+export namespace aabblab {
+
+/// A column of words, each for a value of an enumeration or of a flag, by number.
+template <class Value>
+struct one_of_words {
+    Value& value;
+    std::span<const std::string_view> words;
+};
+template <class Value>
+one_of_words(Value&, std::span<const std::string_view>) -> one_of_words<Value>;
+
+/// A column of numbers with all their digits; those that are read are above 0, as logarithmic axes have them.
+template <class Number>
+struct all_digits {
+    Number& value;
+};
+template <class Number>
+all_digits(Number&) -> all_digits<Number>;
+
+// How a value stands in its field; types of a table's own add theirs beside them.
+
+[[nodiscard]] inline std::string written(const std::string& text) {
+    return text;
+}
+template <std::integral Number>
+[[nodiscard]] std::string written(Number number) {
+    return std::to_string(number);
+}
+[[nodiscard]] inline std::string written(double number) {
+    std::array<char, 64> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, 6).ptr;
+    return {text.data(), end};
+}
+template <class Value>
+[[nodiscard]] std::string written(const one_of_words<Value>& word) {
+    return std::string(word.words[static_cast<std::size_t>(word.value)]);
+}
+template <class Number>
+[[nodiscard]] std::string written(const all_digits<Number>& number) {
+    return aabb::shortest(number.value);
+}
+template <class T>
+[[nodiscard]] std::string written(const std::optional<T>& value) {
+    return value ? written(*value) : "";
+}
+
+/// @returns whether the field is such a value
+[[nodiscard]] inline bool taken(std::string& to, const std::string& text) {
+    to = text;
+    return true;
+}
+template <class Number>
+    requires std::is_arithmetic_v<Number>
+[[nodiscard]] bool taken(Number& to, const std::string& text) {
+    const char* end = text.data() + text.size();
+    if (std::from_chars(text.data(), end, to) != std::from_chars_result{end, std::errc{}}) return false;
+    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(to);
+    return true;
+}
+template <class Value>
+[[nodiscard]] bool taken(const one_of_words<Value>& to, const std::string& text) {
+    const auto found = std::ranges::find(to.words, text);
+    if (found == to.words.end()) return false;
+    to.value = static_cast<Value>(found - to.words.begin());
+    return true;
+}
+template <class Number>
+[[nodiscard]] bool taken(const all_digits<Number>& to, const std::string& text) {
+    return taken(to.value, text) && to.value > 0;
+}
+template <class T>
+[[nodiscard]] bool taken(std::optional<T>& to, const std::string& text) {
+    to.reset();
+    return text.empty() || taken(to.emplace(), text);
+}
+
+/// For messages.
+template <class T>
+[[nodiscard]] std::string expected_of(const T&) {
+    return "a number";
+}
+template <class Value>
+[[nodiscard]] std::string expected_of(const one_of_words<Value>& word) {
+    std::string text;
+    for (const std::string_view one : word.words) text += (text.empty() ? "" : " or ") + std::string(one);
+    return text;
+}
+
+template <class Row, class Columns>
+[[nodiscard]] std::vector<std::string> names_of(Columns columns, std::span<const std::string> without = {}) {
+    std::vector<std::string> names;
+    Row any{};
+    columns(any, [&](const std::string& name, const auto&) {
+        if (std::ranges::find(without, name) == without.end()) names.push_back(name);
+    });
+    return names;
+}
+
+template <class Row, class Columns>
+[[nodiscard]] std::vector<std::string> fields_of(const Row& r, Columns columns) {
+    std::vector<std::string> fields;
+    columns(r, [&](const std::string&, const auto& value) { fields.push_back(written(value)); });
+    return fields;
+}
+
+/// Refuses records that do not begin with the names of the columns.
+void require_header(const std::string& file, const csv_record& found, const std::vector<std::string>& expected);
+
+/// @param later columns that files of earlier versions do not have
+/// @param seen sees each row and the line that it begins in
+/// @throws aabb::input_error with file and line where the records are not such rows.
+template <class Row, class Columns, class Seen>
+[[nodiscard]] std::vector<Row> rows_in(std::span<const csv_record> records, const std::string& file, Columns columns,
+                                       std::span<const std::string_view> later, Seen seen) {
+    std::vector<Row> rows;
+    if (records.empty()) return rows;
+    std::vector<std::string> absent(later.begin(), later.end());
+    std::erase_if(absent, [&](const std::string& name) {
+        return std::ranges::find(records[0].fields, name) != records[0].fields.end();
+    });
+    require_header(file, records[0], names_of<Row>(columns, absent));
+    for (const auto& [fields, line] : records.subspan(1)) {
+        const std::string place = file + ":" + std::to_string(line) + ": ";
+        std::size_t at = 0;
+        columns(rows.emplace_back(), [&](const std::string& name, auto&& value) {
+            if (std::ranges::find(absent, name) != absent.end()) return;
+            if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
+            if (!taken(value, fields[at]))
+                throw aabb::input_error(place + name + " must be " + expected_of(value) + ", not '" + fields[at] + "'");
+            if (name.ends_with("_ms") && fields[at].starts_with('-'))
+                throw aabb::input_error(place + name + " is a time, which is not below 0, as '" + fields[at] + "' is");
+            ++at;
+        });
+        if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
+        seen(rows.back(), line);
+    }
+    return rows;
+}
+
+}  // namespace aabblab
