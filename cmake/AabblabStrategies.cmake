@@ -34,6 +34,14 @@ function(aabblab_family kind name)
     aabblab_strategy_module(${kind} ${name})
 endfunction()
 
+# aabblab_room(NAME FILES…): declares a room, NAME/, with what strategies share that is large: the module aabb.NAME, which
+# strategies import, and behind it the modules aabb.NAME.FILE, which only the room itself does.
+function(aabblab_room room)
+    foreach(name IN LISTS room ARGN)
+        aabblab_strategy_module(${room} ${name})
+    endforeach()
+endfunction()
+
 function(aabblab_strategy_module kind name)
     if(NOT TARGET aabblab_strategies)
         add_library(aabblab_strategies STATIC)

@@ -9,6 +9,7 @@
 #include "stages.hpp"
 
 import aabb.base;
+import aabb.columns;
 import aabb.counters;
 import aabb.global_search;
 import aabb.policy;

@@ -14,6 +14,7 @@
 
 #include "stages.hpp"
 
+import aabb.columns;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;

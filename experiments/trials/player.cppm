@@ -114,6 +114,9 @@ public:
     void search();
     void detect();
 
+    /// Of the time of the last search, what went into work of an update (`aabb::global_stage`).
+    [[nodiscard]] double share_of_update() const { return made_.global ? made_.global->share_of_update() : 0; }
+
     /// In place of `detect`, in scenes of meshes: any one contact of the frame, how many there are.
     [[nodiscard]] std::optional<aabb::contact> first_contact();
     [[nodiscard]] std::uint64_t count_contacts();

@@ -10,13 +10,6 @@ module;
 
 export module aabb.global_search;
 
-export import :chosen_axis;
-export import :column_groups;
-export import :column_lists;
-export import :column_plan;
-export import :column_search;
-export import :column_worker;
-export import :frame_at_rest;
 export import :interval_ends;
 export import :inversions;
 export import :membership;
@@ -183,10 +176,11 @@ private:
     frame_state frame_;
 };
 
-/// With a partition that cuts first there are no projection lists.
-template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
+/// With a partition that brings a search of its own there are no projection lists.
+template <SortPolicy Sort, SearchingPartition Partition, ListSweep Sweep, CounterPolicy Counters>
 class global_search<Sort, Partition, Sweep, Counters> {
     static_assert(aabb::is_accepted<sentence_of<Sort, Partition, Sweep>()>);
+    using own_search = typename Partition::template search_with<Sort, Sweep, Counters>;
 
 public:
     global_search() : global_search(Sort{}, Partition{}, Sweep{}) {}
@@ -213,18 +207,15 @@ public:
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] static axis_set sorted_axes() noexcept { return 0; }
-    /// Whether the boxes of the frame were so few that none was sorted or cut.
-    [[nodiscard]] bool is_uncut() const noexcept { return search_.is_uncut(); }
-    /// How the last frame that was cut was, into groups of columns where there were any.
-    [[nodiscard]] const column_plan& plan() const noexcept { return search_.plan(); }
-    [[nodiscard]] bool is_in_groups() const noexcept { return search_.is_in_groups(); }
+    /// The partition's search.
+    [[nodiscard]] const own_search& own() const noexcept { return search_; }
     [[nodiscard]] std::size_t projection_bytes() const noexcept { return objects_.bytes(); }
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return search_.sort_bytes(); }
     [[nodiscard]] std::size_t partition_bytes() const noexcept { return search_.partition_bytes(); }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept { return search_.sweep_bytes(); }
 
 private:
-    column_search<Sort, Partition, Sweep, Counters> search_;
+    own_search search_;
     [[no_unique_address]] Counters counters_;
     membership objects_;
     frame_state frame_;

@@ -1,6 +1,5 @@
 module;
 #include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -8,7 +7,6 @@ export module aabb.global_search:partition_policy;
 
 import aabb.geometry;
 import aabb.policy;
-import :column_plan;
 import :membership;
 import :projection;
 
@@ -35,21 +33,22 @@ concept CuttingPartition =
         { fitted.copies(id, b) } -> std::convertible_to<std::uint64_t>;
     };
 
-/// A partition that cuts before anything is sorted: `plan(boxes, within)` says into which columns boxes are cut, of
-/// which only what lies within the bounds counts; `few()` says of how many nothing is cut, `group(n)` how many of n
-/// boxes are cut together, and `threads()` how many threads take such groups.
+namespace detail {
+template <template <class Sort, class Sweep, class Counters> class Search>
+struct search_of_partition;
+}  // namespace detail
+
+/// A partition that cuts before anything is sorted, in a search of its own, made of the three strategies:
+/// `search_with<Sort, Sweep, Counters>(sort, partition, sweep)`. Its `update(boxes, objects, counters)` takes boxes
+/// that nobody has looked at, `search(pairs, counters)` appends the pairs; `sort_bytes()`, `partition_bytes()` and
+/// `sweep_bytes()` say what each holds, `plans()`, `left_out()` and `share_of_update()` what a stage says.
 template <class P>
-concept ColumnPartition =
-    PartitionPolicy<P> && requires(const P policy, std::span<const box> boxes, const box& within) {
-        { policy.plan(boxes, within) } -> std::same_as<column_plan>;
-        { policy.few() } -> std::same_as<std::size_t>;
-        { policy.group(boxes.size()) } -> std::same_as<std::size_t>;
-        { policy.threads() } -> std::same_as<unsigned>;
-    };
+concept SearchingPartition =
+    PartitionPolicy<P> && requires { typename detail::search_of_partition<P::template search_with>; };
 
 /// Whether there are subsets at all.
 template <PartitionPolicy P>
-inline constexpr bool really_cuts = CuttingPartition<P> || ColumnPartition<P>;
+inline constexpr bool really_cuts = CuttingPartition<P> || SearchingPartition<P>;
 
 /// Into how many segments axes were to be cut, and were; summed over the axes.
 struct segment_counts {

@@ -19,10 +19,6 @@ concept SortPolicy =
         policy.sort(list, some);
     };
 
-/// A sort whose work columns do as they are cut: they bring boxes into buckets, and need no more.
-template <class S>
-concept BucketSort = SortPolicy<S> && requires { requires S::is_done_by_columns; };
-
 namespace detail {
 /// An entry that is no projection.
 struct other_entry {

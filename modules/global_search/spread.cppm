@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,7 @@ import :projection;
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 // How boxes lie along the axes: what strategies choose axes by.
+
 export namespace aabb {
 
 /// Variance of the boxes' centres and mean of their extents, by axis.
@@ -74,5 +76,31 @@ struct spread {
     for (int k = 0; k < 3; ++k) axes |= static_cast<axis_set>(separation[k] > 0) << k;
     return axes ? axes : axis_set{1};
 }
+
+/// The axis on which the boxes' centres vary most. It changes only when another varies half as much again, since a new
+/// list must be sorted from scratch.
+class chosen_axis {
+public:
+    int choose(std::span<const box> boxes, const membership& objects) {
+        return choose(spread_of(boxes, objects), every_axis);
+    }
+
+    /// One of these; at least one.
+    int choose(const spread& along, axis_set among) {
+        const auto is_among = [among](int k) { return has_axis(among, static_cast<std::size_t>(k)); };
+        const double margin = chosen_ && is_among(axis_) ? 1.5 : 1.0;
+        if (!is_among(axis_)) axis_ = std::countr_zero(among);
+        for (int k = 0; k < 3; ++k)
+            if (is_among(k) && along.variance[k] > margin * along.variance[axis_]) axis_ = k;
+        chosen_ |= along.objects > 0;
+        return axis_;
+    }
+
+    [[nodiscard]] int axis() const noexcept { return axis_; }
+
+private:
+    int axis_ = 0;
+    bool chosen_ = false;
+};
 
 }  // namespace aabb

@@ -1,6 +1,5 @@
 module;
 #include <concepts>
-#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -10,7 +9,6 @@ export module aabb.global_search:sweep_policy;
 import aabb.counters;
 import aabb.geometry;
 import aabb.policy;
-import :column_plan;
 import :membership;
 import :partition_policy;
 import :projection;
@@ -55,7 +53,7 @@ concept CoherentSweep =
 /// Why a coherent sweep does not go with these strategies; empty where it does.
 template <class... All>
 constexpr std::string_view refusal_of_coherent_sweep() {
-    if (((CuttingPartition<All> || ColumnPartition<All>) || ...))
+    if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
         return "a sweep that keeps its pairs between frames cannot follow a partition that makes other subsets in each "
                "frame; it goes with none only";
     if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
@@ -67,14 +65,5 @@ constexpr std::string_view refusal_of_coherent_sweep() {
 /// Either of the two.
 template <class S>
 concept SweepPolicy = ListSweep<S> || CoherentSweep<S>;
-
-/// A sweep of columns, too. It returns how many tests of a vector it made; once these are more than `most`, it stops,
-/// and the pairs are not all.
-template <class S>
-concept ColumnSweep = SweepPolicy<S> && requires(S policy, const column_block& block, std::vector<index_pair>& pairs,
-                                                 std::uint64_t most, no_counters none, work_counters some) {
-    { policy.sweep(block, pairs, most, none) } -> std::same_as<std::uint64_t>;
-    { policy.sweep(block, pairs, most, some) } -> std::same_as<std::uint64_t>;
-};
 
 }  // namespace aabb

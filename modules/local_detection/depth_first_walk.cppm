@@ -11,11 +11,9 @@ export module aabb.local_detection:depth_first_walk;
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
-import :leaf_test;
 import :model;
 import :tree_policy;
 import :triangle_policy;
-import :walk_goal;
 
 export namespace aabb {
 

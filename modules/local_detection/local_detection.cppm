@@ -9,43 +9,13 @@ module;
 
 export module aabb.local_detection;
 
-export import :balanced_order;
-export import :batched_walk;
-export import :box_codes;
-export import :box_images;
-export import :build_node;
 export import :build_policy;
-export import :child_pairs;
-export import :corner_numbers;
 export import :depth_first_walk;
-export import :eight_boxes;
-export import :front_keeper;
-export import :front_walk;
-export import :kept_leaves;
-export import :leaf_boxes;
-export import :leaf_front;
-export import :leaf_order;
-export import :leaf_pairs;
-export import :leaf_reader;
-export import :leaf_slab;
-export import :leaf_store;
-export import :leaf_test;
-export import :level_steps;
 export import :mesh_fit;
 export import :model;
-export import :nearest_walk;
-export import :recently_made;
 export import :tree_policy;
 export import :tree_survey;
-export import :triangle_batch;
-export import :triangle_block;
-export import :triangle_filter;
 export import :triangle_policy;
-export import :two_nearest;
-export import :vertex_lists;
-export import :walk_goal;
-export import :wide_node;
-export import :wide_tree_policy;
 
 import aabb.base;
 import aabb.counters;
@@ -58,19 +28,20 @@ template <class Tree, class Triangle, class Counters>
 struct walk_of {
     using type = depth_first_walk<Tree, Triangle, Counters>;
 };
-template <WideTreePolicy Tree, class Triangle, class Counters>
+template <class Tree, class Triangle, class Counters>
+    requires requires { typename Tree::template walk<Triangle, Counters>; }
 struct walk_of<Tree, Triangle, Counters> {
-    using type = front_walk<Tree, Triangle, Counters>;
+    using type = typename Tree::template walk<Triangle, Counters>;
 };
 
 }  // namespace aabb::detail
 
 export namespace aabb {
 
-/// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles: wide
-/// trees in batches, others depth first. The work is done in A's frame (`relative_pose`). Nothing is allocated once the
-/// walk's memory has grown to the deepest query, and to what is kept from query to query. Every query throws
-/// input_error as `require_ieee_arithmetic` and `relative_pose` do.
+/// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles. The work
+/// is done in A's frame (`relative_pose`). Nothing is allocated once the walk's memory has grown to the deepest query,
+/// and to what is kept from query to query. Every query throws input_error as `require_ieee_arithmetic` and
+/// `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);

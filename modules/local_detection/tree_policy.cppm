@@ -10,11 +10,20 @@ export module aabb.local_detection:tree_policy;
 
 import aabb.geometry;
 import aabb.policy;
-import :balanced_order;
-import :build_node;
-import :leaf_test;
+import :build_policy;
 
 export namespace aabb {
+
+/// What is tested in place of the box of a leaf that has none.
+enum class leaf_test_choice : std::uint8_t {
+    none,                ///< nothing: the triangles are tested at once
+    triangle_box,        ///< the leaf's triangle against the other node's box, `triangle_meets_box`
+    triangle_aabb,       ///< the triangle's own box, made on the fly
+    moller_triangle_box  ///< as `triangle_box`, but Möller's original, which loses pairs that touch
+};
+
+/// What a walk is for: with `first_pair` it is stopped at the first.
+enum class walk_goal : std::uint8_t { every_pair, first_pair };
 
 /// Bytes of a tree, as allocated; the box of the root counts where the other boxes are made from it.
 struct tree_bytes {
@@ -33,7 +42,8 @@ concept BalancedTree = requires(T tree, const mesh& m, const balanced_order& ord
 /// arrangement`. A cursor stands at a node; what it carries is the layout's own business. `bounds(cursor)` is a box
 /// that holds the node's triangles; that of a leaf in a layout without leaf boxes is its parent's, or what
 /// `leaf_test()` asks for. `refit` takes a mesh of the same triangles whose vertices have moved; it uses the boxes as
-/// scratch.
+/// scratch. Trees are walked by `depth_first_walk`, but where a layout names another way: `template <class Triangle,
+/// class Counters> using walk`.
 template <class T>
 concept TreePolicy =
     Strategy<T> && (BalancedTree<T> || requires(T tree, std::span<const build_node> nodes) { tree.pack(nodes); }) &&

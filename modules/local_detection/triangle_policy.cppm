@@ -9,7 +9,7 @@ import aabb.policy;
 export namespace aabb {
 
 /// Decides whether two closed triangles share a point. One that is always right may say `static constexpr bool filtered
-/// = true`: where many pairs come at once, `triangle_filter` then decides on most of them.
+/// = true`: where many pairs come at once, a filter may then decide on most of them.
 template <class R>
 concept TrianglePolicy = Strategy<R> && requires(const R policy, const triangle3f& s, const triangle3f& t) {
     { policy.intersects(s, t) } -> std::same_as<bool>;

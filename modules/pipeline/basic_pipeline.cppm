@@ -4,6 +4,7 @@ module;
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,24 +16,17 @@ export module aabb.pipeline:basic_pipeline;
 
 import aabb.base;
 import aabb.geometry;
-import :divided_scene;
 import :posed_boxes;
 import :scene;
+import :scene_parts;
 import :stage;
-
-namespace aabb::detail {
-
-struct no_division {};
-struct no_pieces {};
-
-}  // namespace aabb::detail
 
 export namespace aabb {
 
-/// Global search that may have meshes divided, as any may that is chosen at run time (`global_stage::divide`).
+/// Global search that may divide a scene, as any may that is chosen at run time (`global_stage::divide`).
 template <class Global>
 concept DividingSearch = requires(Global& global, const mesh_scene& scene) {
-    { global.divide(scene) } -> std::same_as<mesh_division>;
+    { global.divide(scene) } -> std::same_as<std::unique_ptr<scene_parts>>;
 };
 
 static_assert(DividingSearch<global_stage>);
@@ -50,11 +44,9 @@ public:
     /// the pipeline.
     basic_pipeline(const mesh_scene& scene, Global& global, Local& local)
         : scene_(scene), global_(&global), local_(local) {
-        if constexpr (may_divide)
-            if (mesh_division division = global.divide(scene); !division.empty())
-                divided_.emplace(scene, std::move(division));
+        if constexpr (may_divide) parts_ = global.divide(scene);
         add_models();
-        if (!is_divided()) world_.emplace(scene);
+        if (!parts_) world_.emplace(scene);
         for (std::uint32_t id = 0; id < pieces(); ++id) global.insert(id);
     }
     /// Without global search every two objects are candidates, and no boxes are made of them in the world, so that they
@@ -94,9 +86,11 @@ public:
         frame_.require_taken();
         searched_ = false;
         candidates_.clear();
-        if (is_divided())
-            search_pieces();
-        else if (searches())
+        if (parts_) {
+            parts_->found.clear();
+            global_->search(parts_->found);
+            parts_->name_objects(candidates_);
+        } else if (searches())
             global_->search(candidates_);
         else
             take_every_two();
@@ -111,12 +105,13 @@ public:
                 const auto [a, b] = models_of(i);
                 triangle_pairs_.clear();
                 local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
+                if (parts_) parts_->name_triangles({a, b}, triangle_pairs_);
                 // Room for all at once: asking for it contact by contact takes longer than writing them.
                 const std::size_t before = contacts_.size();
                 contacts_.resize(before + triangle_pairs_.size());
                 contact* to = contacts_.data() + before;
                 const index_pair objects = candidates_[i];
-                for (const index_pair found : triangle_pairs_) *to++ = contact_of(objects, a, b, found);
+                for (const index_pair found : triangle_pairs_) *to++ = {objects.a, objects.b, found.a, found.b};
             }
         });
     }
@@ -127,8 +122,10 @@ public:
         require_searched();
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             const auto [a, b] = models_of(i);
-            if (const auto found = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b]))
-                return contact_of(candidates_[i], a, b, *found);
+            if (auto found = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b])) {
+                if (parts_) parts_->name_triangles({a, b}, {&*found, 1});
+                return contact{candidates_[i].a, candidates_[i].b, found->a, found->b};
+            }
         }
         return std::nullopt;
     }
@@ -144,8 +141,7 @@ public:
 
     /// In the world, by object; by piece where meshes are divided; empty without global search.
     [[nodiscard]] std::span<const box> boxes() const noexcept {
-        if constexpr (may_divide)
-            if (divided_) return divided_->boxes();
+        if (parts_) return parts_->boxes();
         return world_ ? world_->boxes() : std::span<const box>();
     }
     /// Pairs of objects whose boxes overlap, in no particular order; where meshes are divided, one for each two pieces
@@ -155,47 +151,21 @@ public:
     [[nodiscard]] std::span<const contact> contacts() const noexcept { return contacts_; }
     /// Of local detection: the meshes, or what they are divided into.
     [[nodiscard]] std::uint32_t models() const noexcept {
-        if constexpr (may_divide)
-            if (divided_) return divided_->models();
+        if (parts_) return parts_->models();
         return static_cast<std::uint32_t>(scene_.meshes.size());
     }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = (world_ ? world_->bytes() : 0) + bytes_of(poses_) + bytes_of(candidates_) +
-                          bytes_of(triangle_pairs_) + bytes_of(contacts_);
-        if constexpr (may_divide) all += bytes_of(pieces_);
-        return all;
+        return (world_ ? world_->bytes() : 0) + bytes_of(poses_) + bytes_of(candidates_) +
+               (parts_ ? bytes_of(parts_->found) : 0) + bytes_of(triangle_pairs_) + bytes_of(contacts_);
     }
-    /// What the division of meshes takes beside that.
-    [[nodiscard]] std::size_t division_bytes() const noexcept {
-        if constexpr (may_divide)
-            if (divided_) return divided_->bytes();
-        return 0;
-    }
+    /// What parts take beside that.
+    [[nodiscard]] std::size_t division_bytes() const noexcept { return parts_ ? parts_->bytes() : 0; }
 
 private:
-    /// A candidate as local detection sees it.
-    struct model_pair {
-        std::uint32_t a;
-        std::uint32_t b;
-    };
-
-    [[nodiscard]] bool is_divided() const noexcept {
-        if constexpr (may_divide)
-            return divided_.has_value();
-        else
-            return false;
-    }
-    [[nodiscard]] bool searches() const noexcept {
-        if constexpr (may_divide)
-            return global_ != nullptr;
-        else
-            return true;
-    }
+    [[nodiscard]] bool searches() const noexcept { return !may_divide || global_ != nullptr; }
     /// As global search sees them.
     [[nodiscard]] std::uint32_t pieces() const noexcept {
-        if constexpr (may_divide)
-            if (divided_) return divided_->pieces();
-        return static_cast<std::uint32_t>(scene_.mesh_of.size());
+        return parts_ ? parts_->pieces() : static_cast<std::uint32_t>(scene_.mesh_of.size());
     }
 
     void add_models() {
@@ -203,14 +173,10 @@ private:
         for (std::uint32_t m = 0; m < models(); ++m) local_.add_model(mesh_of(m));
     }
     [[nodiscard]] const mesh& mesh_of(std::uint32_t model) const noexcept {
-        if constexpr (may_divide)
-            if (divided_) return divided_->mesh_of(model);
-        return scene_.meshes[model];
+        return parts_ ? parts_->mesh_of(model) : scene_.meshes[model];
     }
     [[nodiscard]] bool deforms(std::uint32_t model) const {
-        if constexpr (may_divide)
-            if (divided_) return divided_->deforms(model);
-        return scene_.deforms(model);
+        return parts_ ? parts_->deforms(model) : scene_.deforms(model);
     }
 
     /// Calls `change` with all pieces of an object, and `undo` with those that it was called with when it throws.
@@ -220,47 +186,32 @@ private:
         if (object >= scene_.mesh_of.size())
             throw input_error("there is no object " + std::to_string(object) + ": the scene has " +
                               std::to_string(scene_.mesh_of.size()));
-        if constexpr (may_divide)
-            if (divided_) {
-                const auto [first, last] = divided_->pieces_of(object);
-                for (std::uint32_t id = first; id < last; ++id) {
-                    try {
-                        change(id);
-                    } catch (...) {
-                        while (id-- > first) undo(id);
-                        throw;
-                    }
-                }
-                return;
+        if (!parts_) return change(object);
+        const auto [first, last] = parts_->pieces_of(object);
+        for (std::uint32_t id = first; id < last; ++id) {
+            try {
+                change(id);
+            } catch (...) {
+                while (id-- > first) undo(id);
+                throw;
             }
-        change(object);
+        }
     }
 
     /// Refitting refuses a mesh of which no box could be made.
     void follow_meshes() {
-        if constexpr (may_divide)
-            if (divided_) divided_->follow();
+        if (parts_) parts_->follow();
         for (std::uint32_t m = 0; m < models(); ++m)
             if (deforms(m)) local_.refit(m);
     }
     void place(std::span<const pose> poses) {
-        if constexpr (may_divide)
-            if (divided_) return divided_->place(poses);
+        if (parts_) return parts_->place(poses);
         if (world_)
             world_->update(poses);
         else
             require_poses(scene_, poses);
     }
 
-    void search_pieces() {
-        if constexpr (may_divide) {
-            pieces_.clear();
-            global_->search(pieces_);
-            // Parts of one object never meet.
-            std::erase_if(pieces_, [&](index_pair p) { return divided_->object_of(p.a) == divided_->object_of(p.b); });
-            for (const auto [a, b] : pieces_) candidates_.push_back({divided_->object_of(a), divided_->object_of(b)});
-        }
-    }
     void take_every_two() {
         for (std::uint32_t b = 0; b < poses_.size(); ++b)
             for (std::uint32_t a = 0; a < b; ++a) candidates_.push_back({a, b});
@@ -271,30 +222,19 @@ private:
             throw input_error("there are no candidates to decide on: search was not called, or did not succeed");
         assert(poses_.size() == scene_.mesh_of.size());
     }
-    [[nodiscard]] model_pair models_of(std::size_t candidate) const noexcept {
-        if constexpr (may_divide)
-            if (divided_) return {divided_->model_of(pieces_[candidate].a), divided_->model_of(pieces_[candidate].b)};
+    [[nodiscard]] index_pair models_of(std::size_t candidate) const noexcept {
+        if (parts_) return parts_->models_of(parts_->found[candidate]);
         return {scene_.mesh_of[candidates_[candidate].a], scene_.mesh_of[candidates_[candidate].b]};
-    }
-    /// @param triangles of the two models
-    [[nodiscard]] inline contact contact_of(index_pair objects, std::uint32_t model_a, std::uint32_t model_b,
-                                            index_pair triangles) const noexcept {
-        if constexpr (may_divide)
-            if (divided_)
-                triangles = {divided_->triangle_of(model_a, triangles.a), divided_->triangle_of(model_b, triangles.b)};
-        return {objects.a, objects.b, triangles.a, triangles.b};
     }
 
     const mesh_scene& scene_;
     Global* global_ = nullptr;
     Local& local_;
-    // With global search that asks for it.
-    [[no_unique_address]] std::conditional_t<may_divide, std::optional<divided_scene>, detail::no_division> divided_;
-    std::optional<posed_boxes> world_;  // with any other
+    // With global search that asks for it; with any other there are objects in the world.
+    [[no_unique_address]] std::conditional_t<may_divide, std::unique_ptr<scene_parts>, no_scene_parts> parts_;
+    std::optional<posed_boxes> world_;
     std::vector<pose> poses_;
     std::vector<index_pair> candidates_;
-    // By candidate, where meshes are divided.
-    [[no_unique_address]] std::conditional_t<may_divide, std::vector<index_pair>, detail::no_pieces> pieces_;
     std::vector<index_pair> triangle_pairs_;
     large_vector<contact> contacts_;
     frame_state frame_;

@@ -11,7 +11,7 @@ export module aabb.pipeline:detector;
 import aabb.base;
 import aabb.geometry;
 import :basic_pipeline;
-import :given_scene;
+import :scene;
 import :searched_by;
 import :stage;
 

@@ -1,4 +1,5 @@
 module;
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -8,12 +9,22 @@ module;
 export module aabb.pipeline:prepared_search;
 
 import aabb.geometry;
-import :prepare_policy;
+import aabb.policy;
 import :scene;
+import :scene_parts;
 import :searched_by;
 import :stage;
 
 export namespace aabb {
+
+/// What happens to boxes before a global search sees them. `before(search, counted)` returns a stage that hands them on
+/// to that search, changed, and its pairs back, or the search itself where nothing is to be done. Such a stage may
+/// divide the scene (`global_stage::divide`), so that boxes of parts come to it.
+template <class P>
+concept PreparePolicy =
+    Strategy<P> && requires(const P policy, std::unique_ptr<global_stage> search, instrumentation counted) {
+        { policy.before(std::move(search), counted) } -> std::same_as<std::unique_ptr<global_stage>>;
+    };
 
 /// A global search behind a strategy that prepares its boxes: what `global_stage` says of its functions holds here. The
 /// two know each other as stages, at one call a frame.
@@ -23,7 +34,7 @@ public:
     explicit prepared_search(const Prepare& prepare = {}, Search search = Search())
         : stage_(prepare.before(std::make_unique<searched_by<Search>>(std::move(search)), instrumentation::none)) {}
 
-    [[nodiscard]] mesh_division divide(const mesh_scene& scene) { return stage_->divide(scene); }
+    [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) { return stage_->divide(scene); }
     void insert(std::uint32_t id) { stage_->insert(id); }
     void remove(std::uint32_t id) { stage_->remove(id); }
     void update(std::span<const box> boxes) { stage_->update(boxes); }

@@ -2,14 +2,18 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 export module aabb.pipeline:scene;
 
+import aabb.base;
 import aabb.geometry;
 
 // What happens in a scene, frame by frame; a scene is played once, from frame 0 to the last, so only one frame is held.
 // Whoever searches its frames tells it what was found, so that what happens next may depend on it.
+
 export namespace aabb {
 
 /// Boxes that move. Object i of a frame is its box i.
@@ -55,6 +59,24 @@ public:
     /// Takes the contacts of the frame last played, sorted, before it is asked for the next: stepping in time begins
     /// here. A scene that is played without a search hears of none.
     virtual void take_contacts(std::span<const contact> /*contacts*/) {}
+};
+
+/// Meshes and which one each object is, whose poses come from whoever has them: it plays no frames itself.
+class given_scene final : public mesh_scene {
+public:
+    /// @param objects the mesh of each object, by its place in `all`
+    /// @throws input_error on an object of a mesh that is not there.
+    given_scene(std::vector<mesh> all, std::vector<std::uint32_t> objects) {
+        for (std::size_t object = 0; object < objects.size(); ++object)
+            if (objects[object] >= all.size())
+                throw input_error("object " + std::to_string(object) + " is mesh " + std::to_string(objects[object]) +
+                                  ", but there are " + std::to_string(all.size()) + " meshes");
+        meshes = std::move(all);
+        mesh_of = std::move(objects);
+    }
+
+    [[nodiscard]] std::size_t frames() const override { return 0; }
+    bool next(std::vector<pose>& /*poses*/) override { return false; }
 };
 
 }  // namespace aabb

@@ -41,24 +41,22 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return bytes_by_part(search_); }
 
     [[nodiscard]] std::vector<std::string> plans() const override {
-        if constexpr (ColumnPartition<Partition>)
-            if (!search_.is_uncut()) {
-                const column_plan& plan = search_.plan();
-                if (plan.columns() == 1) return {"one column, cut nowhere"};
-                return {std::to_string(plan.across[0]) + " by " + std::to_string(plan.across[1]) +
-                        (search_.is_in_groups() ? " groups of columns along the " : " columns along the ") +
-                        "xyz"[plan.axis] + " axis"};
-            }
-        return {};
+        if constexpr (SearchingPartition<Partition>)
+            return search_.own().plans();
+        else
+            return {};
+    }
+    [[nodiscard]] double share_of_update() const override {
+        if constexpr (SearchingPartition<Partition>)
+            return search_.own().share_of_update();
+        else
+            return 0;
     }
 
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
         if constexpr (!really_cuts<Partition>) absent.push_back({"no partition", "no cells, no copies of objects"});
-        if constexpr (ColumnPartition<Partition>)
-            if (search_.is_uncut())
-                for (const char* what : {"no partition", "no sort"})
-                    absent.push_back({what, "so few boxes are tested each against each"});
+        if constexpr (SearchingPartition<Partition>) absent = search_.own().left_out();
         if constexpr (CoherentSweep<Sweep>)
             absent.push_back({"no projection lists beside those that the sweep keeps for itself", {}});
         for (std::size_t k = 0; k < 3; ++k)

@@ -2,6 +2,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import :scene;
+import :scene_parts;
 
 // The two stages as a program sees them. Each is composed statically behind one call a frame (global search) or one
 // call a pair of meshes (local detection); between them stands a buffer of candidate pairs.
@@ -37,10 +39,6 @@ struct omission {
     return one.why.empty() ? one.what : one.what + ": " + one.why;
 }
 
-/// Into which parts meshes are divided: by mesh, the triangles of each part. Every triangle stands in one of them; a
-/// mesh of less than two parts stays whole.
-using mesh_division = std::vector<std::vector<std::vector<std::uint32_t>>>;
-
 /// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
 /// every later frame, by an input_error; a search that throws appends nothing.
 class global_stage {
@@ -50,10 +48,10 @@ public:
     global_stage& operator=(const global_stage&) = delete;
     virtual ~global_stage() = default;
 
-    /// How a pipeline is to divide the meshes of its scene, so that what comes to this stage is parts in place of whole
-    /// objects; empty, as of most stages, where all stay whole. Asked once, before anything comes.
+    /// The parts of the scene that are to come to this stage in place of whole objects; null, as of most stages, where
+    /// all stay whole. Asked once, before anything comes.
     /// @throws input_error on meshes that `require_valid` refuses.
-    [[nodiscard]] virtual mesh_division divide(const mesh_scene& /*scene*/) { return {}; }
+    [[nodiscard]] virtual std::unique_ptr<scene_parts> divide(const mesh_scene& /*scene*/) { return nullptr; }
 
     /// How many frames there will be, so that nothing is prepared for more of them. Results do not depend on it, and
     /// there may be more or fewer; without this call, nothing is known.
@@ -71,6 +69,10 @@ public:
     /// `update` must still be there.
     /// @throws input_error when the last update did not succeed, or there was none.
     virtual void search(std::vector<index_pair>& pairs) = 0;
+
+    /// Of the time of the last search, what went into work of an update: 0 but of a stage that sorts in a search what
+    /// it then has in a cache.
+    [[nodiscard]] virtual double share_of_update() const { return 0; }
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;

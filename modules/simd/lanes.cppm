@@ -5,7 +5,6 @@ module;
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-#include <utility>
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -21,9 +20,6 @@ import :width;
 namespace aabb::simd::detail {
 
 #if defined(__AVX512F__)
-[[gnu::always_inline]] inline void gather_sixteen(const std::uint32_t* from, const void* places, void* to) noexcept {
-    _mm512_storeu_si512(to, _mm512_i32gather_epi32(_mm512_loadu_si512(places), from, 4));
-}
 [[gnu::always_inline]] inline void store_of_sixteen(void* to, const void* from, std::uint32_t set) noexcept {
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), _mm512_loadu_si512(from)));
 }
@@ -41,10 +37,6 @@ inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
     return all;
 }();
 
-[[gnu::always_inline]] inline void gather_eight(const std::uint32_t* from, const void* places, void* to) noexcept {
-    const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
-    _mm256_storeu_si256(static_cast<__m256i*>(to), _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), at, 4));
-}
 [[gnu::always_inline]] inline void store_of_eight(void* to, const void* from, std::uint32_t set) noexcept {
     const __m256i places = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(packed_places[set])));
     _mm256_storeu_si256(static_cast<__m256i*>(to),
@@ -58,8 +50,7 @@ export namespace aabb::simd {
 
 using floats = float __attribute__((vector_size(4 * width)));
 using words = std::uint32_t __attribute__((vector_size(4 * width)));
-using flags = std::int32_t __attribute__((vector_size(4 * width)));    ///< of a comparison: -1 where it holds
-using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two in each word
+using flags = std::int32_t __attribute__((vector_size(4 * width)));  ///< of a comparison: -1 where it holds
 
 inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1);
 
@@ -86,21 +77,6 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
     std::memcpy(to, &v, sizeof v);
 }
 
-/// Numbers of 16 bits.
-[[nodiscard, gnu::always_inline]] inline words load_halves(const std::uint16_t* from) noexcept {
-    using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
-    narrow v;
-    std::memcpy(&v, from, sizeof v);
-    return __builtin_convertvector(v, words);
-}
-
-/// The lower half of each number.
-[[gnu::always_inline]] inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
-    using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
-    const auto lower = __builtin_convertvector(v, narrow);
-    std::memcpy(to, &lower, sizeof lower);
-}
-
 /// Bit i is set where the comparison holds in lane i.
 [[nodiscard, gnu::always_inline]] inline std::uint32_t bits(flags held) noexcept {
     using bools = bool __attribute__((ext_vector_type(width)));
@@ -119,50 +95,6 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
 /// Those below `end`.
 [[nodiscard, gnu::always_inline]] inline std::uint32_t lanes_below(std::size_t end) noexcept {
     return end >= width ? every_lane : (std::uint32_t{1} << end) - 1;
-}
-
-/// Of two numbers of 16 bits each, the upper half of the product.
-[[nodiscard, gnu::always_inline]] inline words upper_products(words a, words b) noexcept {
-    using wide = std::uint32_t __attribute__((vector_size(8 * width)));
-    const auto x = __builtin_convertvector(reinterpret_cast<halves>(a), wide);
-    const auto y = __builtin_convertvector(reinterpret_cast<halves>(b), wide);
-    return reinterpret_cast<words>(__builtin_convertvector(x * y >> 16, halves));
-}
-
-/// Of two numbers of 16 bits each: the difference, or 0 where it is negative.
-[[nodiscard, gnu::always_inline]] inline words excess(words a, words b) noexcept {
-    return reinterpret_cast<words>(
-        __builtin_elementwise_sub_sat(reinterpret_cast<halves>(a), reinterpret_cast<halves>(b)));
-}
-
-/// What stands at these places.
-[[nodiscard, gnu::always_inline]] inline words gather(const std::uint32_t* from, words places) noexcept {
-    words v;
-#if defined(__AVX512F__)
-    if constexpr (width == 16) return detail::gather_sixteen(from, &places, &v), v;
-#endif
-#if defined(__AVX2__)
-    if constexpr (width == 8) return detail::gather_eight(from, &places, &v), v;
-#endif
-    for (std::size_t i = 0; i < width; ++i) v[i] = from[places[i]];
-    return v;
-}
-
-/// Of each lane, the sum of those up to it.
-[[nodiscard, gnu::always_inline]] inline words running_sum(words v) noexcept {
-    const words none{};
-    const auto shifted = [&]<std::size_t By, std::size_t... I>(std::integral_constant<std::size_t, By>,
-                                                               std::index_sequence<I...>) {
-        return __builtin_shufflevector(v, none, (I < By ? static_cast<int>(width + I) : static_cast<int>(I - By))...);
-    };
-    const auto add = [&]<std::size_t By>(std::integral_constant<std::size_t, By> distance) {
-        if constexpr (By < width) v += shifted(distance, std::make_index_sequence<width>{});
-    };
-    add(std::integral_constant<std::size_t, 1>{});
-    add(std::integral_constant<std::size_t, 2>{});
-    add(std::integral_constant<std::size_t, 4>{});
-    add(std::integral_constant<std::size_t, 8>{});
-    return v;
 }
 
 /// Stores the lanes whose bit is set, one after the other; whatever stands behind them, up to a whole vector, is lost.

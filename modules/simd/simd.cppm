@@ -3,5 +3,4 @@ export module aabb.simd;
 
 export import :eights;
 export import :lanes;
-export import :rows;
 export import :width;

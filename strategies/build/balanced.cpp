@@ -13,10 +13,8 @@ module aabb.build.balanced;
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
-import aabb.build.balanced_item;
-import aabb.build.binned_items;
-import aabb.build.few_items;
-import aabb.build.halving;
+import aabb.build.balanced_items;
+import aabb.build.threaded;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -12,7 +12,6 @@ module aabb.build.file_order;
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
-import aabb.build.halving;
 import aabb.build.top_down;
 
 namespace aabb {

@@ -1,27 +1,24 @@
 module;
 #include <string_view>
-#include <vector>
 
 export module aabb.build.median;
 
 import aabb.geometry;
 import aabb.local_detection;
-import aabb.build.threaded;
+import aabb.build.balanced;
+import aabb.build.top_down;
 
 export namespace aabb {
 
 /// The paper's balanced build (section 3.1): a node is split at the median of its triangles' centroids along the
 /// longest axis of its box. n triangles give a depth of ⌈log₂ n⌉, paired or not. When to use: where depth and build
 /// time must be bounded.
-struct median_build : threaded_build {
-    using threaded_build::threaded_build;
+struct median_build : top_down_build<median_split, axis_rule::longest> {
+    using top_down_build::top_down_build;
 
     static constexpr std::string_view name = "median";
     static constexpr std::string_view summary =
         "at the median of the triangles' centroids along the longest axis: the paper's, balanced";
-
-    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const;
-    [[nodiscard]] balanced_order order(const mesh& m) const;
 };
 
 static_assert(BuildPolicy<median_build>);

@@ -2,21 +2,17 @@ module;
 #include <algorithm>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 module aabb.build.midpoint;
 
 import aabb.geometry;
 import aabb.local_detection;
-import aabb.build.balanced;
 import aabb.build.top_down;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
-
-namespace {
 
 split_choice midpoint_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
@@ -25,16 +21,6 @@ split_choice midpoint_split(std::span<const build_element> range, const box& bou
     const auto below = std::ranges::count_if(range, [&](const build_element& e) { return e.centroid[axis] < middle; });
     const auto left = static_cast<std::size_t>(below);
     return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
-}
-
-}  // namespace
-
-std::vector<build_node> midpoint_build::build(const mesh& m, leaf_arrangement arrangement) const {
-    return build_top_down(m, arrangement, midpoint_split, threads);
-}
-
-balanced_order midpoint_build::order(const mesh& m) const {
-    return order_by_halves(m, axis_rule::longest, threads);
 }
 
 }  // namespace aabb

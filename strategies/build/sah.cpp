@@ -5,13 +5,11 @@ module;
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
 module aabb.build.sah;
 
 import aabb.geometry;
 import aabb.local_detection;
-import aabb.build.balanced;
 import aabb.build.top_down;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -74,6 +72,8 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
     }
 }
 
+}  // namespace
+
 split_choice sah_split(std::span<const build_element> range, const box& bounds) {
     box centroids = empty_box();
     for (const build_element& e : range) centroids = merged(centroids, bounds_of(e.centroid));
@@ -82,16 +82,6 @@ split_choice sah_split(std::span<const build_element> range, const box& bounds) 
     for (int axis = 0; axis < 3; ++axis)
         if (centroids.min[axis] < centroids.max[axis]) try_sah_axis(range, axis, centroids, least, best);
     return best;
-}
-
-}  // namespace
-
-std::vector<build_node> sah_build::build(const mesh& m, leaf_arrangement arrangement) const {
-    return build_top_down(m, arrangement, sah_split, threads);
-}
-
-balanced_order sah_build::order(const mesh& m) const {
-    return order_by_halves(m, axis_rule::least_area, threads);
 }
 
 }  // namespace aabb

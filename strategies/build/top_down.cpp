@@ -13,7 +13,7 @@ module aabb.build.top_down;
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
-import aabb.build.halving;
+import aabb.build.threaded;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

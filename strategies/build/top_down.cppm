@@ -10,6 +10,8 @@ export module aabb.build.top_down;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.build.balanced;
+import aabb.build.threaded;
 
 export namespace aabb {
 
@@ -35,5 +37,16 @@ struct centroid_order {
 [[nodiscard]] inline split_choice median_split(std::span<const build_element> range, const box& bounds) {
     return {longest_axis(bounds), range.size() / 2};
 }
+
+/// A build by rules: one for the nodes of a binary tree, one for layouts that prescribe how many go to which side.
+template <split_choice (*Split)(std::span<const build_element> range, const box& bounds), axis_rule Rule>
+struct top_down_build : threaded_build {
+    using threaded_build::threaded_build;
+
+    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const {
+        return build_top_down(m, arrangement, Split, threads);
+    }
+    [[nodiscard]] balanced_order order(const mesh& m) const { return order_by_halves(m, Rule, threads); }
+};
 
 }  // namespace aabb

@@ -15,6 +15,7 @@ module;
 export module aabb.partition.columns;
 
 import aabb.base;
+import aabb.columns;
 import aabb.costs;
 import aabb.geometry;
 import aabb.global_search;
@@ -62,6 +63,10 @@ public:
             return "columns hands over boxes in whole vectors, bucket by bucket; it goes with simd only";
         return {};
     }
+
+    /// A global search with this partition.
+    template <class Sort, class Sweep, class Counters>
+    using search_with = column_search<Sort, columns_partition, Sweep, Counters>;
 
     columns_partition() = default;
     explicit columns_partition(const config& c) : config_(c) {}
@@ -343,6 +348,6 @@ private:
     config config_;
 };
 
-static_assert(ColumnPartition<columns_partition>);
+static_assert(ColumnPartition<columns_partition> && SearchingPartition<columns_partition>);
 
 }  // namespace aabb

@@ -41,6 +41,7 @@ public:
     void remove(std::uint32_t id) override;
     void update(std::span<const box> boxes) override;
     void search(std::vector<index_pair>& pairs) override;
+    [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
     [[nodiscard]] std::vector<std::string> plans() const override { return search_->plans(); }

@@ -16,6 +16,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.prepare.pieces;
+import aabb.split_mesh;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -73,7 +74,7 @@ public:
     split_mesh_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
-    [[nodiscard]] mesh_division divide(const mesh_scene& scene) override;
+    [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override;
     void insert(std::uint32_t id) override { search_->insert(id); }
     void remove(std::uint32_t id) override { search_->remove(id); }
     void update(std::span<const box> boxes) override {
@@ -82,6 +83,7 @@ public:
         search_->update(boxes);
     }
     void search(std::vector<index_pair>& pairs) override { search_->search(pairs); }
+    [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
     [[nodiscard]] work_counters counters() const override {
         work_counters all = search_->counters();
         all.add(work::pieces, pieces_counted_);
@@ -100,7 +102,7 @@ private:
     std::uint64_t pieces_counted_ = 0;
 };
 
-mesh_division split_mesh_stage::divide(const mesh_scene& scene) {
+std::unique_ptr<scene_parts> split_mesh_stage::divide(const mesh_scene& scene) {
     std::vector<box> bounds;
     for (const mesh& m : scene.meshes) {
         require_valid(m);
@@ -108,7 +110,7 @@ mesh_division split_mesh_stage::divide(const mesh_scene& scene) {
     }
     knows_meshes_ = true;
     const std::size_t objects = scene.mesh_of.size();
-    if (objects == 0) return {};
+    if (objects == 0) return nullptr;
     double extents = 0;
     for (const std::uint32_t m : scene.mesh_of)
         for (int k = 0; k < 3; ++k) extents += extent_of(bounds[m], k);
@@ -118,8 +120,8 @@ mesh_division split_mesh_stage::divide(const mesh_scene& scene) {
         division.push_back(parts_of(scene.meshes[m], bounds[m], longest));
     for (const std::uint32_t m : scene.mesh_of) pieces_ += division[m].size();
     require_few_pieces(split_mesh_prepare::name, pieces_, objects);
-    if (std::ranges::all_of(division, [](const auto& parts) { return parts.empty(); })) return {};
-    return division;
+    if (std::ranges::all_of(division, [](const auto& parts) { return parts.empty(); })) return nullptr;
+    return divided(scene, std::move(division));
 }
 
 }  // namespace

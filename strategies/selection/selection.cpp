@@ -15,6 +15,7 @@ import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
 import aabb.registry;
+import aabb.wide_tree;
 
 namespace aabb {
 
@@ -64,9 +65,9 @@ bool fetches_vertices(const scene_outlook& scene) {
 
 /// More pairs of objects a frame than fronts are kept of would find none again.
 bool keeps_front(const scene_outlook& scene) {
-    constexpr std::size_t least_triangles = front_keeper::least_leaves * balanced_order::leaf_triangles;
+    constexpr std::size_t least_triangles = least_leaves_of_front * balanced_order::leaf_triangles;
     return 2 * scene.triangles >= least_triangles * scene.meshes && scene.frames >= fewest_frames_to_keep &&
-           scene.queries <= scene.frames * front_keeper::most;
+           scene.queries <= scene.frames * most_fronts;
 }
 
 const char* prepare_for(const scene_outlook& scene) {

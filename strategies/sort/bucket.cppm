@@ -70,6 +70,6 @@ private:
     std::vector<projection> from_;
 };
 
-static_assert(SortPolicy<bucket_sort> && BucketSort<bucket_sort>);
+static_assert(SortPolicy<bucket_sort>);
 
 }  // namespace aabb

@@ -13,6 +13,7 @@ module;
 export module aabb.sweep.simd;
 
 import aabb.base;
+import aabb.columns;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;

@@ -4,7 +4,6 @@ module;
 export module aabb.tree.box_cursor;
 
 import aabb.geometry;
-import aabb.local_detection;
 
 export namespace aabb {
 
@@ -18,12 +17,5 @@ struct box_cursor {
     [[nodiscard]] constexpr bool is_leaf() const noexcept { return index & leaf_bit; }
     [[nodiscard]] constexpr std::uint32_t leaf() const noexcept { return index & ~leaf_bit; }
 };
-
-/// At a leaf that has no box: it goes along with the triangle's own where that is to be tested, else with its parent's.
-[[nodiscard]] inline box_cursor leaf_cursor(std::uint32_t triangle, const box& parent, leaf_test_choice test,
-                                            const mesh& m) noexcept {
-    return {test == leaf_test_choice::triangle_aabb ? bounds_of(m.triangle(triangle)) : parent,
-            triangle | box_cursor::leaf_bit};
-}
 
 }  // namespace aabb

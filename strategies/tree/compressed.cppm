@@ -21,22 +21,14 @@ export namespace aabb {
 /// the others, as two triangle indices without planes and without the symbol byte. That takes 20.5 bytes a triangle in
 /// place of table 1's 21. Leaves come in pairs (`leaf_arrangement::pairs`), since one beside an internal node would
 /// waste half a record. When to use: for the least memory with exact boxes.
-class compressed_tree {
+class compressed_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "compressed";
     static constexpr std::string_view summary =
         "the paper's compressed nodes without loss: no leaves, six planes and a symbol for two siblings";
-    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
-    static constexpr bool has_leaf_boxes = false;
     static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 
-    using config = leafless_config;
-    static constexpr auto parameters = leafless_parameters;
-
-    compressed_tree() = default;
-    explicit compressed_tree(const config& c) : config_(c) {}
-
-    using cursor = box_cursor;
+    using leafless_layout::leafless_layout;
 
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
@@ -84,13 +76,10 @@ public:
     }
 
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
-        return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, config_.leaf_test, m) : cursor{root_, 0};
+        return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
-        const auto leaf = [&](std::uint32_t triangle) {
-            return leaf_cursor(triangle, at.bounds, config_.leaf_test, m);
-        };
+        const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
         if (at.index >= nodes_.size()) {
             const child_pair& pair = leaf_pairs_[at.index - nodes_.size()];
             return {leaf(pair[0]), leaf(pair[1])};
@@ -101,9 +90,6 @@ public:
         return {symbol & leaf_flag(0) ? leaf(parent.child[0]) : cursor{left, parent.child[0]},
                 symbol & leaf_flag(1) ? leaf(parent.child[1]) : cursor{right, parent.child[1]}};
     }
-    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(root_) + sizeof(sibling_planes) * nodes_.capacity() + symbols_.capacity(),
                 sizeof(child_pair) * (nodes_.capacity() + leaf_pairs_.capacity())};
@@ -120,7 +106,6 @@ private:
 
     [[nodiscard]] child_pair& pair_at(std::size_t index) noexcept { return leaf_pairs_[index - nodes_.size()]; }
 
-    config config_;
     box root_{};
     std::vector<node> nodes_;  // depth first
     std::vector<std::uint8_t> symbols_;

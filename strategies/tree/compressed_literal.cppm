@@ -23,21 +23,13 @@ export namespace aabb {
 /// symbol byte; the other three planes are its parent's. A node that differs from its parent in more than three keeps
 /// the three that make its box smallest: boxes still hold what is below them, but some are larger than `canonical`'s.
 /// No leaves; 21 bytes a triangle. When to use: to see what table 1 costs when it is taken at its word.
-class compressed_literal_tree {
+class compressed_literal_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "compressed_literal";
     static constexpr std::string_view summary =
         "table 1 of the paper to the letter: three planes a node, the rest from its parent, some boxes larger";
-    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
-    static constexpr bool has_leaf_boxes = false;
 
-    using config = leafless_config;
-    static constexpr auto parameters = leafless_parameters;
-
-    compressed_literal_tree() = default;
-    explicit compressed_literal_tree(const config& c) : config_(c) {}
-
-    using cursor = box_cursor;
+    using leafless_layout::leafless_layout;
 
     void pack(std::span<const build_node> nodes) {
         nodes_.assign(nodes.size() / 2, {});
@@ -66,7 +58,7 @@ public:
         boxes.resize(nodes_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {
             const std::uint32_t child = nodes_[parent].child[side];
-            return is_leaf(parent, side) ? bounds_of(m.triangle(child)) : boxes[child];
+            return holds_leaf(parent, side) ? bounds_of(m.triangle(child)) : boxes[child];
         };
         for (std::size_t i = nodes_.size(); i-- > 0;) boxes[i] = merged(bounds_at(i, 0), bounds_at(i, 1));
         root_ = boxes.empty() ? bounds_of(m.triangle(0)) : boxes[0];
@@ -74,20 +66,16 @@ public:
     }
 
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
-        return nodes_.empty() ? leaf_cursor(0, root_, config_.leaf_test, m) : cursor{root_, 0};
+        return nodes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::size_t side) {
             const std::uint32_t index = nodes_[at.index].child[side];
-            if (is_leaf(at.index, side)) return leaf_cursor(index, at.bounds, config_.leaf_test, m);
+            if (holds_leaf(at.index, side)) return leaf_cursor(index, at.bounds, m);
             return cursor{decoded(at.bounds, nodes_[index].planes, symbols_[index]), index};
         };
         return {child(0), child(1)};
     }
-    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(root_) + sizeof(node::planes) * nodes_.capacity() + symbols_.capacity(),
                 sizeof(node::child) * nodes_.capacity()};
@@ -102,7 +90,7 @@ private:
     };
     static_assert(sizeof(node) == 20);
 
-    [[nodiscard]] inline bool is_leaf(std::size_t parent, std::size_t side) const noexcept {
+    [[nodiscard]] inline bool holds_leaf(std::size_t parent, std::size_t side) const noexcept {
         return symbols_[parent] & leaf_flag(side);
     }
 
@@ -125,7 +113,7 @@ private:
     void encode(std::vector<box>& exact) noexcept {
         for (std::size_t i = 0; i < nodes_.size(); ++i)
             for (std::size_t side = 0; side < 2; ++side)
-                if (!is_leaf(i, side)) encode_child(nodes_[i].child[side], exact[i], exact[nodes_[i].child[side]]);
+                if (!holds_leaf(i, side)) encode_child(nodes_[i].child[side], exact[i], exact[nodes_[i].child[side]]);
     }
 
     /// Picks the planes that make the smallest box.
@@ -151,7 +139,6 @@ private:
         bounds = best;
     }
 
-    config config_;
     box root_{};
     std::vector<node> nodes_;
     std::vector<std::uint8_t> symbols_;

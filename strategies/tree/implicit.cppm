@@ -16,6 +16,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.wide_tree;
 
 export namespace aabb {
 
@@ -58,6 +59,9 @@ public:
         choice_parameter{
             "front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
             "pairs of leaves near each other: forgotten, or kept for queries nearby, of exact triangle tests"}};
+
+    template <class Triangle, class Counters>
+    using walk = front_walk<implicit_tree, Triangle, Counters>;
 
     implicit_tree() = default;
     explicit implicit_tree(const config& c) : config_(c) {}

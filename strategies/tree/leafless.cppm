@@ -18,21 +18,13 @@ export namespace aabb {
 /// The canonical internal node without leaves: a leaf's triangle index stands in its parent where the node index stood
 /// (paper, section 3.2, one half of the compression). 32 bytes a triangle. When to use: as the half-step between
 /// `canonical` and `compressed`.
-class leafless_tree {
+class leafless_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "leafless";
     static constexpr std::string_view summary =
         "internal nodes of 32 bytes, no leaves: triangle indices stand in the parent";
-    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
-    static constexpr bool has_leaf_boxes = false;
 
-    using config = leafless_config;
-    static constexpr auto parameters = leafless_parameters;
-
-    leafless_tree() = default;
-    explicit leafless_tree(const config& c) : config_(c) {}
-
-    using cursor = box_cursor;
+    using leafless_layout::leafless_layout;
 
     void pack(std::span<const build_node> nodes) {
         nodes_.clear();
@@ -57,21 +49,16 @@ public:
     }
 
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
-        return nodes_.empty() ? leaf_cursor(0, bounds_of(m.triangle(0)), config_.leaf_test, m)
-                              : cursor{nodes_[0].bounds, 0};
+        return nodes_.empty() ? leaf_cursor(0, bounds_of(m.triangle(0)), m) : cursor{nodes_[0].bounds, 0};
     }
-    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::uint32_t index) {
             if (!(index & cursor::leaf_bit)) return cursor{nodes_[index].bounds, index};
-            return leaf_cursor(index & ~cursor::leaf_bit, at.bounds, config_.leaf_test, m);
+            return leaf_cursor(index & ~cursor::leaf_bit, at.bounds, m);
         };
         const node& parent = nodes_[at.index];
         return {child(parent.child[0]), child(parent.child[1])};
     }
-    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return config_.leaf_test; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         return {sizeof(box) * nodes_.capacity(), sizeof(node::child) * nodes_.capacity()};
     }
@@ -83,7 +70,6 @@ private:
     };
     static_assert(sizeof(node) == 32);
 
-    config config_;
     std::vector<node> nodes_;  // depth first
 };
 

@@ -1,12 +1,15 @@
 module;
 #include <array>
+#include <cstdint>
 #include <string_view>
 #include <tuple>
 
 export module aabb.tree.leafless_config;
 
+import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.tree.box_cursor;
 
 export namespace aabb {
 
@@ -25,5 +28,34 @@ inline constexpr std::tuple leafless_parameters{
                      std::array<std::string_view, 4>{"none", "triangle_box", "triangle_aabb", "moller_triangle_box"},
                      "what is tested in place of a leaf's box: nothing, the triangle against the other box, or the "
                      "triangle's own box; moller_triangle_box is Möller's original of the second and inexact"}};
+
+/// What layouts share that keep no leaves: at a leaf a cursor carries its parent's box, or the triangle's own where
+/// that is to be tested.
+class leafless_layout {
+public:
+    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
+    static constexpr bool has_leaf_boxes = false;
+
+    using config = leafless_config;
+    static constexpr auto parameters = leafless_parameters;
+    using cursor = box_cursor;
+
+    leafless_layout() = default;
+    explicit leafless_layout(const config& c) : leaf_test_(c.leaf_test) {}
+
+    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
+    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
+    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
+    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return leaf_test_; }
+
+protected:
+    [[nodiscard]] inline cursor leaf_cursor(std::uint32_t triangle, const box& parent, const mesh& m) const noexcept {
+        return {leaf_test_ == leaf_test_choice::triangle_aabb ? bounds_of(m.triangle(triangle)) : parent,
+                triangle | cursor::leaf_bit};
+    }
+
+private:
+    leaf_test_choice leaf_test_ = leaf_test_choice::none;
+};
 
 }  // namespace aabb

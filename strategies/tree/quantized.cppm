@@ -31,13 +31,11 @@ struct quantized_config : leafless_config {
 /// of bytes, so that of two children only the right one needs an index. One above two leaves is their triangles, 8
 /// bytes; every other is an index, the symbol and six codes, 5 + 6 bits / 8 bytes. With 8 bits that takes 9.5 bytes a
 /// triangle, where leaves come in pairs (`leaf_arrangement::pairs`). When to use: where a binary tree must be small.
-class quantized_tree {
+class quantized_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "quantized";
     static constexpr std::string_view summary =
         "compressed further: planes in 4 to 16 bits each, rounded outward, and one index for two siblings";
-    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
-    static constexpr bool has_leaf_boxes = false;
     static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 
     using config = quantized_config;
@@ -47,9 +45,7 @@ public:
                                      "of a plane: fewer take less memory and make boxes larger"}});
 
     quantized_tree() = default;
-    explicit quantized_tree(const config& c) : leaf_test_(c.leaf_test), planes_(c.bits) {}
-
-    using cursor = box_cursor;
+    explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
 
     /// @throws input_error when the nodes take more than 2 GiB.
     void pack(std::span<const build_node> nodes) {
@@ -116,20 +112,16 @@ public:
     }
 
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
-        return bytes_.empty() ? leaf_cursor(0, root_, leaf_test_, m) : cursor{root_, 0};
+        return bytes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto [left, right] = children_at(at.index);
-        const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, leaf_test_, m); };
+        const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
         if (left.is_leaf && right.is_leaf) return {leaf(left.index), leaf(right.index)};
         const auto boxes = decode(at.index, at.bounds);
         return {left.is_leaf ? leaf(left.index) : cursor{boxes[0], left.index},
                 right.is_leaf ? leaf(right.index) : cursor{boxes[1], right.index}};
     }
-    [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
-    [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }
-    [[nodiscard]] inline leaf_test_choice leaf_test() const noexcept { return leaf_test_; }
     [[nodiscard]] tree_bytes bytes() const noexcept {
         const std::size_t planes = records_ * (record_bytes() - word_bytes);
         return {sizeof(root_) + planes, bytes_.capacity() - planes};
@@ -189,7 +181,6 @@ private:
         return decode(at, parent);
     }
 
-    leaf_test_choice leaf_test_ = {};
     quantized_planes planes_{config{}.bits};
     box root_{};
     std::size_t records_ = 0;  // nodes with planes

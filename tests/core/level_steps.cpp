@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-import aabb;
+import aabb.wide_tree.level_steps;
 
 using namespace aabb;
 

@@ -7,7 +7,9 @@
 #include <limits>
 #include <vector>
 
+import aabb.columns.kernels;
 import aabb.simd;
+import aabb.wide_tree.kernels;
 
 using namespace aabb;
 

@@ -15,6 +15,8 @@
 
 #include "../compositions.hpp"
 
+import aabb.columns;
+import aabb.columns.groups;
 import aabb.partition.columns;
 import aabb.sort.bucket;
 import aabb.sweep.simd;
@@ -126,6 +128,28 @@ TEST_CASE("more boxes than one group takes are put into groups") {
     search->search(pairs);
     std::ranges::sort(pairs);
     CHECK(pairs == true_pairs(boxes));
+}
+
+TEST_CASE("of a search the share is told that cuts and sorts groups, which is work of an update") {
+    for (const auto& [boxes, in_groups] : {std::pair{20'000, false}, std::pair{50'000, true}})
+        for (const char* prepare : {"none", "split_large"}) {
+            INFO(boxes << " boxes, prepare=" << prepare);
+            const auto search = global_of(composed({{strategy_kind::prepare, prepare}}));
+            const auto n = static_cast<std::uint32_t>(boxes);
+            for (std::uint32_t id = 0; id < n; ++id) search->insert(id);
+            const std::vector<box> frame = random_boxes(n, side_of(n), 1, 2);
+            std::vector<index_pair> pairs;
+            search->update(frame);
+            search->search(pairs);
+            CHECK((search->share_of_update() > 0) == in_groups);
+            CHECK(search->share_of_update() < 1);
+            // Of pairs that are kept from the frame before, nothing.
+            for (int again = 0; again < 2; ++again) {
+                search->update(frame);
+                search->search(pairs);
+            }
+            CHECK(search->share_of_update() == 0);
+        }
 }
 
 TEST_CASE("of a few boxes none is cut, whichever come and go") {
@@ -405,7 +429,7 @@ TEST_CASE("groups within groups are the same on any number of threads, and follo
         for (std::size_t f = 0; f < frames.size(); ++f) {
             search.update(frames[f]);
             search.search(pairs[f]);
-            CHECK(search.is_in_groups() == (f == 1 || f == 2));
+            CHECK(search.own().is_in_groups() == (f == 1 || f == 2));
         }
         if (first.empty()) first = pairs;
         CHECK(pairs == first);

@@ -73,7 +73,7 @@ static_assert(sizeof(counted_search) >= sizeof(bare_search) + sizeof(work_counte
 static_assert(sizeof(cut_search) >= sizeof(bare_search) + sizeof(subset_lists));
 static_assert(sizeof(counted_detection) >= sizeof(bare_detection) + sizeof(work_counters));
 static_assert(sizeof(basic_pipeline<bare_search, bare_detection>) == sizeof(needed_by_pipeline));
-static_assert(sizeof(pipeline) >= sizeof(needed_by_pipeline) + sizeof(std::optional<divided_scene>));
+static_assert(sizeof(pipeline) >= sizeof(needed_by_pipeline) + sizeof(std::unique_ptr<scene_parts>));
 
 // None can be moved from and asked again, of whatever strategies.
 static_assert(!std::is_move_constructible_v<detector<cut_search>> && !std::is_move_assignable_v<detector<cut_search>>);

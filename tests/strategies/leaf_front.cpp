@@ -20,6 +20,8 @@ import aabb.build.median;
 import aabb.registry;
 import aabb.tree.implicit;
 import aabb.triangle.exact;
+import aabb.wide_tree.child_pairs;
+import aabb.wide_tree.leaf_front;
 
 using namespace aabb;
 

@@ -22,6 +22,7 @@ import aabb;
 import aabb.registry;
 import aabb.strategies;
 import aabb.tree.leafless_config;
+import aabb.wide_tree;
 
 using namespace aabb;
 using Catch::Matchers::Message;

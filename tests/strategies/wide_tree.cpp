@@ -21,6 +21,17 @@ import aabb.simd;
 import aabb.tree.implicit;
 import aabb.triangle.exact;
 import aabb.triangle.moller;
+import aabb.wide_tree.batched_walk;
+import aabb.wide_tree.box_images;
+import aabb.wide_tree.child_pairs;
+import aabb.wide_tree.eight_boxes;
+import aabb.wide_tree.leaf_front;
+import aabb.wide_tree.leaf_slab;
+import aabb.wide_tree.nearest_walk;
+import aabb.wide_tree.triangle_block;
+import aabb.wide_tree.triangle_filter;
+import aabb.wide_tree.vertex_lists;
+import aabb.wide_tree.wide_node;
 
 using namespace aabb;
 

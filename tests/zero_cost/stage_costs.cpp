@@ -15,6 +15,7 @@
 #include <vector>
 
 import aabb;
+import aabb.columns;
 import aabb.partition.axial_cut;
 import aabb.partition.columns;
 import aabb.partition.none;

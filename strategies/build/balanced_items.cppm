@@ -1,0 +1,259 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+
+/// What a balanced build moves about, and how it is split: many items across which axis, a few in which way.
+export module aabb.build.balanced_items;
+
+import aabb.geometry;
+import aabb.simd;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// A triangle on its way, as a vector.
+struct alignas(32) balanced_item {
+    std::array<float, 3> lower;
+    std::uint32_t triangle;
+    std::array<float, 3> negated_upper;  // so that both grow downward
+    std::uint32_t unused;
+
+    /// Never beyond the range of float.
+    [[nodiscard]] inline float centre(std::size_t axis) const noexcept {
+        return 0.5F * lower[axis] - 0.5F * negated_upper[axis];
+    }
+    /// Along each axis; then numbers of no account. The triangle's is no float: products with one may be slow.
+    [[nodiscard]] inline simd::eight_floats centres() const noexcept {
+        const auto bounds = std::bit_cast<simd::eight_floats>(*this);
+        const auto half = 0.5F * __builtin_shufflevector(bounds, bounds, 0, 1, 2, 2, 4, 5, 6, 6);
+        return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
+    }
+};
+
+/// In the order of centres along an axis; ties go by triangle, so that it is clear who goes to which side.
+struct centre_order {
+    std::size_t axis;
+
+    [[nodiscard]] inline bool operator()(const balanced_item& p, const balanced_item& q) const noexcept {
+        const float at_p = p.centre(axis);
+        const float at_q = q.centre(axis);
+        return at_p != at_q ? at_p < at_q : p.triangle < q.triangle;
+    }
+};
+
+/// The box of several items. What stands in the places of their numbers is nobody's.
+class item_bounds {
+public:
+    inline void take(const balanced_item& one) noexcept { at_ = lesser(one); }
+    inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
+    /// Two in turn, of which neither waits for the one before.
+    inline void take(std::span<const balanced_item> items) noexcept {
+        item_bounds odd;
+        std::size_t i = 0;
+        for (; i + 1 < items.size(); i += 2) {
+            take(items[i]);
+            odd.take(items[i + 1]);
+        }
+        if (i < items.size()) take(items[i]);
+        take(odd);
+    }
+    /// Without a branch.
+    inline void take_if(bool wanted, const balanced_item& one) noexcept {
+        const simd::eight_words every = simd::eight_words{} - std::uint32_t{wanted};
+        at_ = every ? lesser(one) : at_;
+    }
+    [[nodiscard]] box as_box() const noexcept { return {{at_[0], at_[1], at_[2]}, {-at_[4], -at_[5], -at_[6]}}; }
+
+private:
+    [[nodiscard]] inline simd::eight_floats lesser(const balanced_item& one) const noexcept {
+        const auto other = std::bit_cast<simd::eight_floats>(one);
+        return other < at_ ? other : at_;
+    }
+
+    simd::eight_floats at_ = simd::eight_floats{} + std::numeric_limits<float>::infinity();
+};
+
+/// Some items in bins along each axis, by their centres: how large both sides of a split are is known to a bin.
+class binned_items {
+public:
+    /// So many are as good as all: trees of them are searched as fast.
+    static constexpr std::size_t most = 256;
+
+    /// Every so many of `items`, which must outlive these.
+    /// @param bounds box of all
+    binned_items(std::span<const balanced_item> items, std::size_t step, const box& bounds) noexcept
+        : items_(items), step_(step) {
+        eight_floats low{};
+        eight_floats scale{};
+        for (int k = 0; k < 3; ++k) {
+            low[k] = bounds.min[k];
+            const float edge = bounds.max[k] - bounds.min[k];
+            scale[k] = edge > 0 ? bins / edge : 0;
+        }
+        for (std::size_t i = 0; i < items.size(); i += step, ++count_) {
+            const simd::eight_bytes bin = simd::whole_bytes((items[i].centres() - low) * scale);
+            for (std::size_t k = 0; k < 3; ++k) {
+                bin_[k][count_] = bin[k];
+                ++in_bin_[k][bin[k]];
+            }
+        }
+    }
+
+    /// Along each axis the sum over both sides of their box's area times their number, where about so many go to the
+    /// left.
+    [[nodiscard]] std::array<double, 3> costs(std::size_t left) const noexcept {
+        std::array<std::size_t, 3> end{};
+        std::array<std::size_t, 3> in_left{};
+        for (std::size_t k = 0; k < 3; ++k)
+            while (end[k] < bins && in_left[k] + in_bin_[k][end[k]] / 2U < left) in_left[k] += in_bin_[k][end[k]++];
+        std::array<item_bounds, 3> left_sides;
+        std::array<item_bounds, 3> right_sides;
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const bool is_left = bin_[k][i] < end[k];
+                left_sides[k].take_if(is_left, items_[step_ * i]);
+                right_sides[k].take_if(!is_left, items_[step_ * i]);
+            }
+        const auto cost = [](const item_bounds& side, std::size_t number) {
+            return number == 0 ? 0 : surface_area(side.as_box()) * static_cast<double>(number);
+        };
+        std::array<double, 3> both;
+        for (std::size_t k = 0; k < 3; ++k)
+            both[k] = cost(left_sides[k], in_left[k]) + cost(right_sides[k], count_ - in_left[k]);
+        return both;
+    }
+
+private:
+    using eight_floats = simd::eight_floats;
+    static constexpr std::size_t bins = 255;  // as whole bytes reach
+
+    std::span<const balanced_item> items_;
+    std::size_t step_;
+    std::size_t count_ = 0;
+    std::array<std::array<std::uint8_t, most>, 3> bin_;
+    std::array<std::array<std::uint16_t, bins>, 3> in_bin_{};
+};
+
+/// Up to sixty-four items, coordinate by coordinate.
+class few_items {
+public:
+    static constexpr std::size_t most = 64;
+
+    explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                lower_[k][i] = items[i].lower[k];
+                negated_upper_[k][i] = items[i].negated_upper[k];
+            }
+        // The last one fills the rest, as far as whole vectors are looked at.
+        const std::size_t filled = std::max(std::bit_ceil(count_), lanes);
+        for (std::size_t i = count_; i < filled; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                lower_[k][i] = lower_[k][count_ - 1];
+                negated_upper_[k][i] = negated_upper_[k][count_ - 1];
+            }
+        for (std::size_t k = 0; k < 3; ++k) number_centres(k, filled / lanes);
+    }
+
+    /// Bit i for each item i before which, along the axis, there are fewer than `left`, as far as 16 bits tell: those
+    /// that come first, and maybe others just behind them.
+    [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
+        return first_in<1>(axis, static_cast<std::int16_t>(left));
+    }
+
+    /// The sum, for those in `which` and for the others, of their box's area times their number.
+    [[nodiscard]] inline double cost_of(std::uint64_t which) const noexcept {
+        // What fills the last vector goes where the last item goes.
+        const std::uint64_t fill = count_ < most && (which >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
+        std::array<std::array<eight_floats, 6>, 2> sides;
+        for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
+        for (std::size_t v = 0; v < vectors(); ++v) {
+            const auto present = static_cast<std::uint8_t>((which | fill) >> v * width);
+            const auto in_first = simd::flags_of_eight(present);
+            for (std::size_t row = 0; row < 6; ++row) {
+                const eight_floats x = row < 3 ? load(lower_[row], v) : load(negated_upper_[row - 3], v);
+                sides[0][row] = in_first ? lesser(x, sides[0][row]) : sides[0][row];
+                sides[1][row] = in_first ? sides[1][row] : lesser(x, sides[1][row]);
+            }
+        }
+        const auto in_first = static_cast<std::size_t>(std::popcount(which));
+        const auto cost = [](const auto& side, std::size_t count) {
+            return count == 0 ? 0 : half_area(side) * static_cast<double>(count);
+        };
+        return cost(sides[0], in_first) + cost(sides[1], count_ - in_first);
+    }
+
+private:
+    using eight_floats = simd::eight_floats;
+    static constexpr std::size_t width = 8;
+    static constexpr std::size_t lanes = 16;  // of the longest vector
+    static constexpr float reach = 32500;     // of numbers of 16 bits
+    using row = std::array<float, most>;
+
+    /// In whole steps from the least to the greatest.
+    inline void number_centres(std::size_t axis, std::size_t vectors) noexcept {
+        std::array<simd::sixteen_floats, most / lanes> centre;
+        simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
+        simd::sixteen_floats most_negated = least;
+        for (std::size_t v = 0; v < vectors; ++v) {
+            simd::sixteen_floats lower;
+            simd::sixteen_floats negated_upper;
+            std::memcpy(&lower, &lower_[axis][v * lanes], sizeof lower);
+            std::memcpy(&negated_upper, &negated_upper_[axis][v * lanes], sizeof negated_upper);
+            centre[v] = 0.5F * lower - 0.5F * negated_upper;
+            least = centre[v] < least ? centre[v] : least;
+            most_negated = -centre[v] < most_negated ? -centre[v] : most_negated;
+        }
+        const float low = simd::least(least);
+        const float steps = 2 * reach / (-simd::least(most_negated) - low);
+        const bool differ = steps > 0 && steps < std::numeric_limits<float>::max();
+        for (std::size_t v = 0; v < vectors; ++v) {
+            const simd::sixteen_halves numbers =
+                differ ? simd::whole_halves((centre[v] - low) * steps - reach) : simd::sixteen_halves{};
+            std::memcpy(&centre_[axis][v * lanes], &numbers, sizeof numbers);
+        }
+    }
+
+    /// By counting, so that nothing is moved: in registers, which is why how many vectors there are must be known.
+    template <std::size_t Vectors>
+    [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::int16_t left) const noexcept {
+        if constexpr (Vectors * lanes < most)
+            if (count_ > Vectors * lanes) return first_in<2 * Vectors>(axis, left);
+        std::array<simd::sixteen_halves, Vectors> centre;
+        std::array<simd::sixteen_halves, Vectors> before{};
+        std::memcpy(centre.data(), centre_[axis].data(), sizeof centre);
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];
+        std::uint64_t which = 0;
+        for (std::size_t v = 0; v < Vectors; ++v)
+            which |= std::uint64_t{simd::bits_of_sixteen(before[v] < left)} << v * lanes;
+        return which & ~std::uint64_t{0} >> (most - count_);
+    }
+
+    [[nodiscard]] static inline eight_floats lesser(eight_floats p, eight_floats q) noexcept { return p < q ? p : q; }
+    [[nodiscard]] inline std::size_t vectors() const noexcept { return (count_ + width - 1) / width; }
+    [[nodiscard]] static inline eight_floats load(const row& of, std::size_t vector) noexcept {
+        return simd::load_eight<eight_floats>(&of[vector * width]);
+    }
+    [[nodiscard]] static inline double half_area(const std::array<eight_floats, 6>& least) noexcept {
+        std::array<double, 3> length;
+        for (std::size_t k = 0; k < 3; ++k)
+            length[k] = -double{simd::least(least[k])} - double{simd::least(least[k + 3])};
+        return length[0] * length[1] + length[1] * length[2] + length[2] * length[0];
+    }
+
+    alignas(64) std::array<row, 3> lower_;
+    alignas(64) std::array<row, 3> negated_upper_;
+    alignas(64) std::array<std::array<std::int16_t, most>, 3> centre_;  // in 16 bits
+    std::size_t count_;
+};
+
+}  // namespace aabb

@@ -1,0 +1,277 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+export module aabb.columns.groups;
+
+import aabb.base;
+import aabb.columns.kernels;
+import aabb.columns.plan;
+import aabb.geometry;
+import aabb.simd;
+
+export namespace aabb {
+
+/// Boxes of one region of a scene, side by side in memory.
+struct column_group {
+    std::span<const box> boxes;
+    std::span<const std::uint32_t> ids;  ///< by place, with bits of `later_on`; empty where the place is the id
+};
+
+/// Puts the boxes of a large scene into groups of neighbours that fit a cache together; each is cut into columns for
+/// itself. Groups are columns too, only wider: a box is in each into which it reaches, and its copy in a later group
+/// than the first is marked. A group's boxes stand in the order of their places, first those that begin there, whatever
+/// the threads.
+class column_groups {
+public:
+    /// So many groups as are planned, in the proportion of the columns; no more than those on their axes. Where they
+    /// are too few, as of boxes along a line, groups are cut along them instead of across the axis that has fewer.
+    [[nodiscard]] static column_plan coarser(column_plan plan) {
+        const double groups = plan.groups;
+        const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
+        const std::uint32_t most = plan.across[1 - fewer];
+        const auto share = [](double n, std::uint32_t greatest) {
+            return static_cast<std::uint32_t>(std::clamp(std::round(n), 1.0, static_cast<double>(greatest)));
+        };
+        const double ratio = std::sqrt(groups / plan.columns());
+        std::array<std::uint32_t, 2> across{};
+        across[fewer] = share(plan.across[fewer] * ratio, plan.across[fewer]);
+        across[1 - fewer] = share(groups / across[fewer], most);
+        if (2 * across[0] * across[1] < groups && plan.most_along > across[fewer]) {
+            const int along = plan.axis;
+            const std::uint32_t beside = across[1 - fewer];
+            plan.axis = plan.axis_across(fewer);
+            const std::size_t first = plan.axis_across(0) == along ? 0 : 1;
+            across[first] = share(groups / beside, std::min(plan.most_along, most_groups / beside));
+            across[1 - first] = beside;
+        }
+        plan.across = across;
+        return plan;
+    }
+
+    void clear() noexcept { starts_.resize(1); }
+
+    /// @param ids of the boxes; empty where the place is the id
+    /// @param most_in_group with a group of more boxes, copies included, there are no groups: crowded. Nor are there
+    /// with a box that is invalid.
+    [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
+                                         const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
+        clear();
+        plan_ = plan;
+        keys_.resize(boxes.size() + simd::width);
+        // Fewer boxes are not worth a part; more parts than threads, since not all begin at once.
+        constexpr std::size_t least = 4096;
+        const std::size_t most = threads.count() > 1 ? std::size_t{4} * threads.count() : 1;
+        parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, most));
+        wide_.resize(boxes.size() + simd::width * parts_.size());
+        wide_first_.resize(wide_.size());
+        wide_last_.resize(wide_.size());
+        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { classify(boxes, p); });
+        std::size_t copies = 0;
+        for (const part& p : parts_) {
+            if (p.result != fill_result::whole) return p.result;
+            copies += p.copies;
+        }
+        if (copies > most_copies(boxes.size())) return fill_result::crowded;
+        if (!make_room(most_in_group)) return fill_result::crowded;
+        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
+        return fill_result::whole;
+    }
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
+    [[nodiscard]] column_group group(std::uint32_t g) const noexcept {
+        const std::size_t begin = starts_[g];
+        const std::size_t n = starts_[g + 1] - begin;
+        return {std::span(boxes_).subspan(begin, n), std::span(ids_).subspan(begin, n)};
+    }
+
+    /// Boxes in groups, each as often as it is in one.
+    [[nodiscard]] std::size_t copies() const noexcept { return starts_.back(); }
+    /// Pairs of boxes within groups, each box with itself, and in either order.
+    [[nodiscard]] double pairs() const noexcept {
+        double sum = 0;
+        for (std::size_t g = 0; g + 1 < starts_.size(); ++g) {
+            const auto n = static_cast<double>(starts_[g + 1] - starts_[g]);
+            sum += n * n;
+        }
+        return sum;
+    }
+    /// Boxes in the group that has most.
+    [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
+
+    /// The region of a group of boxes that lie within these bounds; what begins or ends beyond it, does so elsewhere.
+    [[nodiscard]] box region(std::uint32_t g, const box& within) const noexcept {
+        box b = within;
+        const std::uint32_t at[2] = {g % plan_.across[0], g / plan_.across[0]};
+        for (std::size_t i = 0; i < 2; ++i) {
+            const int k = plan_.axis_across(i);
+            if (plan_.scale[k] <= 0) continue;
+            const float width = 65'536.0F / static_cast<float>(plan_.across[i]) / plan_.scale[k];
+            const auto border = [&](std::uint32_t i) {
+                return std::clamp(plan_.origin[k] + static_cast<float>(i) * width, within.min[k], within.max[k]);
+            };
+            if (at[i] > 0) b.min[k] = border(at[i]);
+            if (at[i] + 1 < plan_.across[i]) b.max[k] = border(at[i] + 1);
+        }
+        return b;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all = bytes_of(keys_) + bytes_of(wide_) + bytes_of(wide_first_) + bytes_of(wide_last_) +
+                          bytes_of(boxes_) + bytes_of(ids_) + bytes_of(starts_);
+        for (const part& p : parts_) all += bytes_of(p.next) + bytes_of(p.next_copy);
+        return all;
+    }
+
+private:
+    static constexpr std::uint32_t most_groups = 16'384;
+
+    /// Boxes that one thread takes at a time.
+    struct part {
+        std::size_t begin;
+        std::size_t end;
+        std::size_t wide_begin;  // of those that reach into further groups, among all such
+        std::size_t wide_end;
+        std::vector<std::size_t> next;       // by group: how many begin there, then the place of the next one
+        std::vector<std::size_t> next_copy;  // the same of those that reach there
+        std::size_t copies;
+        fill_result result;
+    };
+
+    /// More are not worth the groups.
+    [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
+
+    void classify(std::span<const box> boxes, std::size_t number) {
+        part& p = parts_[number];
+        const std::size_t each = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
+        p.begin = std::min(boxes.size(), number * each);
+        p.end = std::min(boxes.size(), p.begin + each);
+        p.next.assign(plan_.columns(), 0);
+        p.next_copy.assign(plan_.columns(), 0);
+        p.wide_begin = p.wide_end = p.begin + number * simd::width;
+        p.copies = 0;
+        const int u = plan_.axis_across(0);
+        const int v = plan_.axis_across(1);
+        const simd::words across = simd::all(plan_.across[0] | plan_.across[1] << 16);
+        simd::flags invalid{};
+        for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],
+                                                                     std::uint32_t present) {
+            invalid |= are_invalid(c);
+            const simd::words first = simd::upper_products(plan_.whole(c[u], u) | plan_.whole(c[v], v) << 16, across);
+            const simd::words last =
+                simd::upper_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
+            simd::store_lower_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
+            const std::uint32_t wide = simd::bits(first != last) & present;
+            simd::store_where(&wide_first_[p.wide_end], first, wide);
+            simd::store_where(&wide_last_[p.wide_end], last, wide);
+            p.wide_end +=
+                simd::store_where(&wide_[p.wide_end], simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
+        });
+        p.result = simd::bits(invalid) == 0 ? fill_result::whole : fill_result::invalid;
+        if (p.result == fill_result::invalid) return;
+        std::size_t* const begin_there = p.next.data();
+        for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++begin_there[key];
+        for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
+            for_each_further(w, [&](std::uint32_t group, std::uint32_t) {
+                ++p.next_copy[group];
+                ++p.copies;
+            });
+            if (p.copies > most_copies(boxes.size())) {
+                p.result = fill_result::crowded;
+                return;
+            }
+        }
+    }
+
+    /// Counts become places.
+    /// @returns whether no group has more than so many boxes
+    [[nodiscard]] bool make_room(std::size_t most_in_group) {
+        const std::uint32_t groups = plan_.columns();
+        starts_.resize(groups + 1);
+        fullest_ = 0;
+        std::size_t all = 0;
+        const auto place = [&](std::size_t& count) {
+            const std::size_t here = count;
+            count = all;
+            all += here;
+        };
+        for (std::uint32_t g = 0; g < groups; ++g) {
+            starts_[g] = all;
+            for (part& p : parts_) place(p.next[g]);
+            for (part& p : parts_) place(p.next_copy[g]);
+            fullest_ = std::max(fullest_, all - starts_[g]);
+        }
+        starts_[groups] = all;
+        if (fullest_ > most_in_group) {
+            clear();
+            return false;
+        }
+        if (all > boxes_.capacity()) {
+            // Not twice as many as before: few boxes come to reach into further groups.
+            release(boxes_);
+            release(ids_);
+            boxes_.reserve(all + all / 16);
+            ids_.reserve(all + all / 16);
+        }
+        boxes_.resize(all);
+        ids_.resize(all);
+        return true;
+    }
+
+    /// Each box is read once, and put into all its groups.
+    void put(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
+        std::size_t* const next = p.next.data();
+        std::size_t* const next_copy = p.next_copy.data();
+        const std::uint16_t* const keys = keys_.data();
+        box* const to = boxes_.data();
+        std::uint32_t* const to_ids = ids_.data();
+        const auto write = [&](std::size_t place, std::size_t i, std::uint32_t later_on) {
+            // The next cache lines of a group: no processor foresees that many places at once.
+            __builtin_prefetch(to + place + 8, 1);
+            __builtin_prefetch(to_ids + place + 16, 1);
+            to[place] = boxes[i];
+            to_ids[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | later_on;
+        };
+        std::size_t i = p.begin;
+        for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
+            for (; i <= wide_[w]; ++i) write(next[keys[i]]++, i, 0);
+            for_each_further(
+                w, [&](std::uint32_t group, std::uint32_t later_on) { write(next_copy[group]++, i - 1, later_on); });
+        }
+        for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
+    }
+
+    /// Of a wide box, the groups but the first.
+    template <class Visit>
+    void for_each_further(std::size_t wide, Visit visit) const {
+        const std::uint32_t u0 = wide_first_[wide] & 0xffffU;
+        const std::uint32_t v0 = wide_first_[wide] >> 16;
+        const std::uint32_t u1 = wide_last_[wide] & 0xffffU;
+        const std::uint32_t v1 = wide_last_[wide] >> 16;
+        for (std::uint32_t v = v0; v <= v1; ++v)
+            for (std::uint32_t u = u0; u <= u1; ++u)
+                if (u != u0 || v != v0)
+                    visit(u + v * plan_.across[0], (u != u0 ? column_entry::later_on(plan_.axis_across(0)) : 0) |
+                                                       (v != v0 ? column_entry::later_on(plan_.axis_across(1)) : 0));
+    }
+
+    column_plan plan_;
+    large_vector<std::uint16_t> keys_;        // by box: its first group
+    large_vector<std::uint32_t> wide_;        // boxes that reach into further ones, in order
+    large_vector<std::uint32_t> wide_first_;  // column on the first axis across, and 2^16 times that on the second one
+    large_vector<std::uint32_t> wide_last_;
+    std::vector<part> parts_;
+    large_vector<box> boxes_;  // group after group
+    large_vector<std::uint32_t> ids_;
+    std::vector<std::size_t> starts_{0};
+    std::size_t fullest_ = 0;
+};
+
+}  // namespace aabb

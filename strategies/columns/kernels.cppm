@@ -1,0 +1,169 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+/// What columns do with as many numbers at a time as a register takes, beside what `aabb.simd` has: rows of a few
+/// numbers each, as they lie in memory, to columns and back, and two numbers of 16 bits in a word.
+export module aabb.columns.kernels;
+
+import aabb.simd;
+
+namespace aabb::simd::detail {
+
+using pairs = double __attribute__((vector_size(4 * width)));  // of two numbers
+
+/// Lane i takes lane `Place(i)` of the two vectors, one behind the other.
+template <class Result, auto Place, class Vector, std::size_t... I>
+[[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<I...>) noexcept {
+    return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(Place(I))...));
+}
+
+/// Pair `K` of each of half as many rows of three pairs as a vector has numbers.
+template <std::size_t K>
+[[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
+    constexpr std::size_t half = width / 2;
+    constexpr auto of_first_two = [](std::size_t i) { return 3 * i + K < width ? 3 * i + K : 0; };
+    constexpr auto of_all = [](std::size_t i) { return 3 * i + K < width ? i : half + (3 * i + K - width); };
+    const pairs found = shuffled<pairs, of_first_two>(a, b, std::make_index_sequence<half>{});
+    return shuffled<pairs, of_all>(found, c, std::make_index_sequence<half>{});
+}
+
+template <std::size_t K>
+[[gnu::always_inline]] inline void take_pair(const pairs (&rows)[6], floats* columns) noexcept {
+    const auto low = __builtin_bit_cast(floats, every_third<K>(rows[0], rows[1], rows[2]));
+    const auto high = __builtin_bit_cast(floats, every_third<K>(rows[3], rows[4], rows[5]));
+    constexpr auto even = [](std::size_t i) { return 2 * i; };
+    constexpr auto odd = [](std::size_t i) { return 2 * i + 1; };
+    columns[2 * K] = shuffled<floats, even>(low, high, std::make_index_sequence<width>{});
+    columns[2 * K + 1] = shuffled<floats, odd>(low, high, std::make_index_sequence<width>{});
+}
+
+// Vectors are handed over in memory, which leaves no trace when optimised.
+#if defined(__AVX512F__)
+[[gnu::always_inline]] inline void gather_sixteen(const std::uint32_t* from, const void* places, void* to) noexcept {
+    _mm512_storeu_si512(to, _mm512_i32gather_epi32(_mm512_loadu_si512(places), from, 4));
+}
+#endif
+#if defined(__AVX2__)
+[[gnu::always_inline]] inline void gather_eight(const std::uint32_t* from, const void* places, void* to) noexcept {
+    const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
+    _mm256_storeu_si256(static_cast<__m256i*>(to), _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), at, 4));
+}
+#endif
+
+}  // namespace aabb::simd::detail
+
+export namespace aabb::simd {
+
+/// Of `width` rows of six numbers: their columns.
+[[gnu::always_inline]] inline void load_rows_of_six(const float* from, floats (&columns)[6]) noexcept {
+    detail::pairs rows[6];
+    std::memcpy(rows, from, sizeof rows);
+    detail::take_pair<0>(rows, columns);
+    detail::take_pair<1>(rows, columns);
+    detail::take_pair<2>(rows, columns);
+}
+
+/// Of `width` rows of four numbers: their columns.
+[[gnu::always_inline]] inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
+    words rows[4];
+    std::memcpy(rows, from, sizeof rows);
+    const auto column = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+        constexpr auto of_two = [](std::size_t i) { return 4 * (i % (width / 2)) + K; };
+        constexpr auto joined = [](std::size_t i) { return i < width / 2 ? i : width + i - width / 2; };
+        const auto all = std::make_index_sequence<width>{};
+        const words low = detail::shuffled<words, of_two>(rows[0], rows[1], all);
+        const words high = detail::shuffled<words, of_two>(rows[2], rows[3], all);
+        columns[K] = detail::shuffled<words, joined>(low, high, all);
+    };
+    column(std::integral_constant<std::size_t, 0>{});
+    column(std::integral_constant<std::size_t, 1>{});
+    column(std::integral_constant<std::size_t, 2>{});
+    column(std::integral_constant<std::size_t, 3>{});
+}
+
+/// The other way round.
+[[gnu::always_inline]] inline void store_rows_of_four(std::uint32_t* to, const words (&&columns)[4]) noexcept {
+    const auto rows = [&]<std::size_t R>(std::integral_constant<std::size_t, R>) {
+        // Number j of these rows is of row j / 4 and column j % 4: two columns at a time, then both.
+        constexpr auto of_two = [](std::size_t i) { return R * width / 4 + i / 4 + (i % 2) * width; };
+        constexpr auto joined = [](std::size_t i) { return i % 4 < 2 ? i : width + i; };
+        const auto all = std::make_index_sequence<width>{};
+        const words low = detail::shuffled<words, of_two>(columns[0], columns[1], all);
+        const words high = detail::shuffled<words, of_two>(columns[2], columns[3], all);
+        store(to + R * width, detail::shuffled<words, joined>(low, high, all));
+    };
+    rows(std::integral_constant<std::size_t, 0>{});
+    rows(std::integral_constant<std::size_t, 1>{});
+    rows(std::integral_constant<std::size_t, 2>{});
+    rows(std::integral_constant<std::size_t, 3>{});
+}
+
+using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two in each word
+
+/// Numbers of 16 bits.
+[[nodiscard, gnu::always_inline]] inline words load_halves(const std::uint16_t* from) noexcept {
+    using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
+    narrow v;
+    std::memcpy(&v, from, sizeof v);
+    return __builtin_convertvector(v, words);
+}
+
+/// The lower half of each number.
+[[gnu::always_inline]] inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
+    using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
+    const auto lower = __builtin_convertvector(v, narrow);
+    std::memcpy(to, &lower, sizeof lower);
+}
+
+/// Of two numbers of 16 bits each, the upper half of the product.
+[[nodiscard, gnu::always_inline]] inline words upper_products(words a, words b) noexcept {
+    using wide = std::uint32_t __attribute__((vector_size(8 * width)));
+    const auto x = __builtin_convertvector(reinterpret_cast<halves>(a), wide);
+    const auto y = __builtin_convertvector(reinterpret_cast<halves>(b), wide);
+    return reinterpret_cast<words>(__builtin_convertvector(x * y >> 16, halves));
+}
+
+/// Of two numbers of 16 bits each: the difference, or 0 where it is negative.
+[[nodiscard, gnu::always_inline]] inline words excess(words a, words b) noexcept {
+    return reinterpret_cast<words>(
+        __builtin_elementwise_sub_sat(reinterpret_cast<halves>(a), reinterpret_cast<halves>(b)));
+}
+
+/// What stands at these places.
+[[nodiscard, gnu::always_inline]] inline words gather(const std::uint32_t* from, words places) noexcept {
+    words v;
+#if defined(__AVX512F__)
+    if constexpr (width == 16) return detail::gather_sixteen(from, &places, &v), v;
+#endif
+#if defined(__AVX2__)
+    if constexpr (width == 8) return detail::gather_eight(from, &places, &v), v;
+#endif
+    for (std::size_t i = 0; i < width; ++i) v[i] = from[places[i]];
+    return v;
+}
+
+/// Of each lane, the sum of those up to it.
+[[nodiscard, gnu::always_inline]] inline words running_sum(words v) noexcept {
+    const words none{};
+    const auto shifted = [&]<std::size_t By, std::size_t... I>(std::integral_constant<std::size_t, By>,
+                                                               std::index_sequence<I...>) {
+        return __builtin_shufflevector(v, none, (I < By ? static_cast<int>(width + I) : static_cast<int>(I - By))...);
+    };
+    const auto add = [&]<std::size_t By>(std::integral_constant<std::size_t, By> distance) {
+        if constexpr (By < width) v += shifted(distance, std::make_index_sequence<width>{});
+    };
+    add(std::integral_constant<std::size_t, 1>{});
+    add(std::integral_constant<std::size_t, 2>{});
+    add(std::integral_constant<std::size_t, 4>{});
+    add(std::integral_constant<std::size_t, 8>{});
+    return v;
+}
+
+}  // namespace aabb::simd

@@ -1,0 +1,263 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+export module aabb.columns.lists;
+
+import aabb.base;
+import aabb.columns.kernels;
+import aabb.columns.plan;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.simd;
+
+export namespace aabb {
+
+/// Cuts boxes into columns and brings each column in order, for one sweep.
+///
+/// A box is taken to whole numbers once; from them come its column and its bucket, and one pass of counting and one of
+/// writing put it behind those of its column that begin before it. Which boxes reach into further columns is
+/// remembered on the way, and only those are looked at again.
+class column_lists {
+public:
+    /// @param ids by place in `boxes`; empty where the place is the id
+    /// @param by_keys sorted by the sort policy, entry by entry, even where that leaves it to buckets
+    /// @param most_copies with more of them there is nothing to sweep: crowded. Nor is there with a box that is
+    /// invalid.
+    template <class Sort, CounterPolicy Counters>
+    [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
+                                   const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
+                                   Counters& counters) {
+        block_ = {boxes, ids, {}, {}, plan.axis};
+        plan_ = plan;
+        const bool in_buckets = BucketSort<Sort> && !by_keys;
+        bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;
+        if (const fill_result taken = take(most_copies); taken != fill_result::whole) return taken;
+        const std::uint32_t all = make_room();
+        distribute();
+        counters.add(work::moves, copies());
+        if (!in_buckets) sort_columns(sort, counters);
+        block_.entries = std::span(entries_).first(all);
+        block_.ends = ends_;
+        return fill_result::whole;
+    }
+
+    /// Boxes in columns, each as often as it is in one.
+    [[nodiscard]] std::size_t copies() const noexcept { return block_.boxes.size() + copies_.size(); }
+    [[nodiscard]] const column_block& block() const noexcept { return block_; }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return bytes_of(places_) + bytes_of(copies_) + bytes_of(entries_) + bytes_of(ends_) + bytes_of(list_) +
+               bytes_of(moved_) + bytes_of(column_ends_);
+    }
+
+private:
+    static constexpr std::uint32_t width = simd::width;
+    static constexpr std::size_t at_a_time = 1024;
+
+    /// A box in whole numbers.
+    struct place {
+        std::uint32_t lower;
+        std::uint32_t upper;
+        std::uint32_t reach;
+        std::uint32_t bucket;  ///< in which it begins, in its first column
+    };
+    /// A box in a further column: so many buckets later.
+    struct copy {
+        std::uint32_t index;  ///< with bits of `later_on`
+        std::uint32_t buckets;
+    };
+
+    /// A few boxes at a time, so that what is known of them is still in the nearest cache when they are counted.
+    [[nodiscard]] fill_result take(std::size_t most_copies) {
+        places_.resize(block_.boxes.size() + width);
+        copies_.clear();
+        ends_.clear();
+        ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
+        for (std::size_t begin = 0; begin < block_.boxes.size(); begin += at_a_time) {
+            const auto some = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
+            const bool valid = plan_.axis == 0   ? classify<0>(some, begin)
+                               : plan_.axis == 1 ? classify<1>(some, begin)
+                                                 : classify<2>(some, begin);
+            if (!valid) return fill_result::invalid;
+            for (const place& p : std::span(places_).subspan(begin, some.size())) ++ends_[p.bucket];
+            if (!add_copies(most_copies)) return fill_result::crowded;
+        }
+        return fill_result::whole;
+    }
+
+    template <int Axis>
+    [[nodiscard]] bool classify(std::span<const box> boxes, std::size_t begin) {
+        constexpr int u = (Axis + 1) % 3;
+        constexpr int v = (Axis + 2) % 3;
+        const column_plan plan = plan_;
+        const std::uint32_t bits = bucket_bits_;
+        const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
+        simd::flags invalid{};
+        std::size_t wide = 0;
+        for_each_vector(boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t present) {
+            invalid |= are_invalid(c);
+            const simd::words lower = plan.whole(c[u], u) | plan.whole(c[v], v) << 16;
+            const simd::words upper = plan.whole(c[3 + u], u) | plan.whole(c[3 + v], v) << 16;
+            const simd::words first = simd::upper_products(lower, across);
+            const simd::words last = simd::upper_products(upper, across);
+            const simd::words bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
+            simd::store_rows_of_four(&places_[begin + i].lower,
+                                     {lower, upper, bucket + (plan.whole(c[3 + Axis], Axis) >> (16 - bits)),
+                                      bucket + (plan.whole(c[Axis], Axis) >> (16 - bits))});
+            wide += simd::store_where(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
+                                      simd::bits(first != last) & present);
+        });
+        wide_boxes_ = wide;
+        return simd::bits(invalid) == 0;
+    }
+
+    /// Of boxes that reach into more than one column, an entry for each further one.
+    /// @returns whether there are no more than so many
+    [[nodiscard]] bool add_copies(std::size_t most_copies) {
+        const std::uint32_t later_on[2] = {column_entry::later_on(plan_.axis_across(0)),
+                                           column_entry::later_on(plan_.axis_across(1))};
+        const std::uint32_t column = std::uint32_t{1} << bucket_bits_;
+        const std::uint32_t row = plan_.across[0] << bucket_bits_;
+        const auto reached = [&](const place& p, int shift, std::size_t k) {
+            return ((p.upper >> shift & 0xffffU) * plan_.across[k] >> 16) -
+                   ((p.lower >> shift & 0xffffU) * plan_.across[k] >> 16);
+        };
+        std::array<copy, 64> some;
+        std::size_t n = 0;
+        const auto flush = [&] { copies_.insert(copies_.end(), some.begin(), some.begin() + std::exchange(n, 0)); };
+        for (const std::uint32_t i : std::span(wide_).first(wide_boxes_)) {
+            const place p = places_[i];
+            const std::uint32_t nu = reached(p, 0, 0);
+            const std::uint32_t nv = reached(p, 16, 1);
+            const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
+                const std::uint32_t buckets = u * column + v * row;
+                some[n] = {i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets};
+                n += times;
+                ends_[p.bucket + buckets * times] += times;
+            };
+            if (nu <= 1 && nv <= 1) {
+                // Which of three it is cannot be foreseen.
+                add(1, 0, nu);
+                add(0, 1, nv);
+                add(1, 1, nu & nv);
+                if (n + 3 > some.size()) flush();
+                continue;
+            }
+            for (std::uint32_t v = 0; v <= nv; ++v)
+                for (std::uint32_t u = v == 0; u <= nu; ++u) {
+                    add(u, v, 1);
+                    if (n + 3 > some.size()) flush();
+                }
+            if (copies_.size() > most_copies) return false;
+        }
+        flush();
+        return copies_.size() <= most_copies;
+    }
+
+    /// Counts become places; what fills a column up to a whole vector is written.
+    /// @returns entries with those
+    std::uint32_t make_room() {
+        const std::uint32_t columns = plan_.columns();
+        const std::size_t most = block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1);
+        // Not twice as many as before: frames differ by few.
+        if (most > entries_.capacity()) {
+            release(entries_);
+            entries_.reserve(most + most / 16);
+        }
+        entries_.resize(most);
+        const std::uint32_t buckets = std::uint32_t{1} << bucket_bits_;
+        const column_entry none{~std::uint32_t{0}, 0, columns << bucket_bits_, 0};
+        std::uint32_t next = 0;
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            std::uint32_t* const ends = &ends_[c << bucket_bits_];
+            next = buckets >= width ? places_of(ends, buckets, next) : std::exchange(*ends, next) + next;
+            while (next % width != 0) entries_[next++] = none;
+        }
+        ends_[columns << bucket_bits_] = 0;  // where what fills up ends: it meets none
+        return next;
+    }
+
+    /// Of each bucket, how many stand before it.
+    static std::uint32_t places_of(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
+        for (std::uint32_t b = 0; b < buckets; b += width) {
+            const simd::words here = simd::load(counts + b);
+            const simd::words ends = simd::running_sum(here) + next;
+            simd::store(counts + b, ends - here);
+            next = ends[width - 1];
+        }
+        return next;
+    }
+
+    /// Afterwards a bucket's place is that of its end.
+    void distribute() {
+        if (block_.ids.empty())
+            distribute([](std::uint32_t) { return std::uint32_t{0}; });
+        else
+            distribute([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
+    }
+    template <class LaterOn>
+    void distribute(LaterOn later_on) {
+        const auto boxes = static_cast<std::uint32_t>(block_.boxes.size());
+        for (std::uint32_t i = 0; i < boxes; ++i) {
+            const place p = places_[i];
+            entries_[ends_[p.bucket]++] = {p.lower, p.upper, p.reach, i | later_on(i)};
+        }
+        for (const copy& c : copies_) {
+            const std::uint32_t i = c.index & column_entry::index_bits;
+            const place p = places_[i];
+            entries_[ends_[p.bucket + c.buckets]++] = {p.lower, p.upper, p.reach + c.buckets, c.index | later_on(i)};
+        }
+    }
+
+    /// By the sort policy, column by column; each entry gets a bucket of its own.
+    template <class Sort, CounterPolicy Counters>
+    void sort_columns(Sort& sort, Counters& counters) {
+        column_ends_.clear();
+        for (std::uint32_t c = 0; c < plan_.columns(); ++c) column_ends_.push_back(ends_[c]);
+        ends_.resize(entries_.size() + width);
+        std::uint32_t begin = 0;
+        for (const std::uint32_t end : column_ends_) {
+            list_.clear();
+            for (std::uint32_t i = begin; i < end; ++i) list_.push_back({box_of(entries_[i]).min[plan_.axis], i});
+            sort.sort(std::span(list_), counters);
+            moved_.clear();
+            for (std::uint32_t i = begin; i < end; ++i) moved_.push_back(entries_[i]);
+            for (std::uint32_t i = begin; i < end; ++i) {
+                entries_[i] = moved_[list_[i - begin].id - begin];
+                entries_[i].reach = i;
+                const float upper = box_of(entries_[i]).max[plan_.axis];
+                ends_[i] = begin + static_cast<std::uint32_t>(
+                                       std::ranges::upper_bound(list_, upper, {}, &projection::key) - list_.begin());
+            }
+            begin = (end + width - 1) / width * width;
+            for (std::uint32_t i = end; i < begin; ++i) entries_[i].reach = static_cast<std::uint32_t>(entries_.size());
+        }
+        ends_[entries_.size()] = 0;
+    }
+
+    [[nodiscard]] const box& box_of(const column_entry& e) const noexcept {
+        return block_.boxes[e.index & column_entry::index_bits];
+    }
+
+    column_block block_{};
+    column_plan plan_;
+    std::uint32_t bucket_bits_ = 0;
+    std::vector<place> places_;                          // by box
+    std::array<std::uint32_t, at_a_time + width> wide_;  // of those at hand, boxes that reach into further columns
+    std::size_t wide_boxes_ = 0;                         // how many those are
+    std::vector<copy> copies_;                           // for each of those
+    std::vector<column_entry> entries_;
+    std::vector<std::uint32_t> ends_;  // by bucket, and one more
+    std::vector<projection> list_;     // of a column, where it is sorted
+    std::vector<column_entry> moved_;  // the same
+    std::vector<std::uint32_t> column_ends_;
+};
+
+}  // namespace aabb

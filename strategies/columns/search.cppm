@@ -1,0 +1,283 @@
+module;
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+export module aabb.columns.search;
+
+import aabb.base;
+import aabb.columns.few_boxes;
+import aabb.columns.frame_at_rest;
+import aabb.columns.groups;
+import aabb.columns.plan;
+import aabb.columns.worker;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+import aabb.pipeline;
+
+export namespace aabb {
+
+/// Global search that cuts first: boxes go to columns as they are, group by group where there are many, and what a
+/// group needs is made while it is swept, so that it is still in a cache. A few boxes are not cut at all. Kept from
+/// frame to frame are the plans, and the pairs for as long as nothing moves.
+template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
+class column_search {
+public:
+    column_search(Sort sort, Partition partition, Sweep sweep)
+        : partition_(std::move(partition)), threads_(partition_.threads()) {
+        workers_.push_back({{std::move(sort), std::move(sweep)}, {}});
+        workers_.resize(threads_.count(), workers_.front());
+    }
+    // What was filled points into itself.
+    column_search(const column_search&) = delete;
+    column_search& operator=(const column_search&) = delete;
+    column_search(column_search&&) = default;
+    column_search& operator=(column_search&&) = default;
+    ~column_search() = default;
+
+    /// @throws input_error as `global_search::update`.
+    void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
+        boxes_ = boxes;
+        rests_ = at_rest_.lasts(boxes, objects);
+        if (rests_) return;
+        if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
+        select(boxes, objects);
+        const std::size_t n = present_.boxes.size();
+        is_few_ = n <= partition_.few();
+        if (is_few_) {
+            planned_ = 0;
+            if (!few_.fill(present_)) require_valid(boxes);
+            return;
+        }
+        const box bounds = bounds_of_some();
+        const bool is_anew = is_stale(n) || lie_elsewhere(bounds, planned_bounds_);
+        if (is_anew) planned_bounds_ = bounds;
+        planned_ = 0;
+        age_ = is_anew ? 0 : age_ + 1;
+        if (!cut(is_anew, counters)) require_valid(boxes);
+        planned_ = n;
+        add_up(counters);
+    }
+
+    void search(std::vector<index_pair>& pairs, Counters& counters) {
+        for (worker& w : workers_) w.own.times().clear();
+        if (rests_) {
+            pairs.insert(pairs.end(), at_rest_.pairs().begin(), at_rest_.pairs().end());
+            return;
+        }
+        const std::size_t before = pairs.size();
+        if (is_few_)
+            few_.search(pairs, counters);
+        else if (groups_.size() == 0)
+            workers_.front().own.sweep(partition_, present_, everywhere, cut_.columns, pairs);
+        else
+            search_groups(pairs);
+        add_up(counters);
+        at_rest_.keep(boxes_, std::span(pairs).subspan(before));
+    }
+
+    /// Of the last frame that was cut: into groups of columns where there are any.
+    [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? cut_.grid : cut_.columns.plan; }
+    [[nodiscard]] bool is_in_groups() const noexcept { return groups_.size() > 0; }
+    [[nodiscard]] std::vector<std::string> plans() const {
+        if (is_few_) return {};
+        const column_plan& p = plan();
+        if (p.columns() == 1) return {"one column, cut nowhere"};
+        return {std::to_string(p.across[0]) + " by " + std::to_string(p.across[1]) +
+                (is_in_groups() ? " groups of columns along the " : " columns along the ") + "xyz"[p.axis] + " axis"};
+    }
+    [[nodiscard]] std::vector<omission> left_out() const {
+        constexpr const char* why = "so few boxes are tested each against each";
+        if (is_few_) return {{"no partition", why}, {"no sort", why}};
+        return {};
+    }
+    /// Of the time of the last search: groups are cut and sorted in it, where they are still in a cache.
+    [[nodiscard]] double share_of_update() const {
+        const double all = sum_of([](const worker& w) { return w.own.times().all(); });
+        return all > 0 ? sum_of([](const worker& w) { return w.own.times().cut(); }) / all : 0;
+    }
+    [[nodiscard]] std::size_t sort_bytes() const noexcept {
+        return sum_of([](const worker& w) { return w.own.sort_bytes(); });
+    }
+    [[nodiscard]] std::size_t partition_bytes() const noexcept {
+        return bytes_of(partition_) + bytes_of(groups_) + bytes_of(cut_) + bytes_of(present_boxes_) +
+               bytes_of(present_ids_) + bytes_of(few_) + bytes_of(at_rest_) +
+               sum_of([](const worker& w) { return w.own.column_bytes(); });
+    }
+    [[nodiscard]] std::size_t sweep_bytes() const noexcept {
+        return bytes_of(found_) + sum_of([](const worker& w) { return w.own.sweep_bytes() + bytes_of(w.pairs); });
+    }
+
+private:
+    /// Plans serve at most this many frames.
+    static constexpr unsigned frames_a_plan = 32;
+
+    using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
+
+    // Cache lines come in twos; none is written by two workers.
+    struct alignas(128) worker {
+        column_worker<Sort, Partition, Sweep, own_counters> own;
+        std::vector<index_pair> pairs;
+    };
+    /// Where the pairs of a group are that another worker than the first one took.
+    struct pairs_of_group {
+        std::size_t worker = 0;
+        std::size_t begin = 0;
+        std::size_t end = 0;
+    };
+
+    void select(std::span<const box> boxes, const membership& objects) {
+        present_ = {boxes, {}};
+        if (objects.size() == boxes.size()) return;
+        require_valid(boxes);
+        present_boxes_.clear();
+        present_ids_.clear();
+        for (std::uint32_t id = 0; id < boxes.size(); ++id)
+            if (objects.contains(id)) {
+                present_boxes_.push_back(boxes[id]);
+                present_ids_.push_back(id);
+            }
+        present_ = {present_boxes_, present_ids_};
+    }
+
+    [[nodiscard]] bool is_stale(std::size_t n) const noexcept {
+        const std::size_t change = n > planned_ ? n - planned_ : planned_ - n;
+        return planned_ == 0 || age_ + 1 == frames_a_plan || 8 * change > planned_;
+    }
+
+    /// Of a few of the boxes, the same ones in every frame that has as many.
+    [[nodiscard]] box bounds_of_some() const noexcept {
+        constexpr std::size_t looked_at = 16;
+        box bounds = empty_box();
+        const std::size_t n = present_.boxes.size();
+        const std::size_t step = std::max<std::size_t>(1, n / looked_at);
+        for (std::size_t i = 0; i < n; i += step) bounds = merged(bounds, present_.boxes[i]);
+        return bounds;
+    }
+
+    /// Whether boxes spread over half as much again as when they were planned for, or over two thirds, or have moved on
+    /// by half of that, on any axis; on one on which they hardly spread, by more than a part of the longest.
+    [[nodiscard]] static bool lie_elsewhere(const box& now, const box& planned) noexcept {
+        const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
+        const double longest = width_of(planned, longest_axis(planned));
+        for (int k = 0; k < 3; ++k) {
+            const double width = std::max(width_of(planned, k), longest / 64);
+            const double change = width_of(now, k) - width_of(planned, k);
+            const double way =
+                double{now.min[k]} - double{planned.min[k]} + double{now.max[k]} - double{planned.max[k]};
+            if (change > width / 2 || change < -width / 3 || std::abs(way) > width) return true;
+        }
+        return false;
+    }
+
+    /// @returns whether all boxes are valid.
+    [[nodiscard]] bool cut(bool is_anew, Counters& counters) {
+        const auto plan = [&] {
+            age_ = 0;
+            kept_plan planned = workers_.front().own.planned(partition_, present_, everywhere);
+            const std::size_t n = present_.boxes.size();
+            const double by_size = static_cast<double>(n) / static_cast<double>(partition_.group(n));
+            planned.plan.groups = std::max(planned.plan.groups, by_size);
+            return planned;
+        };
+        if (is_anew) {
+            cut_.columns = plan();
+            cut_.in_groups = false;
+        }
+        const fill_result result = put_into_groups(present_, cut_, plan, groups_, threads_);
+        if (result == fill_result::whole) counters.add(work::moves, groups_.copies());
+        if (result != fill_result::crowded) return result == fill_result::whole;
+        groups_.clear();
+        auto& own = workers_.front().own;
+        if (!own.fill(partition_, present_, everywhere, cut_.columns)) return false;
+        if (cut_.columns.plan.columns() > 1) counters.add(work::subset_copies, own.copies());
+        return true;
+    }
+
+    void search_groups(std::vector<index_pair>& pairs) {
+        if (threads_.count() == 1) {
+            for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
+            return;
+        }
+        // The first worker takes groups from the first one on, so that it leaves pairs where they belong; others take
+        // them from the last one on.
+        for (worker& w : workers_) w.pairs.clear();
+        found_.assign(groups_.size(), {});
+        std::atomic<std::uint64_t> taken = 0;  // how many from the first one on, and 2^32 times how many from the last
+        threads_.for_each_index(threads_.count(), [&](std::size_t, std::size_t number) {
+            std::vector<index_pair>& to = number == 0 ? pairs : workers_[number].pairs;
+            const std::uint64_t one = number == 0 ? 1 : std::uint64_t{1} << 32U;
+            for (;;) {
+                const std::uint64_t before = taken.fetch_add(one, std::memory_order_relaxed);
+                const auto first = static_cast<std::uint32_t>(before);
+                const auto last = static_cast<std::uint32_t>(before >> 32U);
+                if (first + last >= groups_.size()) return;
+                const std::uint32_t g = number == 0 ? first : groups_.size() - 1 - last;
+                const std::size_t begin = to.size();
+                search_group(g, workers_[number], to);
+                if (number > 0) found_[g] = {number, begin, to.size()};
+            }
+        });
+        collect(pairs);
+    }
+
+    /// Those of the other workers, behind: in the order of the groups, whichever thread took them.
+    void collect(std::vector<index_pair>& pairs) {
+        std::size_t all = pairs.size();
+        for (const worker& w : workers_) all += w.pairs.size();
+        if (all > pairs.capacity()) pairs.reserve(std::max(all, 2 * pairs.capacity()));
+        for (const pairs_of_group& f : found_) {
+            const auto from = workers_[f.worker].pairs.begin();
+            pairs.insert(pairs.end(), from + static_cast<std::ptrdiff_t>(f.begin),
+                         from + static_cast<std::ptrdiff_t>(f.end));
+        }
+    }
+
+    void search_group(std::uint32_t g, worker& w, std::vector<index_pair>& pairs) {
+        w.own.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
+    }
+
+    void add_up(Counters& counters) {
+        if constexpr (Counters::enabled)
+            for (worker& w : workers_) {
+                const work_counters made = w.own.take_counters();
+                for (std::size_t k = 0; k < work_names.size(); ++k)
+                    if (const auto what = static_cast<work>(k); made[what] > 0) counters.add(what, made[what]);
+            }
+    }
+
+    template <class Value>
+    [[nodiscard]] auto sum_of(Value value) const {
+        decltype(value(workers_.front())) sum{};
+        for (const worker& w : workers_) sum += value(w);
+        return sum;
+    }
+
+    [[no_unique_address]] Partition partition_;
+    worker_threads threads_;
+    std::vector<worker> workers_;  // one for each of them
+    std::span<const box> boxes_;   // of the frame
+    frame_at_rest at_rest_;
+    bool rests_ = false;
+    column_group present_{};
+    std::vector<box> present_boxes_;  // where some objects are absent
+    std::vector<std::uint32_t> present_ids_;
+    few_boxes few_;
+    bool is_few_ = false;
+    kept_cut cut_;
+    column_groups groups_;
+    std::vector<pairs_of_group> found_;
+    std::size_t planned_ = 0;  // boxes of the frame before; 0 without a plan
+    unsigned age_ = 0;         // frames since the plan
+    box planned_bounds_ = empty_box();
+};
+
+}  // namespace aabb

@@ -1,0 +1,231 @@
+module;
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <utility>
+#include <vector>
+
+export module aabb.columns.worker;
+
+import aabb.base;
+import aabb.columns.groups;
+import aabb.columns.lists;
+import aabb.columns.plan;
+import aabb.counters;
+import aabb.geometry;
+import aabb.global_search;
+
+export namespace aabb {
+
+/// How boxes are cut for as long as that serves them.
+struct kept_plan {
+    column_plan plan;
+    bool by_keys = false;          ///< columns are sorted by keys, since their buckets took too many boxes
+    std::uint64_t most_tests = 0;  ///< of a vector, with which a sweep still serves; 0 before the first one
+};
+
+/// How boxes are cut that may be in groups, and how those of each group are.
+struct kept_cut {
+    kept_plan columns;  ///< where there are no groups
+    bool in_groups = false;
+    column_plan grid;         ///< of groups
+    std::size_t fullest = 0;  ///< how many boxes the fullest group had when the grid was planned
+    std::vector<kept_cut> groups;
+
+    [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.most_tests > 0; }
+
+    /// Forgets how groups were cut.
+    void begin_groups(std::size_t in_fullest) {
+        if (groups.size() < grid.columns()) groups.resize(grid.columns());
+        for (kept_cut& g : groups) g.columns = {}, g.in_groups = false;
+        in_groups = true;
+        fullest = in_fullest;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t sum = bytes_of(groups);
+        for (const kept_cut& g : groups) sum += bytes_of(g);
+        return sum;
+    }
+};
+
+/// Puts boxes into groups where these are planned; where earlier groups do not serve, into others.
+///
+/// Groups are put into groups in turn, so these must come to an end: of all pairs of boxes, at least an eighth are in
+/// no group together. Then there is no more to do, over all levels, than eight times what each against each would take.
+/// @returns crowded where there are no groups.
+template <class Plan>
+[[nodiscard]] fill_result put_into_groups(const column_group& boxes, kept_cut& kept, Plan plan, column_groups& groups,
+                                          worker_threads& threads) {
+    const auto distribute = [&](std::size_t most) {
+        return groups.distribute(boxes.boxes, boxes.ids, kept.grid, most, threads);
+    };
+    if (kept.in_groups) {
+        const fill_result result = distribute(2 * kept.fullest + 4096);
+        if (result != fill_result::crowded) return result;
+        kept.in_groups = false;
+        kept.columns = plan();
+    }
+    if (kept.columns.plan.groups <= 1) return fill_result::crowded;
+    kept.grid = column_groups::coarser(kept.columns.plan);
+    fill_result result = distribute(std::numeric_limits<std::size_t>::max());
+    if (result == fill_result::invalid) return result;
+    const auto n = static_cast<double>(boxes.boxes.size());
+    if (result == fill_result::whole && 8 * groups.pairs() > 7 * n * n) result = fill_result::crowded;
+    if (result == fill_result::whole)
+        kept.begin_groups(groups.fullest());
+    else
+        kept.columns.plan.groups = 1;
+    return result;
+}
+
+/// How long groups took to be cut and sorted, which of boxes in one group is a part of the update, and to be swept.
+/// Groups of few boxes are timed now and then, for those before them too: a look at a clock takes as long as some
+/// boxes.
+class phase_times {
+public:
+    /// Calls both.
+    template <class Cut, class Sweep>
+    void add(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
+        untimed_ += boxes;
+        if (untimed_ < least_timed) return cut(), sweep();
+        const auto begin = clock::now();
+        cut();
+        const auto between = clock::now();
+        sweep();
+        const double groups = static_cast<double>(std::exchange(untimed_, 0)) / static_cast<double>(boxes);
+        cut_ += groups * std::chrono::duration<double>(between - begin).count();
+        sweep_ += groups * std::chrono::duration<double>(clock::now() - between).count();
+    }
+    void clear() noexcept { cut_ = sweep_ = 0; }
+    [[nodiscard]] double cut() const noexcept { return cut_; }
+    [[nodiscard]] double all() const noexcept { return cut_ + sweep_; }
+
+private:
+    using clock = std::chrono::steady_clock;
+    static constexpr std::size_t least_timed = 1024;
+
+    double cut_ = 0;  // in seconds
+    double sweep_ = 0;
+    std::size_t untimed_ = 0;  // boxes since the last group that was
+};
+
+/// Cuts a group of boxes into columns and sweeps them: what one thread has for itself.
+///
+/// A plan comes from a few boxes of an earlier frame. Whether it serves these is seen while it is used: once boxes have
+/// very many copies, or their sweep takes far more tests than it took at first, what was begun is given up for a new
+/// plan. If that serves no better, columns are sorted by keys, as a sweep along one axis would; no scene takes much
+/// longer than that.
+template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
+class column_worker {
+public:
+    column_worker(Sort sort, Sweep sweep) : sort_(std::move(sort)), sweep_(std::move(sweep)) {}
+
+    /// What lies within the bounds counts, where a plan is made.
+    [[nodiscard]] static kept_plan planned(const Partition& partition, const column_group& group, const box& within) {
+        return {partition.plan(group.boxes, within), false, 0};
+    }
+
+    /// Finds the pairs of a group of valid boxes, by groups of its own where these are planned.
+    void search(const Partition& partition, const column_group& group, const box& within, kept_cut& kept,
+                std::vector<index_pair>& pairs, std::size_t depth = 0) {
+        if (group.boxes.size() < 2) return count(1, group.boxes.size());
+        const auto plan = [&] { return planned(partition, group, within); };
+        if (!kept.is_planned()) kept.columns = plan();
+        if (kept.in_groups || kept.columns.plan.groups > 1) {
+            while (levels_.size() <= depth) levels_.emplace_back();
+            column_groups& groups = levels_[depth];
+            worker_threads alone(1);
+            if (put_into_groups(group, kept, plan, groups, alone) == fill_result::whole) {
+                counters_.add(work::moves, groups.copies());
+                for (std::uint32_t g = 0; g < groups.size(); ++g)
+                    search(partition, groups.group(g), groups.region(g, within), kept.groups[g], pairs, depth + 1);
+                return;
+            }
+        }
+        times_.add(
+            group.boxes.size(), [&] { static_cast<void>(fill(partition, group, within, kept.columns)); },
+            [&] { sweep(partition, group, within, kept.columns, pairs); });
+        count(0, copies());
+    }
+
+    /// @returns whether all boxes are valid; if not, there is nothing to sweep.
+    [[nodiscard]] bool fill(const Partition& partition, const column_group& group, const box& within, kept_plan& kept) {
+        is_filled_ = false;
+        for (;;) {
+            const fill_result result = columns_.fill(group.boxes, group.ids, kept.plan, kept.by_keys,
+                                                     most_copies(group.boxes.size()), sort_, counters_);
+            if (result == fill_result::invalid) return false;
+            if (result == fill_result::whole) break;
+            if (kept.most_tests > 0)
+                kept = planned(partition, group, within);
+            else
+                kept.plan.across = {1, 1};
+        }
+        counters_.add(work::subsets, kept.plan.columns());
+        is_filled_ = true;
+        return true;
+    }
+
+    /// Of what was filled, or is filled again where that broke off.
+    void sweep(const Partition& partition, const column_group& group, const box& within, kept_plan& kept,
+               std::vector<index_pair>& pairs) {
+        const std::size_t before = pairs.size();
+        const std::size_t n = group.boxes.size();
+        for (;;) {
+            // They were valid when they were filled first.
+            if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
+            const bool is_new = kept.most_tests == 0;
+            const std::uint64_t most = !is_new ? kept.most_tests : kept.by_keys ? any_number : 64 * n + 4096;
+            const std::uint64_t tests = sweep_.sweep(columns_.block(), pairs, most, counters_);
+            if (tests <= most) {
+                if (is_new) kept.most_tests = 2 * tests + n + 1;
+                return;
+            }
+            pairs.resize(before);
+            is_filled_ = false;
+            kept = is_new ? kept_plan{kept.plan, true, 0} : planned(partition, group, within);
+        }
+    }
+
+    /// Boxes in columns, each as often as it is in one.
+    [[nodiscard]] std::size_t copies() const noexcept { return columns_.copies(); }
+    void count(std::size_t subsets, std::size_t copies) {
+        counters_.add(work::subsets, subsets);
+        counters_.add(work::subset_copies, copies);
+    }
+
+    [[nodiscard]] phase_times& times() noexcept { return times_; }
+    [[nodiscard]] const phase_times& times() const noexcept { return times_; }
+    /// Work that was not taken yet.
+    [[nodiscard]] auto take_counters() { return std::exchange(counters_, {}); }
+
+    [[nodiscard]] std::size_t sort_bytes() const noexcept { return bytes_of(sort_); }
+    [[nodiscard]] std::size_t column_bytes() const noexcept {
+        std::size_t sum = bytes_of(columns_);
+        for (const column_groups& groups : levels_) sum += bytes_of(groups);
+        return sum;
+    }
+    [[nodiscard]] std::size_t sweep_bytes() const noexcept { return bytes_of(sweep_); }
+
+private:
+    static constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
+
+    /// More are not worth their columns.
+    [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept {
+        return std::min(65'536 + 16 * boxes, std::size_t{1} << 30);
+    }
+
+    [[no_unique_address]] Sort sort_;
+    [[no_unique_address]] Sweep sweep_;
+    [[no_unique_address]] Counters counters_;
+    column_lists columns_;
+    bool is_filled_ = false;
+    phase_times times_;
+    std::deque<column_groups> levels_;  // of groups within groups
+};
+
+}  // namespace aabb

@@ -1,0 +1,301 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+export module aabb.wide_tree.batched_walk;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.simd;
+import aabb.wide_tree.child_pairs;
+import aabb.wide_tree.kernels;
+import aabb.wide_tree.leaf_front;
+import aabb.wide_tree.leaf_pairs;
+import aabb.wide_tree.leaf_reader;
+import aabb.wide_tree.level_steps;
+import aabb.wide_tree.nearest_walk;
+import aabb.wide_tree.policy;
+import aabb.wide_tree.triangle_batch;
+import aabb.wide_tree.triangle_block;
+import aabb.wide_tree.wide_node;
+
+export namespace aabb {
+
+/// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
+/// that no step waits for the one before, and few pairs are kept; all pairs of leaves that there are go on together;
+/// for the first pair by `nearest_walk`. Triangles are read and moved once for all the leaves that they meet one after
+/// the other, and tested in batches.
+template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
+class batched_walk {
+public:
+    /// Hands intersecting pairs of triangles (a of A, b of B) to `emit`, some at a time, until that returns true.
+    template <class Emit>
+    void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                 walk_goal goal, Emit emit) {
+        if (goal == walk_goal::first_pair) return find(test, a, b, to_a, emit);
+        walk(test, a, b, to_a, extent::two_meshes, emit);
+    }
+
+    /// Those of one mesh, in either order.
+    template <class Emit>
+    void within(const Triangle& test, const model<Tree>& m, Emit emit) {
+        walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, emit);
+    }
+
+    /// Appends the pairs of leaves with triangles within a margin of each other, less what rounding takes of it
+    /// (`most_rounding`).
+    /// @returns false when it stopped at more than so many
+    [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
+                            std::size_t most, std::vector<kept_pair>& pairs) {
+        leaves_.begin(a, b, to_a, false, false,
+                      std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
+        return !descend(a, b, to_a, extent::two_meshes, margin,
+                        [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
+                            return leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
+                                                         [&](std::size_t p, std::uint64_t which) {
+                                                             pairs.push_back({of_a[p], of_b[p], which});
+                                                             return pairs.size() > most;
+                                                         });
+                        });
+    }
+
+    /// As `between`, of these pairs alone.
+    template <class Emit>
+    void among(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+               std::span<const kept_pair> pairs, kept_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
+        const bool any_pair = goal == walk_goal::first_pair;
+        const auto triangles_at = naming(a, b);
+        waiting_.clear();
+        const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
+            make_wait(a.tree(), b.tree(), p, of_a, of_b);
+            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, triangles_at, emit);
+        };
+        if (!leaves(a, b, to_a, pairs, leaves_.reader(), test_pair))
+            static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
+    }
+
+    [[nodiscard]] Counters& counters() noexcept { return counters_; }
+    [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all =
+            sizeof *this + bytes_of(pairs_) + steps_.bytes() + children_.bytes() + leaves_.bytes() + nearest_.bytes();
+        for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
+        return all;
+    }
+
+private:
+    static constexpr std::size_t children = wide_node::most_children;
+    static constexpr std::size_t most_children_of_pair = children * children;
+    static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
+    /// Whether a filter decides where rounding leaves no doubt: of exact tests alone.
+    static constexpr bool is_filtered = requires { requires Triangle::filtered; };
+
+    enum class extent : std::uint8_t { two_meshes, one_mesh };
+
+    /// Node pairs of the same levels, still to be opened.
+    struct node_pairs {
+        std::vector<std::uint32_t> a;
+        std::vector<std::uint32_t> b;
+        std::size_t size = 0;
+
+        /// For all pairs of children of one more pair.
+        inline void make_room() {
+            if (size + most_children_of_pair <= a.size()) return;
+            b.resize(2 * size + most_children_of_pair);
+            a.resize(2 * size + most_children_of_pair);
+        }
+    };
+
+    template <class Emit>
+    void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
+              const Emit& emit) {
+        const auto triangles_at = naming(a, b);
+        waiting_.clear();
+        bool reached_leaves = false;
+        const bool stopped =
+            descend(a, b, to_a, what, 0, [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
+                if (!reached_leaves) leaves_.begin(a, b, to_a, what == extent::one_mesh, !is_filtered, 0);
+                reached_leaves = true;
+                return test_leaves(test, a, b, to_a, what, of_a, of_b, triangles_at, emit);
+            });
+        if (!stopped) static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
+    }
+
+    /// Any one pair: each pair of leaves is decided on before the next is read.
+    template <class Emit>
+    void find(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+              const Emit& emit) {
+        require_ready(a, b);
+        const auto triangles_at = naming(a, b);
+        waiting_.clear();
+        bool reached_leaves = false;
+        nearest_(a, b, to_a, counters_, [&](const std::uint32_t& of_a, const std::uint32_t& of_b) {
+            if (!reached_leaves) leaves_.begin(a, b, to_a, false, !is_filtered, 0);
+            reached_leaves = true;
+            return test_leaves(test, a, b, to_a, extent::two_meshes, {&of_a, 1}, {&of_b, 1}, triangles_at, emit) ||
+                   waiting_.decide(test, true, triangles_at, emit);
+        });
+    }
+
+    /// Opens nodes down to pairs of leaves that may meet.
+    /// @param margin within which boxes are said to meet
+    /// @param at_leaves called with leaves of A and of B, as many of both; returns whether to stop
+    /// @returns whether it was stopped
+    template <class AtLeaves>
+    bool descend(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, double margin,
+                 const AtLeaves& at_leaves) {
+        begin(a, b, to_a, margin);
+        for (std::size_t step = 0;;) {
+            if (pairs_[step].size == 0) {
+                step = steps_.size();
+                while (step > 0 && pairs_[step - 1].size == 0) --step;
+                if (step == 0) return false;
+                --step;
+            }
+            node_pairs& from = pairs_[step];
+            const std::size_t end = from.size;
+            const bool is_last = step + 1 == steps_.size();
+            const std::size_t begin = is_last ? 0 : end - std::min(end, most_at_once);
+            from.size = begin;
+            counters_.add(work::node_visits, end - begin);
+            if (!is_last) {
+                open(a.tree(), b.tree(), what, step, begin, end);
+                ++step;
+                continue;
+            }
+            if (at_leaves(std::span(from.a).subspan(begin, end - begin), std::span(from.b).subspan(begin, end - begin)))
+                return true;
+        }
+    }
+
+    static void require_ready(const model<Tree>& a, const model<Tree>& b) {
+        require_ieee_arithmetic();
+        a.require_fit();
+        b.require_fit();
+    }
+
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin) {
+        require_ready(a, b);
+        steps_.begin({a.tree().levels(), b.tree().levels()});
+        if (pairs_.size() < steps_.size()) pairs_.resize(steps_.size());
+        for (node_pairs& p : pairs_) p.size = 0;
+        pairs_[0].make_room();
+        pairs_[0].a[0] = pairs_[0].b[0] = 0;
+        pairs_[0].size = 1;
+        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), margin);
+    }
+
+    /// Triangles of the meshes, by their leaves and their places there.
+    [[nodiscard]] static auto naming(const model<Tree>& a, const model<Tree>& b) {
+        return [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
+            return index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)};
+        };
+    }
+
+    /// Those pairs of children that may meet go to the next step, from which the last ones are taken first, or all
+    /// where they are leaves.
+    void open(const Tree& a, const Tree& b, extent what, std::size_t step, std::size_t begin, std::size_t end) {
+        const wide_node* const nodes_a = a.level(steps_[step].a - 1);
+        const wide_node* const nodes_b = b.level(steps_[step].b - 1);
+        const bool opens_a = steps_.opens_a(step);
+        const bool opens_b = steps_.opens_b(step);
+        const node_pairs& from = pairs_[step];
+        node_pairs& to = pairs_[step + 1];
+        const std::span some_a = std::span(from.a).subspan(begin, end - begin);
+        const std::span some_b = std::span(from.b).subspan(begin, end - begin);
+        for (auto [pair, met] : children_(nodes_a, some_a, nodes_b, some_b, counters_)) {
+            to.make_room();
+            const std::uint32_t node_a = some_a[pair];
+            const std::uint32_t node_b = some_b[pair];
+            if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
+            const std::uint64_t to_open = steps_.opened(step, met);
+            const std::uint32_t first_a = opens_a ? children * node_a : node_a;
+            const std::uint32_t first_b = opens_b ? children * node_b : node_b;
+            alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
+            simd::store_places(places.data(), to_open);
+            const auto count = static_cast<std::size_t>(std::popcount(to_open));
+            std::size_t p = 0;
+            do {  // mostly once, which is foreseen
+                const auto place =
+                    __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&places[p]), simd::eight_words);
+                simd::store_eight(&to.a[to.size + p], first_a + (place & 7U));
+                simd::store_eight(&to.b[to.size + p], first_b + (place >> 3U));
+                p += children;
+            } while (p < count);
+            to.size += count;
+        }
+    }
+
+    /// Pairs of leaves: those of their triangles that may meet wait for the test.
+    /// @returns whether to stop
+    template <class TrianglesAt, class Emit>
+    [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
+                                   const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
+                                   std::span<const std::uint32_t> leaves_b, const TrianglesAt& triangles_at,
+                                   const Emit& emit) {
+        // Called in one place, where a call would cost as much as a tenth of what it does.
+        const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b,
+                              std::uint64_t met) __attribute__((always_inline)) {
+            if (what == extent::one_mesh) {
+                if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
+                if (emit_neighbours(met, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
+                if (met == 0) return false;
+            }
+            make_wait(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], met}, of_a.block, of_b.block);
+            return waiting_.is_full() && waiting_.decide(test, false, triangles_at, emit);
+        };
+        return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
+    }
+
+    /// Until they are tested. Memory is told that it will be asked which triangles they are.
+    [[gnu::always_inline]] inline void make_wait(const Tree& a, const Tree& b, const kept_pair& p,
+                                                 const triangle_block& of_a, const triangle_block& of_b) {
+        counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
+        waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
+        a.fetch_triangles(p.leaf_a);
+        b.fetch_triangles(p.leaf_b);
+    }
+
+    /// An exact test would find that triangles with a corner in common meet there.
+    /// @param met loses those that are handed over
+    /// @returns whether to stop
+    template <class TrianglesAt, class Emit>
+    [[nodiscard]] bool emit_neighbours(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
+                                       const TrianglesAt& triangles_at, const Emit& emit) const {
+        if constexpr (is_filtered) {
+            const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
+            std::array<index_pair, most_children_of_pair> neighbours;
+            std::size_t count = 0;
+            for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
+                const auto place = static_cast<std::uint32_t>(std::countr_zero(found));
+                neighbours[count++] = triangles_at(leaf_a, place & 7U, leaf_b, place >> 3U);
+            }
+            met &= ~shared;
+            return count != 0 && emit(std::span<const index_pair>(neighbours).first(count));
+        }
+        return false;
+    }
+
+    /// Child i of a node and child j of the same with i <= j, or i != j.
+    static constexpr std::uint64_t not_twice = 0xff7f3f1f0f070301;
+    static constexpr std::uint64_t not_itself = 0x7fbfdfeff7fbfdfe;
+
+    [[no_unique_address]] Counters counters_;
+    level_steps steps_;
+    std::vector<node_pairs> pairs_;  // by step
+    child_pairs<Tree> children_;
+    leaf_pairs<Tree> leaves_;
+    triangle_batch<Triangle> waiting_;
+    nearest_walk<Tree> nearest_;
+};
+
+}  // namespace aabb

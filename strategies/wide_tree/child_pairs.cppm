@@ -1,0 +1,132 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+export module aabb.wide_tree.child_pairs;
+
+import aabb.counters;
+import aabb.geometry;
+import aabb.wide_tree.box_images;
+import aabb.wide_tree.eight_boxes;
+import aabb.wide_tree.policy;
+import aabb.wide_tree.recently_made;
+import aabb.wide_tree.wide_node;
+
+export namespace aabb {
+
+/// Which children of pairs of nodes, of the same pair of trees, may meet: all sixty-four of a pair at once. The boxes
+/// of B's children are taken into A's frame and held against those of A's node, and where a turn makes them much
+/// larger, those of A's into B's frame as well. A node meets many, so that its boxes in the other frame are kept.
+template <WideTreePolicy Tree>
+class child_pairs {
+public:
+    /// @param margin within which children are said to meet
+    void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, double margin) {
+        first_a_ = a.level(0);
+        first_b_ = b.level(0);
+        to_a_.begin(grown(to_a.to_boxes(), margin));
+        in_a_.begin(nodes_of(b));
+        turned_ = to_a.growth() > least_growth;
+        if (!turned_) return;
+        to_b_.begin(grown(to_a.back_to_boxes(bounds_of_a), margin));
+        in_b_.begin(nodes_of(a));
+    }
+
+    static constexpr std::size_t most_at_once = 64;
+
+    /// Bit 8 j + i of `met` for child i of A's node and child j of B's.
+    struct found {
+        std::size_t pair;
+        std::uint64_t met;
+    };
+
+    /// Of up to so many pairs of nodes those that have children which may meet, by their place, in order. Pairs of
+    /// children whose triangles meet are among them. Memory is told of all of them first, so that it is waited for
+    /// once, and one test is made of all pairs before the next, so that the processor need not guess.
+    /// @param nodes_a of a level, of which `a` has numbers
+    template <class Counters>
+    [[nodiscard]] std::span<const found> operator()(const wide_node* nodes_a, std::span<const std::uint32_t> a,
+                                                    const wide_node* nodes_b, std::span<const std::uint32_t> b,
+                                                    Counters& counters) {
+        for (std::size_t p = 0; p < a.size(); ++p) {
+            __builtin_prefetch(&nodes_a[a[p]]);
+            __builtin_prefetch(&nodes_b[b[p]]);
+        }
+        std::uint64_t tests = 0;
+        std::size_t left = 0;
+        for (std::size_t p = 0; p < a.size(); ++p) {
+            const wide_node& of_a = nodes_a[a[p]];
+            const wide_node& of_b = nodes_b[b[p]];
+            tests += pairs(of_a, of_b);
+            const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), in_a(of_b));
+            in_one_[left] = {p, met};
+            left += met != 0;
+        }
+        std::span<const found> meeting = std::span(in_one_).first(left);
+        if (turned_) {
+            left = 0;
+            for (const auto& [p, met_in_a] : meeting) {
+                const wide_node& of_a = nodes_a[a[p]];
+                const wide_node& of_b = nodes_b[b[p]];
+                tests += pairs(of_a, of_b);
+                const eight_boxes& boxes =
+                    in_b_.get(number(of_a, first_a_), [&](eight_boxes& made) { to_b_.store(of_a, made); });
+                const std::uint64_t met = met_in_a & transposed(of_b.planes.overlaps(of_b.grid(), boxes));
+                in_both_[left] = {p, met};
+                left += met != 0;
+            }
+            meeting = std::span(in_both_).first(left);
+        }
+        counters.add(work::box_tests, tests);
+        return meeting;
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return in_a_.bytes() + in_b_.bytes(); }
+
+private:
+    static constexpr std::size_t most_kept = 32;
+    static constexpr double least_growth = 1.2;  // from here on, the second test saves more than it costs
+
+    /// The boxes of the children of B's node in A's frame.
+    [[nodiscard]] inline const eight_boxes& in_a(const wide_node& b) {
+        return in_a_.get(number(b, first_b_), [&](eight_boxes& made) { to_a_.store(b, made); });
+    }
+
+    /// A pose is a rotation within 1e-6, so that lengths in the other frame are the same within 2^-18.
+    [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
+        for (int k = 0; k < 3; ++k) motion.margin[k] += margin * (1 + 0x1p-16);
+        return motion;
+    }
+    [[nodiscard]] static inline std::uint64_t pairs(const wide_node& a, const wide_node& b) noexcept {
+        return std::uint64_t{a.children} * b.children;
+    }
+    [[nodiscard]] static inline std::uint32_t number(const wide_node& n, const wide_node* first) noexcept {
+        return static_cast<std::uint32_t>(&n - first);
+    }
+
+    /// Bit 8 i + j becomes bit 8 j + i.
+    [[nodiscard]] static constexpr std::uint64_t transposed(std::uint64_t m) noexcept {
+        const auto swap = [&m](unsigned by, std::uint64_t which) {
+            const std::uint64_t changed = (m ^ m >> by) & which;
+            m ^= changed ^ changed << by;
+        };
+        swap(7, 0x00aa00aa00aa00aa);
+        swap(14, 0x0000cccc0000cccc);
+        swap(28, 0x00000000f0f0f0f0);
+        return m;
+    }
+
+    const wide_node* first_a_ = nullptr;
+    const wide_node* first_b_ = nullptr;
+    box_images to_a_;
+    box_images to_b_;
+    recently_made<eight_boxes, most_kept> in_a_;
+    recently_made<eight_boxes, most_kept> in_b_;
+    bool turned_ = false;
+    std::array<found, most_at_once> in_one_{};
+    std::array<found, most_at_once> in_both_{};
+};
+
+}  // namespace aabb

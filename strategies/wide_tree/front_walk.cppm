@@ -1,0 +1,122 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+export module aabb.wide_tree.front_walk;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.wide_tree.batched_walk;
+import aabb.wide_tree.leaf_front;
+import aabb.wide_tree.leaf_reader;
+import aabb.wide_tree.policy;
+
+export namespace aabb {
+
+/// A batched walk, but where a tree keeps fronts and an earlier query's pairs of leaves still hold, these alone. What
+/// an inexact test makes of triangles hangs on which boxes were tested before, so that nothing is kept for it.
+template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
+class front_walk {
+public:
+    /// Hands intersecting pairs of triangles (a of A, b of B) to `emit`, some at a time, until that returns true.
+    template <class Emit>
+    void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                 walk_goal goal, Emit emit) {
+        if constexpr (requires { requires Triangle::filtered; })
+            if (a.tree().keeps_front() && leaves_of(a) + leaves_of(b) >= front_keeper::least_leaves)
+                return follow(test, a, b, to_a, goal, emit);
+        walk_.between(test, a, b, to_a, goal, emit);
+    }
+
+    /// Those of one mesh, in either order.
+    template <class Emit>
+    void within(const Triangle& test, const model<Tree>& m, Emit emit) {
+        walk_.within(test, m, emit);
+    }
+
+    [[nodiscard]] const Counters& counters() const noexcept { return walk_.counters(); }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all = walk_.bytes() + (sizeof *this - sizeof walk_);
+        if (fronts_) all += sizeof *fronts_ + fronts_->bytes();
+        if (leaves_) all += sizeof *leaves_ + leaves_->bytes();
+        return all;
+    }
+
+private:
+    /// Where one pair is wanted, the one that met last is tried first, and all that is near is sought only where none
+    /// meets.
+    template <class Emit>
+    void follow(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                walk_goal goal, const Emit& emit) {
+        require_ieee_arithmetic();
+        a.require_fit();
+        b.require_fit();
+        const model_pair of{{a.number(), b.number()}, {a.state(), b.state()}};
+        const box_motion at = to_a.to_boxes();
+        const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
+        const double near = leaf_front::most_step * size;
+        // Where rounding moves it further than that, nothing is worth keeping.
+        if (!(2 * most_rounding(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
+
+        if (!fronts_) fronts_ = std::make_unique<front_keeper>();
+        leaf_front& front = fronts_->find(of, at, b.bounds(), near);
+        const leaf_front::outlook outlook = front.note(of, at, b.bounds(), size);
+        const auto is_kept = [&] {
+            return outlook.margin && front.make(of, at, *outlook.margin, [&](std::vector<kept_pair>& pairs) {
+                return walk_.near(a, b, to_a, *outlook.margin, leaves_of(a) + leaves_of(b), pairs);
+            });
+        };
+        if (goal == walk_goal::every_pair) {
+            if (outlook.holds || is_kept())
+                serve(test, a, b, to_a, front, goal, emit);
+            else
+                walk_.between(test, a, b, to_a, goal, emit);
+            return;
+        }
+        if (front.hit) {
+            walk_.counters().add(work::triangle_tests);
+            if (test.intersects(a.triangles().triangle(front.hit->a), to_a(b.triangles().triangle(front.hit->b)))) {
+                emit(std::span<const index_pair>(&*front.hit, 1));
+                return;
+            }
+            front.hit.reset();
+        }
+        const auto emit_and_keep = [&](std::span<const index_pair> found) {
+            front.hit = found.front();
+            return emit(found);
+        };
+        if (outlook.holds) return serve(test, a, b, to_a, front, goal, emit_and_keep);
+        walk_.between(test, a, b, to_a, goal, emit_and_keep);
+        if (!front.hit) static_cast<void>(is_kept());
+    }
+
+    template <class Emit>
+    void serve(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+               const leaf_front& front, walk_goal goal, const Emit& emit) {
+        if (front.pairs().empty()) return;
+        if (!leaves_) leaves_ = std::make_unique<kept_leaves<Tree>>();
+        walk_.among(test, a, b, to_a, front.pairs(), *leaves_, goal, emit);
+    }
+
+    /// About: the area of the mesh's box, shared among its leaves.
+    [[nodiscard]] static double area_of_leaf(const model<Tree>& m) {
+        const box& b = m.bounds();
+        std::array<double, 3> edge;
+        for (int k = 0; k < 3; ++k) edge[static_cast<std::size_t>(k)] = double{b.max[k]} - double{b.min[k]};
+        return 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]) / static_cast<double>(leaves_of(m));
+    }
+
+    batched_walk<Tree, Triangle, Counters> walk_;
+    // Made when first needed.
+    std::unique_ptr<front_keeper> fronts_;
+    std::unique_ptr<kept_leaves<Tree>> leaves_;
+};
+
+}  // namespace aabb

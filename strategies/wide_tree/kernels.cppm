@@ -1,0 +1,317 @@
+module;
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+/// What a walk over wide trees does with eight numbers at a time, beside what `aabb.simd` has.
+export module aabb.wide_tree.kernels;
+
+import aabb.simd;
+
+namespace aabb::simd::detail {
+
+#if defined(__AVX512VBMI2__)
+[[gnu::always_inline]] inline void places_of_sixty_four(std::uint64_t set, void* to) noexcept {
+    static constexpr auto all = [] {
+        struct {
+            std::uint8_t at[64];
+        } places{};
+        for (std::uint8_t i = 0; i < 64; ++i) places.at[i] = i;
+        return places;
+    }();
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi8(set, _mm512_loadu_si512(&all)));
+}
+#endif
+#if defined(__AVX512VBMI__)
+[[gnu::always_inline]] inline void spread_sixteen_numbers(void* to, const void* from, std::size_t bytes,
+                                                          std::uint32_t count) noexcept {
+    // Byte b of number i stands at bytes * i + b, where b is less than bytes.
+    static constexpr auto patterns = [] {
+        struct {
+            alignas(64) std::uint8_t at[5][64];
+            std::uint64_t present[5];
+        } made{};
+        for (unsigned n = 1; n < 5; ++n)
+            for (unsigned i = 0; i < 64; ++i) {
+                made.at[n][i] = static_cast<std::uint8_t>(i / 4 * n + i % 4);
+                made.present[n] |= std::uint64_t{i % 4 < n} << i;
+            }
+        return made;
+    }();
+    const __m512i numbers = _mm512_maskz_permutexvar_epi8(
+        patterns.present[bytes], _mm512_load_si512(patterns.at[bytes]), _mm512_loadu_si512(from));
+    const auto rest = static_cast<__mmask16>(~0U << count);
+    _mm512_storeu_si512(to, _mm512_mask_broadcastd_epi32(numbers, rest, _mm512_castsi512_si128(numbers)));
+}
+#endif
+#if defined(__AVX512F__)
+using eight_floats_taken = float __attribute__((vector_size(32)));
+[[nodiscard, gnu::always_inline]] inline eight_floats_taken take_of_sixteen(const void* from,
+                                                                            const void* places) noexcept {
+    const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(places)));
+    return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
+}
+#endif
+#if defined(__AVX512F__)
+/// Rows of `a` twice in a vector, against each number twice eight times of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_that_share(const void* a, const void* b) noexcept {
+    const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
+    const auto row = [](const void* of, int c) { return _mm256_loadu_si256(static_cast<const __m256i*>(of) + c); };
+    std::uint64_t shared = 0;
+    for (int two = 0; two < 4; ++two) {
+        const __m512i which = _mm512_add_epi32(first_two, _mm512_set1_epi32(2 * two));
+        __mmask16 any = 0;
+        for (int d = 0; d < 3; ++d) {
+            const __m512i of_b = _mm512_permutexvar_epi32(which, _mm512_castsi256_si512(row(b, d)));
+            for (int c = 0; c < 3; ++c) any |= _mm512_cmpeq_epi32_mask(_mm512_broadcast_i64x4(row(a, c)), of_b);
+        }
+        shared |= std::uint64_t{any} << 16 * two;
+    }
+    return shared;
+}
+/// Boxes of `a` twice in a vector, against each twice eight of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_that_overlap(const float* a, const float* b) noexcept {
+    const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
+    const auto twice = [](const float* row) {
+        return _mm512_castpd_ps(_mm512_broadcast_f64x4(_mm256_loadu_pd(reinterpret_cast<const double*>(row))));
+    };
+    __mmask16 met[4] = {0xffff, 0xffff, 0xffff, 0xffff};
+    for (int k = 0; k < 3; ++k) {
+        const __m512 lower = twice(a + 8 * k);
+        const __m512 upper = twice(a + 24 + 8 * k);
+        const __m512 lower_of_b = _mm512_castps256_ps512(_mm256_loadu_ps(b + 8 * k));
+        const __m512 upper_of_b = _mm512_castps256_ps512(_mm256_loadu_ps(b + 24 + 8 * k));
+        for (int two = 0; two < 4; ++two) {
+            const __m512i which = _mm512_add_epi32(first_two, _mm512_set1_epi32(2 * two));
+            met[two] = _mm512_mask_cmp_ps_mask(met[two], lower, _mm512_permutexvar_ps(which, upper_of_b), _CMP_LE_OQ);
+            met[two] = _mm512_mask_cmp_ps_mask(met[two], upper, _mm512_permutexvar_ps(which, lower_of_b), _CMP_GE_OQ);
+        }
+    }
+    return std::uint64_t{met[0]} | std::uint64_t{met[1]} << 16U | std::uint64_t{met[2]} << 32U |
+           std::uint64_t{met[3]} << 48U;
+}
+#endif
+#if defined(__AVX512BW__)
+/// Bits 16 i to 16 i + 7 of eight numbers of `a` that are negative, the others of eight of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t negative_of_eights_in_turn(const void* a,
+                                                                                  const void* b) noexcept {
+    return _mm512_movepi8_mask(_mm512_packs_epi16(_mm512_loadu_si512(a), _mm512_loadu_si512(b)));
+}
+#endif
+#if defined(__AVX2__)
+[[gnu::always_inline]] inline void take_eight(const float* from, const void* places, void* to) noexcept {
+    const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
+    _mm256_storeu_ps(static_cast<float*>(to), _mm256_permutevar8x32_ps(_mm256_loadu_ps(from), at));
+}
+#endif
+
+using two_points_of_four = float __attribute__((vector_size(32)));
+/// Each with a fourth number that is not theirs.
+[[nodiscard, gnu::always_inline]] inline two_points_of_four two_points(const float* p, const float* q) noexcept {
+#if defined(__AVX512VL__)
+    const __m256 low = _mm256_castps128_ps256(_mm_maskz_loadu_ps(7, p));
+    return _mm256_insertf128_ps(low, _mm_maskz_loadu_ps(7, q), 1);
+#else
+    return two_points_of_four{p[0], p[1], p[2], 0, q[0], q[1], q[2], 0};
+#endif
+}
+
+}  // namespace aabb::simd::detail
+
+export namespace aabb::simd {
+
+/// Of eight points of three numbers: their columns.
+[[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> columns_of_eight_points(
+    const float* const* points) noexcept {
+    const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
+    const auto low = [](eight_floats p, eight_floats q) {
+        return __builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13);
+    };
+    const auto high = [](eight_floats p, eight_floats q) {
+        return __builtin_shufflevector(p, q, 2, 10, 3, 11, 6, 14, 7, 15);
+    };
+    const auto first_halves = [](eight_floats p, eight_floats q) {
+        return __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13);
+    };
+    const auto last_halves = [](eight_floats p, eight_floats q) {
+        return __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+    };
+    const eight_floats xy_01 = low(row(0), row(1));
+    const eight_floats xy_23 = low(row(2), row(3));
+    return {first_halves(xy_01, xy_23), last_halves(xy_01, xy_23),
+            first_halves(high(row(0), row(1)), high(row(2), row(3)))};
+}
+
+/// Of eight numbers those at these places, of which the lowest three bits count.
+[[nodiscard, gnu::always_inline]] inline eight_floats taken(const float* from, eight_words places) noexcept {
+    eight_floats v;
+#if defined(__AVX2__)
+    detail::take_eight(from, &places, &v);
+#else
+    for (int i = 0; i < 8; ++i) v[i] = from[places[i] & 7U];
+#endif
+    return v;
+}
+
+/// One behind the other.
+[[nodiscard, gnu::always_inline]] inline sixteen_floats joined(eight_floats low, eight_floats high) noexcept {
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+/// Of sixteen numbers those at eight places of 4 bits each.
+[[nodiscard, gnu::always_inline]] inline eight_floats taken_of_sixteen(const sixteen_floats& from,
+                                                                       std::uint32_t places) noexcept {
+    constexpr eight_words shift{0, 4, 8, 12, 16, 20, 24, 28};
+    const eight_words at = (eight_words{} + places) >> shift;
+#if defined(__AVX512F__)
+    return detail::take_of_sixteen(&from, &at);
+#else
+    std::array<float, 16> halves;
+    std::memcpy(halves.data(), &from, sizeof from);
+    const eight_floats low = taken(halves.data(), at);
+    const eight_floats high = taken(halves.data() + 8, at);
+    return (at & 8U) != 0 ? high : low;
+#endif
+}
+
+[[nodiscard, gnu::always_inline]] inline float sum(eight_floats v) noexcept {
+    v += __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+    v += __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+    return v[0] + v[1];
+}
+
+/// Bit 8 j + i is set where number i of `a` is at most number j of `b`.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t no_greater(const std::uint8_t* a, eight_bytes b) noexcept {
+    using bytes = std::uint8_t __attribute__((vector_size(64)));
+    using signed_bytes = std::int8_t __attribute__((vector_size(64)));
+    using bools = bool __attribute__((ext_vector_type(64)));
+    using rows = std::uint64_t __attribute__((vector_size(64)));
+    std::uint64_t row = 0;
+    std::memcpy(&row, a, sizeof row);
+    const auto left = reinterpret_cast<bytes>(rows{} + row);
+    const bytes right = __builtin_shufflevector(b, b, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2,
+                                                2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5,
+                                                5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7);
+    const signed_bytes held = left <= right;
+    return __builtin_bit_cast(std::uint64_t, __builtin_convertvector(held, bools));
+}
+
+/// Bit 8 j + i where one of the three numbers in column i of `a` is one of those in column j of `b`; both are three
+/// rows of eight.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_of_eight_that_share(const std::uint32_t* a,
+                                                                                   const std::uint32_t* b) noexcept {
+#if defined(__AVX512F__)
+    return detail::columns_that_share(a, b);
+#else
+    std::uint64_t shared = 0;
+    for (std::size_t j = 0; j < 8; ++j) {
+        auto any = load_eight<eight_words>(a) == b[j];
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t d = 0; d < 3; ++d) any |= load_eight<eight_words>(a + 8 * c) == b[8 * d + j];
+        shared |= std::uint64_t{bits_of_eight(any)} << 8 * j;
+    }
+    return shared;
+#endif
+}
+
+/// Numbers of 1 to 4 bytes, as many as `count`, from 1 to 16; the first one fills the rest. Reads 64 bytes.
+[[gnu::always_inline]] inline void load_sixteen_numbers(std::uint32_t* to, const std::byte* from, std::size_t bytes,
+                                                        std::uint32_t count) noexcept {
+#if defined(__AVX512VBMI__)
+    detail::spread_sixteen_numbers(to, from, bytes, count);
+#else
+    const std::uint32_t mask = 0xffffffff >> (32 - 8 * bytes);
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        std::memcpy(&to[i], from + bytes * (i < count ? i : 0), sizeof to[i]);
+        to[i] &= mask;
+    }
+#endif
+}
+
+/// Sixty-four pairs of boxes, each given as six rows of eight numbers, three of lower bounds and three of upper ones:
+/// bit 8 j + i for box i of `a` and j of `b` that overlap.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const float* a,
+                                                                                   const float* b) noexcept {
+#if defined(__AVX512F__)
+    return detail::pairs_that_overlap(a, b);
+#else
+    std::uint64_t met = 0;
+    for (std::size_t j = 0; j < 8; ++j) {
+        auto row = load_eight<eight_floats>(a) <= b[24 + j];
+        for (std::size_t k = 0; k < 3; ++k)
+            row &= (load_eight<eight_floats>(a + 8 * k) <= b[24 + 8 * k + j]) &
+                   (load_eight<eight_floats>(a + 24 + 8 * k) >= b[8 * k + j]);
+        met |= std::uint64_t{bits_of_eight(row)} << 8 * j;
+    }
+    return met;
+#endif
+}
+
+/// The same of boxes in whole numbers of 16 bits.
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const std::int16_t* a,
+                                                                                   const std::int16_t* b) noexcept {
+    using eight_halves = std::int16_t __attribute__((vector_size(16)));
+    using four_rows = std::int16_t __attribute__((vector_size(64)));
+    // Rows of pairs with even j and those with odd j: differences, of which one is negative where two boxes lie apart.
+    four_rows even{};
+    four_rows odd{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto four_times = [](eight_halves v) {
+            return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7,
+                                           0, 1, 2, 3, 4, 5, 6, 7);
+        };
+        const auto each_even = [](eight_halves v) {
+            return __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0, 2, 2, 2, 2, 2, 2, 2, 2, 4, 4, 4, 4, 4, 4, 4, 4,
+                                           6, 6, 6, 6, 6, 6, 6, 6);
+        };
+        const auto each_odd = [](eight_halves v) {
+            return __builtin_shufflevector(v, v, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 5, 5, 5, 5, 5, 5, 5, 5,
+                                           7, 7, 7, 7, 7, 7, 7, 7);
+        };
+        const auto row = [k](const std::int16_t* of, std::size_t first) {
+            return load_eight<eight_halves>(of + 8 * (first + k));
+        };
+        const four_rows lower = four_times(row(a, 0));
+        const four_rows upper = four_times(row(a, 3));
+        const eight_halves lower_of_b = row(b, 0);
+        const eight_halves upper_of_b = row(b, 3);
+        even |= __builtin_elementwise_sub_sat(each_even(upper_of_b), lower) |
+                __builtin_elementwise_sub_sat(upper, each_even(lower_of_b));
+        odd |= __builtin_elementwise_sub_sat(each_odd(upper_of_b), lower) |
+               __builtin_elementwise_sub_sat(upper, each_odd(lower_of_b));
+    }
+#if defined(__AVX512BW__)
+    return ~detail::negative_of_eights_in_turn(&even, &odd);
+#else
+    using bytes = std::int8_t __attribute__((vector_size(32)));
+    using bools = bool __attribute__((ext_vector_type(32)));
+    const auto apart_even = __builtin_convertvector(even < 0, bytes);
+    const auto apart_odd = __builtin_convertvector(odd < 0, bytes);
+    const auto bits = [](bytes v) {
+        return std::uint64_t{__builtin_bit_cast(std::uint32_t, __builtin_convertvector(v, bools))};
+    };
+    const std::uint64_t first =
+        bits(__builtin_shufflevector(apart_even, apart_odd, 0, 1, 2, 3, 4, 5, 6, 7, 32, 33, 34, 35, 36, 37, 38, 39, 8,
+                                     9, 10, 11, 12, 13, 14, 15, 40, 41, 42, 43, 44, 45, 46, 47));
+    const std::uint64_t last =
+        bits(__builtin_shufflevector(apart_even, apart_odd, 16, 17, 18, 19, 20, 21, 22, 23, 48, 49, 50, 51, 52, 53, 54,
+                                     55, 24, 25, 26, 27, 28, 29, 30, 31, 56, 57, 58, 59, 60, 61, 62, 63));
+    return ~(first | last << 32U);
+#endif
+}
+
+/// The places of the bits that are set, in order; whatever stands behind them, up to 64 bytes, is lost.
+[[gnu::always_inline]] inline void store_places(std::uint8_t* to, std::uint64_t set) noexcept {
+#if defined(__AVX512VBMI2__)
+    detail::places_of_sixty_four(set, to);
+#else
+    for (; set != 0; set &= set - 1) *to++ = static_cast<std::uint8_t>(std::countr_zero(set));
+#endif
+}
+
+}  // namespace aabb::simd

@@ -1,0 +1,258 @@
+module;
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+export module aabb.wide_tree.leaf_pairs;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.simd;
+import aabb.wide_tree.eight_boxes;
+import aabb.wide_tree.leaf_reader;
+import aabb.wide_tree.leaf_slab;
+import aabb.wide_tree.policy;
+import aabb.wide_tree.triangle_block;
+import aabb.wide_tree.vertex_lists;
+
+export namespace aabb {
+
+/// Triangles of a leaf, in A's frame.
+struct read_leaf {
+    leaf_boxes boxes;
+    triangle_block block;
+};
+
+struct leaf_of_b : read_leaf {
+    leaf_slab slab;
+    bool has_slab;
+};
+
+/// Reads the leaves of two trees, those of B in A's frame. A leaf meets many, so that it is kept.
+template <WideTreePolicy Tree>
+class leaf_pairs {
+public:
+    /// @param one_mesh whether both are the same, so that triangles may share corners
+    /// @param only_boxes_that_meet whether none may be handed over whose boxes lie less than a step of the grid apart:
+    /// what an inexact test makes of these would depend on the grid
+    /// @param margin within which triangles are said to meet
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh,
+               bool only_boxes_that_meet, float margin) {
+        grid_.begin(a.bounds(), to_a(b.bounds()));
+        only_boxes_that_meet_ = only_boxes_that_meet;
+        margin_ = margin;
+        of_a_.begin(leaves_of(a));
+        of_b_.begin(leaves_of(b));
+        if (one_mesh) {
+            corners_of_a_.resize(of_a_.places());
+            corners_of_b_.resize(of_b_.places());
+        }
+        one_mesh_ = one_mesh;
+    }
+
+    /// Hands over, in order, those pairs of leaves whose triangles may meet: their boxes do, and those of A reach into
+    /// the slab of B's leaf. One test is made of many pairs before the next, so that the processor need not guess,
+    /// and writes a list of its own, so that nothing read waits for what was just written.
+    /// @param take called with the place of a pair, its leaves and, bit 8 j + i for triangle i of A's leaf and j of
+    /// B's, the pairs of triangles; returns whether to stop
+    template <class Counters, class Take>
+    [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                  std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
+                                  Counters& counters, const Take& take) {
+        return each_group(
+            a, b, to_a, leaves_a, leaves_b, counters,
+            [&](std::span<const found> meeting) {
+                fit_slabs(leaves_b, meeting);
+                std::size_t left = 0;
+                for (const found& f : meeting) {
+                    const std::uint64_t which =
+                        f.which & columns(of_b_[leaves_b[f.pair]].slab.reached_by(of_a_[leaves_a[f.pair]].block));
+                    left_[left] = {f.pair, which};
+                    left += which != 0;
+                }
+                return std::span<const found>(left_).first(left);
+            },
+            [&](const found& f) { return take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which); });
+    }
+
+    /// Hands over in the same way those pairs of triangles that may come within the margin.
+    template <class Counters, class Take>
+    [[nodiscard]] bool within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                     std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
+                                     Counters& counters, const Take& take) {
+        return each_group(
+            a, b, to_a, leaves_a, leaves_b, counters,
+            [&](std::span<const found> meeting) {
+                fit_slabs(leaves_b, meeting);
+                return meeting;
+            },
+            [&](const found& f) {
+                const read_leaf& of_a = of_a_[leaves_a[f.pair]];
+                const leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+                leaf_slab slab_of_a;
+                slab_of_a.fit(of_a.block, grid_.edges());
+                const std::uint64_t which = f.which & rows(slab_of_a.reached_by(of_b.block, margin_)) &
+                                            columns(of_b.slab.reached_by(of_a.block, margin_));
+                return which != 0 && take(f.pair, which);
+            });
+    }
+
+    /// Of one mesh: where triangle i of A's leaf and j of B's have a corner in common, bit 8 j + i.
+    [[nodiscard]] inline std::uint64_t neighbours(std::uint32_t leaf_a, std::uint32_t leaf_b) const noexcept {
+        return corners_of_a_[of_a_.place(leaf_a)].shared_with(corners_of_b_[of_b_.place(leaf_b)]);
+    }
+
+    [[nodiscard]] leaf_reader<Tree>& reader() noexcept { return reader_; }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return of_a_.bytes() + of_b_.bytes() + bytes_of(corners_of_a_) + bytes_of(corners_of_b_);
+    }
+
+private:
+    static constexpr int many = 32;  // of 64 pairs whose boxes overlap: more are rare
+
+    /// Reads a leaf's triangles.
+    /// @param frame A's, where the leaf is one of B's
+    template <class Leaf, class... Frame>
+    [[nodiscard]] static inline auto block_maker(const model<Tree>& m, const Frame&... frame) {
+        return [&m, &frame...](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
+            leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
+        };
+    }
+    /// Makes their boxes and corners.
+    /// @tparam OfB whether it is the leaf whose boxes the margin widens
+    template <bool OfB, class Leaf>
+    [[nodiscard]] inline auto box_maker(const model<Tree>& m, const leaf_store<Leaf>& store,
+                                        std::vector<corner_numbers>& corners) const {
+        return [this, &m, &store, &corners](Leaf& leaf, std::uint32_t number, const vertex_list&) {
+            auto bounds = leaf.block.bounds();
+            if (OfB && margin_ > 0) grow(bounds);
+            leaf.boxes.take(grid_, bounds, leaf.block.triangles);
+            if constexpr (requires { leaf.slab; }) leaf.has_slab = false;
+            if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
+        };
+    }
+
+    /// Floats that lie outside by no more than the margin are in the boxes then, which end where floats do.
+    inline void grow(std::array<simd::eight_floats, 6>& bounds) const noexcept {
+        const simd::eight_floats most = simd::eight_floats{} + std::numeric_limits<float>::max();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const simd::eight_floats lower = bounds[k] - margin_;
+            const simd::eight_floats upper = bounds[3 + k] + margin_;
+            bounds[k] = lower > -most ? lower : -most;
+            bounds[3 + k] = upper < most ? upper : most;
+        }
+    }
+
+    struct found {
+        std::size_t pair;
+        std::uint64_t which;
+    };
+
+    /// Makes the leaves of a group of pairs, then sifts those whose triangles have boxes that meet, and hands over what
+    /// is left. Memory is told of the next group's lists of vertices meanwhile.
+    /// @returns whether `take` stopped it
+    template <class Counters, class Sift, class Take>
+    [[nodiscard]] inline bool each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                         std::span<const std::uint32_t> leaves_a,
+                                         std::span<const std::uint32_t> leaves_b, Counters& counters, const Sift& sift,
+                                         const Take& take) {
+        const auto claim = [&](std::size_t begin) {
+            return reader_.claim(a, of_a_, b, of_b_, begin, leaves_a.size(),
+                                 [&](std::size_t i) { return std::pair(leaves_a[i], leaves_b[i]); });
+        };
+        std::size_t begin = 0;
+        std::size_t end = claim(begin);
+        while (begin < end) {
+            reader_.make_a(a, of_a_, block_maker<read_leaf>(a), box_maker<false>(a, of_a_, corners_of_a_));
+            reader_.make_b(b, of_b_, block_maker<leaf_of_b>(b, to_a), box_maker<true>(b, of_b_, corners_of_b_));
+            const std::size_t next = claim(end);
+            for (const found& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
+                if (take(f)) return true;
+            begin = end;
+            end = next;
+        }
+        return false;
+    }
+
+    /// Those of the pairs whose triangles have boxes that meet.
+    template <class Counters>
+    [[nodiscard]] inline std::span<const found> meet(std::span<const std::uint32_t> leaves_a,
+                                                     std::span<const std::uint32_t> leaves_b, std::size_t begin,
+                                                     std::size_t end, Counters& counters) {
+        std::size_t meeting = 0;
+        for (; begin < end; ++begin) {
+            const read_leaf& of_a = of_a_[leaves_a[begin]];
+            const read_leaf& of_b = of_b_[leaves_b[begin]];
+            counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
+            std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
+            if (only_boxes_that_meet_ || std::popcount(which) > many) which &= overlaps_in_floats(of_a, of_b);
+            meeting_[meeting] = {begin, which};
+            meeting += which != 0;
+        }
+        return std::span(meeting_).first(meeting);
+    }
+
+    /// Makes the slabs that are missing of B's leaves in these pairs: many leaves are read and in none, so that slabs
+    /// wait until boxes have been found to meet. Of B's, since leaves of B are read less often: a node of B is opened
+    /// with many of A, one after the other.
+    inline void fit_slabs(std::span<const std::uint32_t> leaves_b, std::span<const found> meeting) noexcept {
+        std::size_t missing = 0;
+        for (const found& f : meeting) {
+            leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+            without_slab_[missing] = &of_b;
+            missing += !of_b.has_slab;
+            of_b.has_slab = true;
+        }
+        for (leaf_of_b* const of_b : std::span(without_slab_).first(missing))
+            of_b->slab.fit(of_b->block, grid_.edges());
+    }
+
+    /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where
+    /// 16 bits will do.
+    [[nodiscard, gnu::noinline]] std::uint64_t overlaps_in_floats(const read_leaf& of_a,
+                                                                  const read_leaf& of_b) const noexcept {
+        const bool are_coarse = of_a.boxes.are_coarse() && of_b.boxes.are_coarse();
+        if (!are_coarse && !only_boxes_that_meet_) return ~std::uint64_t{0};
+        eight_boxes boxes_a;
+        eight_boxes boxes_b;
+        auto bounds_of_b = of_b.block.bounds();
+        grow(bounds_of_b);
+        boxes_a.take(of_a.block.bounds(), of_a.block.triangles);
+        boxes_b.take(bounds_of_b, of_b.block.triangles);
+        return boxes_a.overlaps(boxes_b);
+    }
+
+    /// All bits of row j for bit j.
+    [[nodiscard]] static constexpr std::uint64_t rows(std::uint64_t which) noexcept {
+        const std::uint64_t bit_of_row = which * 0x0101010101010101 & 0x8040201008040201;
+        constexpr std::uint64_t low_bits = 0x7f7f7f7f7f7f7f7f;
+        return ((((bit_of_row & low_bits) + low_bits) | bit_of_row) >> 7U & 0x0101010101010101) * 0xff;
+    }
+
+    /// Bit i of each row for bit i.
+    [[nodiscard]] static constexpr std::uint64_t columns(std::uint64_t which) noexcept {
+        return which * 0x0101010101010101;
+    }
+
+    leaf_grid grid_;
+    bool one_mesh_ = false;
+    bool only_boxes_that_meet_ = false;
+    float margin_ = 0;
+    leaf_store<read_leaf> of_a_;
+    leaf_store<leaf_of_b> of_b_;
+    std::vector<corner_numbers> corners_of_a_;  // of one mesh only, at the places of the leaves
+    std::vector<corner_numbers> corners_of_b_;
+    std::array<found, most_claims + 1> meeting_{};
+    std::array<leaf_of_b*, most_claims + 1> without_slab_{};
+    std::array<found, most_claims + 1> left_{};
+    leaf_reader<Tree> reader_;
+};
+
+}  // namespace aabb

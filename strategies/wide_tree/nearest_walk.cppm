@@ -1,0 +1,215 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+export module aabb.wide_tree.nearest_walk;
+
+import aabb.base;
+import aabb.counters;
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.simd;
+import aabb.wide_tree.box_images;
+import aabb.wide_tree.eight_boxes;
+import aabb.wide_tree.level_steps;
+import aabb.wide_tree.policy;
+import aabb.wide_tree.recently_made;
+import aabb.wide_tree.wide_node;
+
+export namespace aabb {
+
+/// Pairs, 8 j + i for child i of a node and box j, whose centres are the least distance apart.
+struct nearest_places {
+    std::uint32_t first;
+    std::uint32_t second;  ///< the first again where there is no other
+};
+
+/// Of the pairs in `met`, bit 8 j + i for child i and box j; not all may be 0. All sixty-four distances are taken, so
+/// that they need not wait for what met.
+[[nodiscard]] inline nearest_places two_nearest(std::uint64_t met, const wide_node& node,
+                                                const eight_boxes& boxes) noexcept {
+    // Which of two as near comes first may hang on how distances are rounded; no answer does.
+#pragma clang fp contract(fast)
+    std::array<simd::eight_floats, 3> of_node;
+    std::array<eight_boxes::row, 3> of_boxes;
+    const auto floats_of = [](const box_codes::row& codes) {
+        return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_floats);
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+        // Twice the coordinates of the centres.
+        const auto step = static_cast<float>(node.step(k));
+        const float twice_origin = 2 * static_cast<float>(node.origin[k]) + 255;
+        of_node[k] = (floats_of(node.planes.lower[k]) - floats_of(node.planes.upper[k]) + twice_origin) * step;
+        simd::store_eight(of_boxes[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
+                                                  simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
+    }
+    // Floats that are not negative are in the order of their bits; the last six make room for the pair. What is not a
+    // number comes after all that are.
+    constexpr simd::eight_words places{0, 1, 2, 3, 4, 5, 6, 7};
+    constexpr simd::eight_words none = ~simd::eight_words{};
+    simd::eight_words least = none;  // of each column
+    simd::eight_words next = none;
+    for (std::uint32_t j = 0; j < eight_boxes::most; ++j) {
+        simd::eight_floats distance{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const simd::eight_floats way = of_node[k] - of_boxes[k][j];
+            distance += way * way;
+        }
+        const simd::eight_words key = (__builtin_bit_cast(simd::eight_words, distance) & ~63U) | places | 8 * j;
+        const simd::eight_words asked = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(met >> (8 * j)));
+        next = __builtin_elementwise_min(next, __builtin_elementwise_max(least, asked));
+        least = __builtin_elementwise_min(least, asked);
+    }
+    const std::uint32_t nearest = __builtin_reduce_min(least);
+    const std::uint32_t second = __builtin_reduce_min(least == nearest ? next : least);
+    return {nearest & 63U, (second == none[0] ? nearest : second) & 63U};
+}
+
+/// Walks two trees down to a pair of leaves that meet: to the two nearest children of a pair of nodes first, and after
+/// leaves that did not meet from a higher level again. The way down is one chain of dependent steps, so that a step is
+/// to wait for little: pairs of children that are left for later are kept as bits.
+template <WideTreePolicy Tree>
+class nearest_walk {
+public:
+    /// @param at_leaves called with a leaf of A and one of B whose boxes may meet; returns whether to stop
+    template <class Counters, class AtLeaves>
+    void operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
+                    const AtLeaves& at_leaves) {
+        begin(a.tree(), b.tree(), to_a);
+        const std::size_t leaves = steps_.size() - 1;
+        std::size_t missed = 0;  // pairs of leaves
+        std::size_t step = 0;
+        node_pair at{0, 0};
+        for (;;) {
+            counters.add(work::node_visits, 1);
+            if (step < leaves) {
+                const bool goes_on = open(a.tree(), b.tree(), step, at, counters);
+                ++step;
+                if (goes_on) continue;
+            } else {
+                if (at_leaves(at.a, at.b)) return;
+                // What looks near may be parallel all over. So it goes back, mostly a little, at times to the top, as
+                // often as restarts are best made so long (Luby, Sinclair, Zuckerman, "Optimal speedup of Las Vegas
+                // algorithms", 1993), and to the highest pairs from there on.
+                step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
+                const std::uint64_t below = steps_waiting_ >> step;
+                step = below == 0 ? leaves : step + static_cast<std::size_t>(std::countr_zero(below));
+            }
+            if (steps_waiting_ == 0) return;
+            if ((steps_waiting_ & bit(step)) == 0) step = static_cast<std::size_t>(std::bit_width(steps_waiting_)) - 1;
+            at = take(step);
+        }
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        std::size_t all = steps_.bytes() + in_a_.bytes() + bytes_of(waiting_);
+        for (const waiting& w : waiting_) all += bytes_of(w.left);
+        return all;
+    }
+
+private:
+    static constexpr std::size_t children = wide_node::most_children;
+    static constexpr std::size_t most_kept = 32;
+    static constexpr std::size_t least_back = 2;  // levels
+
+    struct node_pair {
+        std::uint32_t a;
+        std::uint32_t b;
+    };
+
+    /// Pairs of children of two nodes, still to be opened.
+    struct children_left {
+        node_pair first;
+        std::uint64_t which;  // bit 8 j + i for child i of A's node and j of B's
+        std::uint32_t next;   // of these the one to be opened next
+    };
+
+    /// At one step. What the nodes that were opened last left stands last.
+    struct waiting {
+        std::vector<children_left> left;
+        std::size_t size = 0;
+    };
+
+    void begin(const Tree& a, const Tree& b, const relative_pose& to_a) {
+        steps_.begin({a.levels(), b.levels()});
+        if (waiting_.size() < steps_.size()) waiting_.resize(steps_.size());
+        for (waiting& w : waiting_) w.size = 0;
+        assert(steps_.size() <= 64);
+        steps_waiting_ = 0;
+        to_a_.begin(to_a.to_boxes());
+        first_b_ = b.level(0);
+        in_a_.begin(nodes_of(b));
+    }
+
+    /// Goes on to the nearest pair of children, and leaves the others for later.
+    /// @returns whether there is one
+    template <class Counters>
+    [[nodiscard]] inline bool open(const Tree& a, const Tree& b, std::size_t step, node_pair& at, Counters& counters) {
+        const wide_node& of_a = a.level(steps_[step].a - 1)[at.a];
+        const wide_node& of_b = b.level(steps_[step].b - 1)[at.b];
+        counters.add(work::box_tests, std::uint64_t{of_a.children} * of_b.children);
+        const eight_boxes& boxes = in_a_.get(static_cast<std::uint32_t>(&of_b - first_b_),
+                                             [&](eight_boxes& made) { to_a_.store(of_b, made); });
+        const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), boxes);
+        if (met == 0) return false;
+        const auto [first, second] = two_nearest(met, of_a, boxes);
+        const bool opens_a = steps_.opens_a(step);
+        const bool opens_b = steps_.opens_b(step);
+        const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
+        const node_pair first_children{opens_a ? children_of(at.a) : at.a, opens_b ? children_of(at.b) : at.b};
+        at = pair_of(first_children, first & opened);
+        const std::uint64_t others = steps_.opened(step, met) & ~bit(first & opened);
+        if (others != 0) leave(step + 1, first_children, others, second & opened);
+        return true;
+    }
+
+    [[nodiscard]] static constexpr std::uint32_t children_of(std::uint32_t node) noexcept {
+        return static_cast<std::uint32_t>(children) * node;
+    }
+    [[nodiscard]] static constexpr node_pair pair_of(const node_pair& first, std::uint32_t place) noexcept {
+        return {first.a + (place & 7U), first.b + (place >> 3U)};
+    }
+
+    /// @param next to be opened, if it is among them
+    inline void leave(std::size_t step, const node_pair& first, std::uint64_t which, std::uint32_t next) {
+        waiting& here = waiting_[step];
+        if (here.size == here.left.size()) here.left.resize(2 * here.size + children);
+        children_left& left = here.left[here.size++];
+        left.first = first;
+        left.which = which;
+        left.next = (which & bit(next)) != 0 ? next : last_of(which);
+        steps_waiting_ |= bit(step);
+    }
+
+    /// The next pair of those that came to this step last.
+    [[nodiscard]] inline node_pair take(std::size_t step) noexcept {
+        waiting& here = waiting_[step];
+        children_left& left = here.left[here.size - 1];
+        const node_pair taken = pair_of(left.first, left.next);
+        left.which &= ~bit(left.next);
+        if (left.which != 0)
+            left.next = last_of(left.which);
+        else if (--here.size == 0)
+            steps_waiting_ &= ~bit(step);
+        return taken;
+    }
+
+    [[nodiscard]] static constexpr std::uint64_t bit(std::size_t place) noexcept { return std::uint64_t{1} << place; }
+    [[nodiscard]] static constexpr std::uint32_t last_of(std::uint64_t which) noexcept {
+        return static_cast<std::uint32_t>(std::bit_width(which)) - 1;
+    }
+
+    level_steps steps_;
+    box_images to_a_;
+    const wide_node* first_b_ = nullptr;
+    recently_made<eight_boxes, most_kept> in_a_;  // the children of nodes of B
+    std::vector<waiting> waiting_;                // by step
+    std::uint64_t steps_waiting_ = 0;             // bit s where any wait at step s
+};
+
+}  // namespace aabb

@@ -1,0 +1,124 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+export module aabb.wide_tree.triangle_batch;
+
+import aabb.geometry;
+import aabb.local_detection;
+import aabb.simd;
+import aabb.wide_tree.kernels;
+import aabb.wide_tree.triangle_block;
+import aabb.wide_tree.triangle_filter;
+
+export namespace aabb {
+
+/// Pairs of triangles, both in A's frame, that wait until there are as many as the processor decides on at once. An
+/// exact test decides on what the filter leaves open, any other on all.
+template <TrianglePolicy Triangle>
+class triangle_batch {
+public:
+    void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
+    [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_of_a_leaf_pair > capacity; }
+
+    /// Bit 8 j + i of `which` for triangle i of `a` and j of `b`; not all may be 0. `is_full` must not hold.
+    inline void add(std::uint64_t which, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
+                    const triangle_block& b) noexcept {
+        alignas(64) std::array<std::uint8_t, most_of_a_leaf_pair> place{};
+        simd::store_places(place.data(), which);
+        leaves_[leaf_pairs_] = {leaf_a, leaf_b};
+        const auto from = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
+        const auto count = static_cast<std::size_t>(std::popcount(which));
+        // Mostly once, which is foreseen.
+        std::size_t first = 0;
+        do {
+            const auto chosen =
+                __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&place[first]), simd::eight_words);
+            const std::size_t to = pairs_ + first;
+            for (std::size_t row = 0; row < rows; ++row) {
+                simd::store_eight(&a_[row][to], simd::taken(a.corner[row / 3][row % 3].data(), chosen));
+                simd::store_eight(&b_[row][to], simd::taken(b.corner[row / 3][row % 3].data(), chosen >> 3));
+            }
+            simd::store_eight(&origin_[to], chosen | from);
+            first += triangle_block::width;
+        } while (first < count);
+        pairs_ += count;
+    }
+
+    /// Hands the pairs that intersect to `emit`, all at once.
+    /// @param all or only as many as whole vectors hold
+    /// @param triangles_at which triangles of the meshes stand at places of two leaves, as `(leaf_a, i, leaf_b, j)`
+    /// @returns what `emit` returned: whether to stop
+    template <class TrianglesAt, class Emit>
+    [[nodiscard]] bool decide(const Triangle& test, bool all, const TrianglesAt& triangles_at, const Emit& emit) {
+        std::size_t done = 0;
+        std::size_t found = 0;
+        for (; done + simd::width <= pairs_ || (all && done < pairs_); done += simd::width) {
+            const std::uint32_t present = simd::lanes_below(pairs_ - done);
+            const filtered_pairs by_filter = filtered(done);
+            std::uint32_t hits = by_filter.hits & present;
+            for (std::uint32_t open = by_filter.undecided & present; open != 0; open &= open - 1) {
+                const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
+                if (test.intersects(triangle(a_, done + lane), triangle(b_, done + lane))) hits |= 1U << lane;
+            }
+            found += simd::store_where(&found_[found], simd::load(&origin_[done]), hits);
+        }
+        for (std::size_t i = 0; i < found; ++i) {
+            const std::uint32_t origin = found_[i];
+            const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
+            named_[i] = triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
+        }
+        keep_from(std::min(done, pairs_));
+        return found != 0 && emit(std::span<const index_pair>(named_).first(found));
+    }
+
+private:
+    static constexpr std::size_t rows = 9;
+    static constexpr std::size_t most_of_a_leaf_pair = 64;
+    static constexpr std::size_t capacity = 144;
+    static constexpr unsigned pair_bits = 6;  // of a pair among those of a leaf pair
+    using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;
+
+    [[nodiscard]] inline filtered_pairs filtered(std::size_t first) const noexcept {
+        if constexpr (requires { requires Triangle::filtered; })
+            return triangle_filter::decide(&a_[0][first], &b_[0][first], a_[0].size());
+        else
+            return {0, simd::every_lane};
+    }
+
+    [[nodiscard]] static inline triangle3f triangle(const corners& of, std::size_t at) noexcept {
+        triangle3f t;
+        for (std::size_t row = 0; row < rows; ++row)
+            t[static_cast<int>(row / 3)][static_cast<int>(row % 3)] = of[row][at];
+        return t;
+    }
+
+    /// Fewer are left than a vector holds: one vector of each row is moved.
+    void keep_from(std::size_t done) noexcept {
+        pairs_ -= done;
+        if (pairs_ == 0) return clear();
+        for (std::size_t row = 0; row < rows; ++row) {
+            std::copy_n(&a_[row][done], simd::width, a_[row].data());
+            std::copy_n(&b_[row][done], simd::width, b_[row].data());
+        }
+        const std::uint32_t first = origin_[done] >> pair_bits;
+        simd::store(origin_.data(), simd::load(&origin_[done]) - (first << pair_bits));
+        leaf_pairs_ -= first;
+        std::copy_n(&leaves_[first], leaf_pairs_, leaves_.data());
+    }
+
+    std::size_t pairs_ = 0;
+    std::size_t leaf_pairs_ = 0;
+    alignas(64) corners a_{};
+    alignas(64) corners b_{};
+    std::array<std::uint32_t, capacity + triangle_block::width> origin_{};  // place among leaf pairs, then 8 j + i
+    std::array<std::array<std::uint32_t, 2>, capacity> leaves_{};
+    std::array<std::uint32_t, capacity + simd::width> found_{};  // origins of those that intersect
+    std::array<index_pair, capacity> named_{};                   // the same, as triangles of the meshes
+};
+
+}  // namespace aabb

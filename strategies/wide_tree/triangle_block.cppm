@@ -1,0 +1,121 @@
+module;
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+export module aabb.wide_tree.triangle_block;
+
+import aabb.geometry;
+import aabb.simd;
+import aabb.wide_tree.eight_boxes;
+import aabb.wide_tree.kernels;
+import aabb.wide_tree.policy;
+import aabb.wide_tree.vertex_lists;
+
+export namespace aabb {
+
+/// The triangles of a leaf, coordinate by coordinate. Where there are fewer than eight, the last one fills the rest.
+struct triangle_block {
+    static constexpr std::size_t width = eight_boxes::most;
+    using row = std::array<float, width>;
+
+    alignas(32) std::array<std::array<row, 3>, 3> corner;  ///< corner c, axis k: [c][k]
+    std::uint32_t triangles;
+
+    /// As they lie in the mesh.
+    template <WideTreePolicy Tree>
+    void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list) noexcept {
+        load(m, tree, leaf, list, [](auto&) {});
+    }
+
+    /// In A's frame.
+    template <WideTreePolicy Tree>
+    void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
+              const relative_pose& to_a) noexcept {
+        if (!to_a.moves()) return load(m, tree, leaf, list);
+        load(m, tree, leaf, list, [&](columns& eight) {
+            std::array<simd::eight_doubles, 3> x;
+            for (std::size_t k = 0; k < 3; ++k) x[k] = __builtin_convertvector(eight[k], simd::eight_doubles);
+            x = to_a.images(x);
+            for (std::size_t k = 0; k < 3; ++k) eight[k] = __builtin_convertvector(x[k], simd::eight_floats);
+        });
+    }
+
+    /// Of the triangles' boxes: lower bounds along each axis, then upper ones.
+    [[nodiscard]] inline std::array<simd::eight_floats, 6> bounds() const noexcept {
+        const auto lesser = [](simd::eight_floats p, simd::eight_floats q) { return p < q ? p : q; };
+        const auto greater = [](simd::eight_floats p, simd::eight_floats q) { return p > q ? p : q; };
+        std::array<simd::eight_floats, 6> rows;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto at = [&](std::size_t c) { return simd::load_eight<simd::eight_floats>(corner[c][k].data()); };
+            rows[k] = lesser(lesser(at(0), at(1)), at(2));
+            rows[3 + k] = greater(greater(at(0), at(1)), at(2));
+        }
+        return rows;
+    }
+
+private:
+    using columns = std::array<simd::eight_floats, 3>;
+
+    /// @param change takes eight points, coordinate by coordinate
+    template <class Tree, class Change>
+    inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
+                     Change change) noexcept {
+        triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
+        if (list.count == 0) return load_from_mesh(m, tree, leaf, change);
+        const auto eight_from = [&](std::size_t first) __attribute__((always_inline)) {
+            std::array<const float*, width> from;
+            for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[first + i]].at;
+            columns eight = simd::columns_of_eight_points(from.data());
+            change(eight);
+            return eight;
+        };
+        const columns low = eight_from(0);
+        const columns high = eight_from(width);
+        for (std::size_t k = 0; k < 3; ++k) {
+            // Joined in a register: a processor waits where it reads as a whole what it has just written in parts.
+            const simd::sixteen_floats points = simd::joined(low[k], high[k]);
+            for (std::size_t c = 0; c < 3; ++c)
+                simd::store_eight(corner[c][k].data(), simd::taken_of_sixteen(points, list.places[c]));
+        }
+    }
+
+    template <class Tree, class Change>
+    void load_from_mesh(const mesh& m, const Tree& tree, std::uint32_t leaf, Change change) noexcept {
+        std::array<const std::uint32_t*, width> vertices;
+        for (std::uint32_t i = 0; i < width; ++i)
+            vertices[i] = m.triangles[tree.triangle_at(width * leaf + std::min(i, triangles - 1))].data();
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::array<const float*, width> points;
+            for (std::size_t i = 0; i < width; ++i) points[i] = m.vertices[vertices[i][c]].at;
+            columns eight = simd::columns_of_eight_points(points.data());
+            change(eight);
+            for (std::size_t k = 0; k < 3; ++k) simd::store_eight(corner[c][k].data(), eight[k]);
+        }
+    }
+};
+
+/// Which vertices of the mesh are the corners of a leaf's triangles. Where there are fewer than eight, the last one
+/// fills the rest.
+struct corner_numbers {
+    static constexpr std::size_t width = eight_boxes::most;
+
+    alignas(32) std::array<std::array<std::uint32_t, width>, 3> vertex;  ///< by corner, then triangle
+
+    template <WideTreePolicy Tree>
+    void load(const mesh& m, const Tree& tree, std::uint32_t leaf) noexcept {
+        const std::size_t last = m.triangles.size() - 1;
+        for (std::size_t i = 0; i < width; ++i) {
+            const auto place = static_cast<std::uint32_t>(std::min(width * leaf + i, last));
+            for (std::size_t c = 0; c < 3; ++c) vertex[c][i] = m.triangles[tree.triangle_at(place)][c];
+        }
+    }
+
+    /// Bit 8 j + i where triangle i of these has a corner that triangle j of the others has: they meet there.
+    [[nodiscard]] inline std::uint64_t shared_with(const corner_numbers& other) const noexcept {
+        return simd::columns_of_eight_that_share(vertex[0].data(), other.vertex[0].data());
+    }
+};
+
+}  // namespace aabb

@@ -1,0 +1,166 @@
+module;
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+export module aabb.wide_tree.triangle_filter;
+
+import aabb.simd;
+
+// Products may be fused into sums, which the bounds allow for; nothing else.
+#pragma clang fp reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Bit i of either for pair i.
+struct filtered_pairs {
+    std::uint32_t hits;
+    std::uint32_t undecided;
+};
+
+/// Decides on as many pairs of triangles as a vector has lanes, in float, where rounding leaves no doubt; the others
+/// are left to an exact test. After Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488,
+/// 2002): the signs of eight orientations. Triangles with a corner in common are hits.
+///
+/// A determinant of differences of coordinates that are at most X, Y and Z apart is 46 u XYZ from the real one, to
+/// first order, u = 2^-24: three differences and six products, with the sums of them, are rounded. What underflows adds
+/// no more than 20 times 2^-150 of a factor X, Y, Z or 1. What overflows compares as nothing, and stays undecided.
+class triangle_filter {
+public:
+    /// @param a the first row of nine: corner c, axis k in row 3 c + k, rows `stride` apart; b likewise
+    [[nodiscard]] static inline filtered_pairs decide(const float* a, const float* b, std::size_t stride) noexcept {
+#pragma clang fp contract(fast)
+        corners s = load(a, stride);
+        corners t = load(b, stride);
+        const simd::floats x = spread(s, t, 0);
+        const simd::floats y = spread(s, t, 1);
+        const simd::floats z = spread(s, t, 2);
+        const bound most(0x1p-18F * (x * y * z) + 0x1p-140F * (x + y + z + 1));
+
+        const point s_normal = cross(s[1] - s[0], s[2] - s[0]);
+        const sides of_t = most.of(dot(s_normal, t[0] - s[0]), dot(s_normal, t[1] - s[0]), dot(s_normal, t[2] - s[0]));
+        const point t_normal = cross(t[1] - t[0], t[2] - t[0]);
+        const sides of_s = most.of(dot(t_normal, s[0] - t[0]), dot(t_normal, s[1] - t[0]), dot(t_normal, s[2] - t[0]));
+        const simd::flags apart = of_t.all_above() | of_t.all_below() | of_s.all_above() | of_s.all_below();
+        const simd::flags sure = of_t.sure() & of_s.sure();
+
+        const simd::flags t_apex_above = turn_to_apex(t, of_t.above);
+        const simd::flags s_apex_above = turn_to_apex(s, of_s.above);
+        // Each apex is to lie above the other triangle.
+        swap_where(~s_apex_above, t[1], t[2]);
+        swap_where(~t_apex_above, s[1], s[2]);
+        const point between = t[0] - s[0];
+        const simd::floats first = dot(cross(s[1] - s[0], between), t[1] - s[0]);
+        const simd::floats second = dot(cross(s[2] - s[0], t[2] - s[0]), between);
+        const simd::flags beyond = most.above(first) | most.above(second);
+        const simd::flags crossing = most.below(first) & most.below(second);
+        const std::uint32_t hits = simd::bits(~apart & sure & crossing);
+        const std::uint32_t undecided = simd::bits(~apart & ~(sure & (beyond | crossing)));
+        if (undecided == 0) return {hits, 0};
+        const std::uint32_t touching = undecided & simd::bits(share_corner(s, t));
+        return {hits | touching, undecided & ~touching};
+    }
+
+private:
+    struct point {
+        std::array<simd::floats, 3> at;
+
+        [[gnu::always_inline]] friend inline point operator-(const point& p, const point& q) noexcept {
+            return {{p.at[0] - q.at[0], p.at[1] - q.at[1], p.at[2] - q.at[2]}};
+        }
+    };
+    using corners = std::array<point, 3>;
+
+    /// Of three orientations.
+    struct sides {
+        std::array<simd::flags, 3> above;
+        std::array<simd::flags, 3> below;
+
+        [[nodiscard, gnu::always_inline]] inline simd::flags all_above() const noexcept {
+            return above[0] & above[1] & above[2];
+        }
+        [[nodiscard, gnu::always_inline]] inline simd::flags all_below() const noexcept {
+            return below[0] & below[1] & below[2];
+        }
+        [[nodiscard, gnu::always_inline]] inline simd::flags sure() const noexcept {
+            return (above[0] | below[0]) & (above[1] | below[1]) & (above[2] | below[2]);
+        }
+    };
+
+    /// Which signs are certain.
+    class bound {
+    public:
+        explicit inline bound(simd::floats most) noexcept : most_(most) {}
+        [[nodiscard, gnu::always_inline]] inline simd::flags above(simd::floats v) const noexcept { return v > most_; }
+        [[nodiscard, gnu::always_inline]] inline simd::flags below(simd::floats v) const noexcept { return v < -most_; }
+        [[nodiscard, gnu::always_inline]] inline sides of(simd::floats p, simd::floats q,
+                                                          simd::floats r) const noexcept {
+            return {{above(p), above(q), above(r)}, {below(p), below(q), below(r)}};
+        }
+
+    private:
+        simd::floats most_;
+    };
+
+    [[nodiscard, gnu::always_inline]] static inline corners load(const float* from, std::size_t stride) noexcept {
+        corners t;
+        for (std::size_t row = 0; row < 9; ++row)
+            std::memcpy(&t[row / 3].at[row % 3], from + row * stride, sizeof(simd::floats));
+        return t;
+    }
+
+    [[nodiscard, gnu::always_inline]] static inline point cross(const point& p, const point& q) noexcept {
+#pragma clang fp contract(fast)
+        return {{p.at[1] * q.at[2] - p.at[2] * q.at[1], p.at[2] * q.at[0] - p.at[0] * q.at[2],
+                 p.at[0] * q.at[1] - p.at[1] * q.at[0]}};
+    }
+    [[nodiscard, gnu::always_inline]] static inline simd::floats dot(const point& p, const point& q) noexcept {
+#pragma clang fp contract(fast)
+        return p.at[0] * q.at[0] + p.at[1] * q.at[1] + p.at[2] * q.at[2];
+    }
+
+    /// As neighbours in a mesh do: there is nothing more to decide.
+    [[nodiscard, gnu::always_inline]] static inline simd::flags share_corner(const corners& s,
+                                                                             const corners& t) noexcept {
+        simd::flags any{};
+        for (const point& p : s)
+            for (const point& q : t) any |= (p.at[0] == q.at[0]) & (p.at[1] == q.at[1]) & (p.at[2] == q.at[2]);
+        return any;
+    }
+
+    [[nodiscard, gnu::always_inline]] static inline simd::floats spread(const corners& s, const corners& t,
+                                                                        std::size_t k) noexcept {
+        const auto lesser = [](simd::floats p, simd::floats q) { return p < q ? p : q; };
+        const auto greater = [](simd::floats p, simd::floats q) { return p > q ? p : q; };
+        const simd::floats low = lesser(lesser(lesser(s[0].at[k], s[1].at[k]), lesser(s[2].at[k], t[0].at[k])),
+                                        lesser(t[1].at[k], t[2].at[k]));
+        const simd::floats high = greater(greater(greater(s[0].at[k], s[1].at[k]), greater(s[2].at[k], t[0].at[k])),
+                                          greater(t[1].at[k], t[2].at[k]));
+        return high - low;
+    }
+
+    [[nodiscard, gnu::always_inline]] static inline point chosen(simd::flags which, const point& p,
+                                                                 const point& q) noexcept {
+        return {{which ? p.at[0] : q.at[0], which ? p.at[1] : q.at[1], which ? p.at[2] : q.at[2]}};
+    }
+    [[gnu::always_inline]] static inline void swap_where(simd::flags which, point& p, point& q) noexcept {
+        const point kept = p;
+        p = chosen(which, q, p);
+        q = chosen(which, kept, q);
+    }
+
+    /// Turns the triangle until corner 0 is the one that is alone on its side of the other's plane.
+    /// @returns whether that is above
+    [[nodiscard, gnu::always_inline]] static inline simd::flags turn_to_apex(
+        corners& t, const std::array<simd::flags, 3>& above) noexcept {
+        const simd::flags is_1 = (above[0] ^ above[1]) & ~(above[0] ^ above[2]);
+        const simd::flags is_2 = ~(above[0] ^ above[1]) & (above[0] ^ above[2]);
+        const corners turned = t;
+        for (std::size_t c = 0; c < 3; ++c)
+            t[c] = chosen(is_2, turned[(c + 2) % 3], chosen(is_1, turned[(c + 1) % 3], turned[c]));
+        return is_2 ? above[2] : is_1 ? above[1] : above[0];
+    }
+};
+
+}  // namespace aabb

@@ -1,0 +1,112 @@
+module;
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+export module aabb.wide_tree.wide_node;
+
+import aabb.geometry;
+import aabb.simd;
+import aabb.wide_tree.eight_boxes;
+
+export namespace aabb {
+
+/// Node of a tree with up to eight children a node: their boxes, rounded outward to a grid of the node's own, in 64
+/// bytes.
+///
+/// Along axis k the grid has planes at i * 2^exponent[k] for whole i, and code q, from 1 to 254, stands for i =
+/// origin[k] + q. Both are exact: |i| stays below 2^24, so that a plane is a float, unless it lies beyond the range of
+/// floats.
+struct wide_node {
+    static constexpr std::size_t most_children = eight_boxes::most;
+    static constexpr int last_code = 255;
+
+    box_codes planes;
+    std::array<std::int32_t, 3> origin;
+    std::array<std::int8_t, 3> exponent;
+    std::uint8_t children;
+
+    /// Takes the boxes of 1 to 8 children.
+    void encode(std::span<const box> boxes) noexcept {
+        children = static_cast<std::uint8_t>(boxes.size());
+        for (int k = 0; k < 3; ++k) encode_axis(boxes, k);
+        planes.keep_first(children);
+    }
+
+    [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
+
+    /// Planes are exact on it, and rounding is monotone, so nothing is rounded past a plane.
+    [[nodiscard]] inline code_grid grid() const noexcept {
+        code_grid g;
+        for (std::size_t k = 0; k < 3; ++k) {
+            g.scale[k] = std::bit_cast<float>(static_cast<std::uint32_t>(127 - exponent[k]) << 23U);
+            g.offset[k] = static_cast<float>(origin[k]);
+        }
+        return g;
+    }
+
+    [[nodiscard]] inline box child(std::size_t i) const noexcept {
+        box b;
+        for (int k = 0; k < 3; ++k) {
+            const auto axis = static_cast<std::size_t>(k);
+            b.min[k] = plane(axis, planes.lower[axis][i]);
+            b.max[k] = plane(axis, last_code - planes.upper[axis][i]);
+        }
+        return b;
+    }
+
+private:
+    static constexpr int least_exponent = -126;  // of a float with all its digits
+    static constexpr int origin_digits = 22;     // fewer than those of a float, since codes are added
+
+    /// Of a positive number, what power of 2 it has reached; of 0, one below that of every float.
+    [[nodiscard]] static inline int power_of(double x) noexcept {
+        return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52U) - 1023;
+    }
+    [[nodiscard]] static inline double power_of_two(int exponent) noexcept {
+        return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
+    }
+
+    void encode_axis(std::span<const box> boxes, int k) noexcept {
+        // In double, products with powers of 2 are exact, and so are their whole parts.
+        simd::eight_doubles least = simd::eight_doubles{} + boxes[0].min[k];
+        simd::eight_doubles most = simd::eight_doubles{} + boxes[0].max[k];
+        double low = boxes[0].min[k];
+        double high = boxes[0].max[k];
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            least[i] = boxes[i].min[k];
+            most[i] = boxes[i].max[k];
+            low = std::min(low, least[i]);
+            high = std::max(high, most[i]);
+        }
+        int power = std::max({power_of(high - low) - 8,
+                              power_of(std::max(std::abs(low), std::abs(high))) - origin_digits, least_exponent});
+        while (std::ceil(high * power_of_two(-power)) - std::floor(low * power_of_two(-power)) + 1 > last_code - 1)
+            ++power;
+        const double steps = power_of_two(-power);
+        const double first = std::floor(low * steps) - 1;
+        const auto axis = static_cast<std::size_t>(k);
+        origin[axis] = static_cast<std::int32_t>(first);
+        exponent[axis] = static_cast<std::int8_t>(power);
+        store_codes(planes.lower[axis], __builtin_elementwise_floor(least * steps) - first);
+        store_codes(planes.upper[axis], last_code - (__builtin_elementwise_ceil(most * steps) - first));
+    }
+
+    static inline void store_codes(box_codes::row& to, simd::eight_doubles whole) noexcept {
+        simd::store_eight(to.data(), simd::whole_bytes(__builtin_convertvector(whole, simd::eight_floats)));
+    }
+
+    [[nodiscard]] inline float plane(std::size_t axis, int code) const noexcept {
+        constexpr double most = std::numeric_limits<float>::max();
+        const double at = (origin[axis] + code) * step(axis);
+        return static_cast<float>(std::clamp(at, -most, most));
+    }
+};
+static_assert(sizeof(wide_node) == 64);
+
+}  // namespace aabb
