@@ -23,6 +23,7 @@ import aabb.base;
 import aabb.digest;
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;

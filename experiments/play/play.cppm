@@ -12,6 +12,7 @@ module;
 export module aabblab.play;
 
 import aabb.counters;
+import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;
