@@ -3,6 +3,7 @@ module;
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,14 +41,21 @@ public:
     [[nodiscard]] work_counters counters() const override { return work_of(search_.counters()); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return bytes_by_part(search_); }
 
-    [[nodiscard]] std::vector<std::string> plans() const override {
+    [[nodiscard]] std::vector<stage_plan> plans() const override {
         if constexpr (ColumnPartition<Partition>)
             if (!search_.is_uncut()) {
+                constexpr std::string_view along[2][3]{
+                    {"{u} by {v} columns along the x axis", "{u} by {v} columns along the y axis",
+                     "{u} by {v} columns along the z axis"},
+                    {"{u} by {v} groups of columns along the x axis", "{u} by {v} groups of columns along the y axis",
+                     "{u} by {v} groups of columns along the z axis"}};
                 const column_plan& plan = search_.plan();
-                if (plan.columns() == 1) return {"one column, cut nowhere"};
-                return {std::to_string(plan.across[0]) + " by " + std::to_string(plan.across[1]) +
-                        (search_.is_in_groups() ? " groups of columns along the " : " columns along the ") +
-                        "xyz"[plan.axis] + " axis"};
+                const bool in_groups = search_.is_in_groups();
+                return {{in_groups ? "groups of columns" : "columns",
+                         {plan.columns() == 1 ? "one column, cut nowhere" : along[in_groups ? 1 : 0][plan.axis],
+                          {{{"u", static_cast<double>(plan.across[0])},
+                            {"v", static_cast<double>(plan.across[1])},
+                            {"axis", static_cast<double>(plan.axis)}}}}}};
             }
         return {};
     }

@@ -10,6 +10,7 @@ module;
 
 export module aabb.pipeline:stage;
 
+import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
@@ -36,6 +37,12 @@ struct omission {
 [[nodiscard]] inline std::string to_text(const omission& one) {
     return one.why.empty() ? one.what : one.what + ": " + one.why;
 }
+
+/// What a stage planned from what it saw.
+struct stage_plan {
+    std::string_view what;  ///< "list of neighbours"
+    statement told;         ///< with its numbers
+};
 
 /// Into which parts meshes are divided: by mesh, the triangles of each part. Every triangle stands in one of them; a
 /// mesh of less than two parts stays whole.
@@ -74,8 +81,7 @@ public:
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
-    /// What this stage planned from what it saw, a sentence each.
-    [[nodiscard]] virtual std::vector<std::string> plans() const { return {}; }
+    [[nodiscard]] virtual std::vector<stage_plan> plans() const { return {}; }
     [[nodiscard]] virtual std::vector<omission> left_out() const = 0;
 };
 

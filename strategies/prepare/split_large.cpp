@@ -43,7 +43,7 @@ public:
     void search(std::vector<index_pair>& pairs) override;
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
-    [[nodiscard]] std::vector<std::string> plans() const override { return search_->plans(); }
+    [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
     [[nodiscard]] std::vector<omission> left_out() const override;
 
 private:
