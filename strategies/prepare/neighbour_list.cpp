@@ -178,7 +178,8 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
         switch (steps[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
             case step::search: search_->update(boxes); break;
             case step::keep: keep(boxes, {0, 0}); break;
-            case step::plan: plan(boxes, seen == sight::changed); break;
+            // The boxes of who has come since others were kept say nothing, and may be none.
+            case step::plan: plan(boxes, seen == sight::changed && age_ > 0 && !comes_any); break;
             case step::repeat: has_rested_ = true; break;
             case step::serve: serve(boxes); break;
             case step::settle: settle(boxes); break;
