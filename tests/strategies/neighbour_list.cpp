@@ -170,6 +170,18 @@ TEST_CASE("a neighbour list is searched for again when an object leaves its grow
     CHECK(cells() > second);
 }
 
+TEST_CASE("what a list planned is told in numbers, and in a sentence that has them") {
+    const auto stage = stage_of(listing("0.5", "0"), 2);
+    CHECK(pairs_of(*stage, std::vector<box>{cube(0), cube(1.75F)}).empty());
+    const std::vector<stage_plan> plans = stage->plans();
+    REQUIRE(!plans.empty());
+    CHECK(plans.back().what == "list of neighbours");
+    CHECK(plans.back().told["pairs"] == 1);
+    CHECK(plans.back().told["margin"] == 0.5);
+    CHECK(plans.back().told["cells"] == 0);
+    CHECK(to_text(plans.back().told) == "a list of 1 pairs, of boxes grown by 0.5 on every side");
+}
+
 TEST_CASE("a neighbour list serves boxes that move alike, however far, and is exact whatever rounding does") {
     std::size_t served = 0;
     REQUIRE(rc::check([&] {
