@@ -82,7 +82,9 @@ std::string explained(scene_play& scene, const contender& who) {
     text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes())
         text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
-    text += indented_all("planned from what was seen", p.plans());
+    std::vector<std::string> planned;
+    for (const aabb::stage_plan& one : p.plans()) planned.push_back(to_text(one.told));
+    text += indented_all("planned from what was seen", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& one : omissions_of(name, p.left_out())) left_out.push_back(to_text(one));
     return text + indented_all("left out", left_out);

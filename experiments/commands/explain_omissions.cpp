@@ -71,17 +71,14 @@ std::vector<aabb::omission> omissions_of(const contender_name& who, std::vector<
 }
 
 std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
-    std::vector<aabb::strategy_choice> choices;
-    if (kind == aabb::strategy_kind::prepare) choices = {{"neighbour_list", {{"margin", "0.1"}}}};
-    if (kind == aabb::strategy_kind::partition)
-        choices = {{"columns", {{"few", "0"}}}, {"axial_cut", {{"axes", "3"}, {"segments", "2"}}}};
     std::vector<other_way> all;
-    for (const aabb::strategy_choice& choice : choices) {
-        aabb::composition c = selected;
-        c[kind] = choice;
-        if (c != selected && refusal_of(c, info_of(kind).stage).empty())
-            all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}, {}, false});
-    }
+    for (const aabb::strategy_info& info : aabb::strategies(kind))
+        for (const aabb::strategy_choice& choice : info.contrasts) {
+            aabb::composition c = selected;
+            c[kind] = choice;
+            if (c != selected && refusal_of(c, info_of(kind).stage).empty())
+                all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}, {}, false});
+        }
     return all;
 }
 

@@ -168,8 +168,8 @@ std::size_t player::held_bytes() const {
     return all;
 }
 
-std::vector<std::string> player::plans() const {
-    return made_.global ? made_.global->plans() : std::vector<std::string>{};
+std::vector<aabb::stage_plan> player::plans() const {
+    return made_.global ? made_.global->plans() : std::vector<aabb::stage_plan>{};
 }
 
 std::vector<aabb::omission> player::left_out() const {

@@ -138,7 +138,7 @@ public:
     /// Of all parts but the meshes, which every composition reads.
     [[nodiscard]] std::size_t held_bytes() const;
     /// What the global search planned from what it saw.
-    [[nodiscard]] std::vector<std::string> plans() const;
+    [[nodiscard]] std::vector<aabb::stage_plan> plans() const;
     [[nodiscard]] std::vector<aabb::omission> left_out() const;
     /// The mean over the models of the tree's; empty where there is no tree to be seen.
     [[nodiscard]] std::optional<double> box_inflation() const;

@@ -13,6 +13,7 @@ module;
 export module aabblab.trials;
 
 import aabb.counters;
+import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.validation;

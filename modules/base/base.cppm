@@ -9,4 +9,5 @@ export import :frame_state;
 export import :large_pages;
 export import :memory;
 export import :shortest;
+export import :statement;
 export import :worker_threads;

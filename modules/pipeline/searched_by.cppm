@@ -3,6 +3,7 @@ module;
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,7 +41,7 @@ public:
     [[nodiscard]] work_counters counters() const override { return work_of(search_.counters()); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return bytes_by_part(search_); }
 
-    [[nodiscard]] std::vector<std::string> plans() const override {
+    [[nodiscard]] std::vector<stage_plan> plans() const override {
         if constexpr (SearchingPartition<Partition>)
             return search_.own().plans();
         else

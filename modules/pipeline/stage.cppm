@@ -11,6 +11,7 @@ module;
 
 export module aabb.pipeline:stage;
 
+import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
@@ -38,6 +39,12 @@ struct omission {
 [[nodiscard]] inline std::string to_text(const omission& one) {
     return one.why.empty() ? one.what : one.what + ": " + one.why;
 }
+
+/// What a stage planned from what it saw.
+struct stage_plan {
+    std::string_view what;  ///< "list of neighbours"
+    statement told;         ///< with its numbers
+};
 
 /// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
 /// every later frame, by an input_error; a search that throws appends nothing.
@@ -76,8 +83,7 @@ public:
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
-    /// What this stage planned from what it saw, a sentence each.
-    [[nodiscard]] virtual std::vector<std::string> plans() const { return {}; }
+    [[nodiscard]] virtual std::vector<stage_plan> plans() const { return {}; }
     [[nodiscard]] virtual std::vector<omission> left_out() const = 0;
 };
 

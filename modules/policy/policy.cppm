@@ -10,6 +10,7 @@ export import :nearest_name;
 export import :number_parameter;
 export import :parameter_values;
 export import :refusal;
+export import :scene_outlook;
 export import :strategy;
 export import :strategy_choice;
 export import :text_parameter;

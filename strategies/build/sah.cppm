@@ -1,11 +1,15 @@
 module;
+#include <cstddef>
 #include <span>
 #include <string_view>
 
 export module aabb.build.sah;
 
+import aabb.base;
+import aabb.costs;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.policy;
 import aabb.build.balanced;
 import aabb.build.top_down;
 
@@ -21,6 +25,20 @@ struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
 
     static constexpr std::string_view name = "sah";
     static constexpr std::string_view summary = "by the surface-area heuristic, in 16 bins on each axis";
+
+    /// Its trees are visited a twelfth less than those by `median`.
+    [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
+        if (scene.triangles == 0) return {.because = {{"no meshes: nothing is built"}}};
+        const std::size_t repaid =
+            scene.queries_that_repay(machine_costs().sah_triangle - machine_costs().median_triangle, 1.0 / 12);
+        const bool serves = scene.queries >= repaid;
+        return {.serves = serves,
+                .because = {
+                    {serves ? "queries are to be {queries}, and from {repaid} on they repay a better tree"
+                            : "built fastest: queries are to be {queries}, and only from {repaid} on they "
+                              "repay a better tree",
+                     {{{"queries", static_cast<double>(scene.queries)}, {"repaid", static_cast<double>(repaid)}}}}}};
+    }
 };
 
 static_assert(BuildPolicy<sah_build>);

@@ -5,7 +5,7 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -87,12 +87,19 @@ public:
     /// Of the last frame that was cut: into groups of columns where there are any.
     [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? cut_.grid : cut_.columns.plan; }
     [[nodiscard]] bool is_in_groups() const noexcept { return groups_.size() > 0; }
-    [[nodiscard]] std::vector<std::string> plans() const {
+    [[nodiscard]] std::vector<stage_plan> plans() const {
+        constexpr std::string_view along[2][3]{
+            {"{u} by {v} columns along the x axis", "{u} by {v} columns along the y axis",
+             "{u} by {v} columns along the z axis"},
+            {"{u} by {v} groups of columns along the x axis", "{u} by {v} groups of columns along the y axis",
+             "{u} by {v} groups of columns along the z axis"}};
         if (is_few_) return {};
         const column_plan& p = plan();
-        if (p.columns() == 1) return {"one column, cut nowhere"};
-        return {std::to_string(p.across[0]) + " by " + std::to_string(p.across[1]) +
-                (is_in_groups() ? " groups of columns along the " : " columns along the ") + "xyz"[p.axis] + " axis"};
+        return {{is_in_groups() ? "groups of columns" : "columns",
+                 {p.columns() == 1 ? "one column, cut nowhere" : along[is_in_groups() ? 1 : 0][p.axis],
+                  {{{"u", static_cast<double>(p.across[0])},
+                    {"v", static_cast<double>(p.across[1])},
+                    {"axis", static_cast<double>(p.axis)}}}}}};
     }
     [[nodiscard]] std::vector<omission> left_out() const {
         constexpr const char* why = "so few boxes are tested each against each";

@@ -60,6 +60,8 @@ public:
         choice_parameter{"limit", &config::limit, std::array<std::string_view, 2>{"on", "off"},
                          "cut no box more than once on an axis"}};
 
+    static constexpr std::array contrasts{std::string_view("axes=3,segments=2")};
+
     axial_cut_partition() = default;
     explicit axial_cut_partition(const config& c) : config_(c) {}
 

@@ -57,6 +57,8 @@ public:
         integer_parameter{"group", &config::group, 1U, 1'000'000'000U, "boxes that are cut into columns together"},
         integer_parameter{"threads", &config::threads, 1U, 256U, "how many threads take groups"}};
 
+    static constexpr std::array contrasts{std::string_view("few=0")};
+
     template <class... All>
     static constexpr std::string_view refuses() {
         if (((SweepPolicy<All> && !ColumnSweep<All>) || ...))

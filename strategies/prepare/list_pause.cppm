@@ -1,23 +1,25 @@
 module;
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 export module aabb.prepare.list_pause;
 
 import aabb.geometry;
 import aabb.global_search;
-import aabb.prepare.glimpse;
-import aabb.prepare.list_forecast;
+import aabb.prepare.displacement_law;
 import aabb.prepare.list_plan;
+import aabb.prepare.sample;
 
 export namespace aabb {
 
-/// Frames that are searched as they are, since no list of neighbours paid: ever more each time, and then a few boxes
-/// are looked at for eight frames, and again after a rest, until they say that one may. The fewer boxes there are, the
-/// longer it takes to see that they have come to rest, and the less each of these frames costs.
+/// Frames that are searched as they are, since no list of neighbours was worth its cost: twice as many each time, so
+/// that lists tried in vain cost ever less of all frames, and what such a pause loses is at most as long as what went
+/// before (exponential back-off; Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988, for what it
+/// may cost). Then a few boxes are looked at for eight frames, and again after a rest, until they say that a list may
+/// be worth it.
 class list_pause {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
@@ -28,40 +30,41 @@ public:
     }
     /// A few boxes are looked at from this frame on.
     void begin_with_look() noexcept { left_ = glimpse::longest + 1; }
-    /// A list is kept: the next pause is short again.
+    /// A list served as long as it was to: the next pause is short again.
     void shorten() noexcept { next_ = shortest; }
 
     /// A frame of it. Where even a few boxes move too far for any list, all do, and are not looked at for the rest of
-    /// the eight frames.
-    /// @param worth what a list must cost less than, over a search in every frame, to end the pause
+    /// the eight frames. Otherwise the pause ends.
+    /// @param seen with the law of these boxes
+    /// @param law of the boxes that are looked at
+    /// @param drawn as `drawn_id` has it
     /// @returns whether all eight were in vain; others are looked at next
-    bool pass(std::span<const box> boxes, const membership& objects, std::size_t found, list_forecast& forecast,
-              const list_horizon& horizon, double worth) {
+    bool pass(std::span<const box> boxes, const membership& objects, list_outlook& seen, std::uint32_t& drawn) {
         --left_;
         const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
-            const list_plan plan =
-                plan_list(forecast.outlook(glimpse_.least_motion(boxes, objects, age), objects.size(), found, horizon),
-                          worth, worth);
+            seen.law.observe(age, glimpse_.least_motion(boxes, objects));
+            const list_plan plan = plan_list(seen);
             if (plan.frames > 1) {
                 left_ = 0;
                 return false;
             }
-            move_too_far_ = std::isinf(plan.cost);
+            move_too_far_ = plan.is_hopeless();
         }
         const bool in_vain = left_ == 0;
         if (in_vain) left_ = glimpse::longest + rest(objects.size());
         if (left_ == glimpse::longest) {
-            forecast.look_anew_at_other_sizes(boxes, objects);
-            glimpse_.keep(boxes, forecast.drawn());
+            seen.look_anew(boxes, objects, drawn);
+            seen.law.forget();
+            glimpse_.keep(boxes, drawn);
             move_too_far_ = false;
         }
         return in_vain;
     }
 
 private:
-    static constexpr unsigned shortest = 6;
-    static constexpr unsigned longest = 96;
+    static constexpr unsigned shortest = 1;
+    static constexpr unsigned longest = 64;
 
     /// Frames between looks. Eight frames of looking take about as long as searching 70 boxes, however many there are:
     /// that is to be about a twentieth of what searching takes meanwhile.

@@ -1,19 +1,37 @@
 module;
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <bit>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 
 export module aabb.prepare.list_plan;
 
 import aabb.costs;
 import aabb.geometry;
+import aabb.global_search;
+import aabb.prepare.displacement_law;
+import aabb.prepare.sample;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
+// What a list of neighbours costs a frame, if it is of boxes grown by a margin m and serves k frames, its own included
+// (Verlet, "Computer 'experiments' on classical fluids", 1967; Chialvo and Debenedetti, "On the use of the Verlet
+// neighbor list in molecular dynamics", 1990, who choose the least of it as here):
+//
+//     M(m) / k + S(m),  m = d(k - 1),
+//     M(m) = n (keep + search) + L(m) find,  a search of n boxes that are grown and kept,
+//     S(m) = n watch + L(m) test,            a frame that the list serves,
+//     L(m) = P (1 + c (g(m) - 1)),           the pairs that are listed,
+//
+// where d is how far boxes move (`displacement_law`), P the pairs that overlap, g their growth where boxes are spread
+// evenly (`growth_of_pairs`) and c what the last list held over that. Without a list a frame costs n search + P find.
+// What one box or pair takes is a machine cost (`cost_model`).
 export namespace aabb {
 
 /// How many pairs come into reach as boxes grow, in pairs of those that overlap: of boxes evenly spread, the mean over
@@ -50,6 +68,10 @@ public:
         const double by = 4 * margin;
         return sum_[0] > 0 ? 1 + by * (sum_[1] + by * (sum_[2] + by * sum_[3])) / sum_[0] : 1;
     }
+    /// Which part of those that overlap does so by more than two margins.
+    [[nodiscard]] double sure(double margin) const {
+        return 8 * margin < longest_margin_ ? std::max(at(-margin), 0.0) : 0;
+    }
     /// Four mean extents: further than that it is not to be trusted.
     [[nodiscard]] double longest_margin() const { return longest_margin_; }
 
@@ -67,67 +89,45 @@ struct list_horizon {
 
 /// What is known of a scene when the next list of neighbours is planned.
 struct list_outlook {
-    /// By how much boxes moved relative to each other since they were kept, at most until that frame, frame by frame;
-    /// see `relative_motion`.
-    std::span<const double> motion;
+    displacement_law law{};
     std::size_t boxes = 0;
     std::size_t pairs = 0;  ///< that overlap
-    growth_of_pairs growth;
+    growth_of_pairs growth{};
     double correction = 1;  ///< pairs that the last list held beside those that overlapped, over what was reckoned
-    list_horizon horizon;
+    list_horizon horizon{};
+
+    /// @param drawn as `drawn_id` has it
+    void look_anew(std::span<const box> all, const membership& objects, std::uint32_t& drawn) {
+        std::array<box, 16> some;
+        growth = growth_of_pairs(drawn_boxes(all, objects, drawn, some));
+    }
+    /// How many pairs a list with that margin is to hold.
+    [[nodiscard]] double listed(double margin) const {
+        return static_cast<double>(pairs + 1) * (1 + correction * (growth.at(margin) - 1));
+    }
+    /// A list with that margin held so many. One pair more or less says nothing; and where a sample of boxes finds them
+    /// spread by far too evenly, other margins are not believed to list next to nothing.
+    void learn(double margin, std::size_t held) {
+        constexpr double least = 0.3;
+        const double reckoned = static_cast<double>(pairs + 1) * (growth.at(margin) - 1);
+        const double beside = held < pairs ? 0 : static_cast<double>(held - pairs);
+        correction = std::max(least, (beside + 1) / (reckoned + 1));
+    }
 };
 
 /// The cheapest list: for how many frames it is to serve, its own included, and the margin by which boxes are grown for
 /// that.
 struct list_plan {
-    std::size_t frames = 1;  ///< 1 where it does not pay
+    std::size_t frames = 1;  ///< 1 where it is not worth its cost
     double margin = 0;
     double cost = std::numeric_limits<double>::infinity();  ///< a frame, over that of a search
+
+    /// Frames that are served cost too much already, however many they are.
+    [[nodiscard]] bool is_hopeless() const noexcept { return std::isinf(cost); }
 };
 
-/// The margin that a list needs to serve so many frames after its own: what was seen in as many, the first of them or,
-/// where boxes speed up, the last; further on as much more with each doubling of time as the last two doublings tell;
-/// and a little more. So what jiggles about its place needs little more than it moved, what drifts ever more.
-[[nodiscard]] inline double margin_after(std::span<const double> motion, std::size_t frames) {
-    constexpr double a_little_more = 1.05;
-    const std::size_t seen = motion.size();
-    assert(frames > 0 && seen > 0);
-    const auto moved_after = [&](std::size_t frame) { return frame > 0 ? motion[frame - 1] : 0; };
-    if (frames <= seen)
-        return a_little_more * std::max(moved_after(frames), moved_after(seen) - moved_after(seen - frames));
-    // In half of that time, at the pace since the middle of it.
-    const auto growth = [&](std::size_t frame, double moved) {
-        const std::size_t middle = frame / 2;
-        return (moved - moved_after(middle)) * static_cast<double>(frame) / static_cast<double>(2 * (frame - middle));
-    };
-    const double last = motion.back();
-    const double grown = growth(seen, last);
-    const double grown_before = seen < 4 ? 0 : growth(seen / 2, moved_after(seen / 2));
-    const double times = static_cast<double>(frames) / static_cast<double>(seen);
-    if (!(grown < 2 * grown_before)) return a_little_more * (last + 2 * grown * (times - 1));  // a drift
-    const double ratio = std::max(0.3, grown / grown_before);
-    // Evenly within a doubling.
-    double more = 0;
-    double next = ratio;
-    double left = times;
-    for (; left >= 2; left /= 2) {
-        more += next;
-        next *= ratio;
-    }
-    more += next * (left - 1);
-    return a_little_more * (last + grown * more);
-}
-
-/// A list must cost less than this part of a search: what it takes of the caches is not reckoned. The next one of lists
-/// that do may cost a little more: giving up what pays by a little costs more than that.
-inline constexpr double worth_a_list = 0.87;
-inline constexpr double worth_another_list = 0.95;
-
-/// How many pairs a list with that margin is to hold.
-[[nodiscard]] inline double pairs_listed(const list_outlook& seen, double margin) {
-    const auto found = static_cast<double>(seen.pairs + 1);
-    return found * (1 + seen.correction * (seen.growth.at(margin) - 1));
-}
+/// A list must cost less than this part of a search: what it takes of the caches is not reckoned.
+inline constexpr double worth_a_list = 0.9;
 
 /// What a frame costs that is searched as it is, and one that a list serves.
 [[nodiscard]] inline double cost_of_search(double boxes, double pairs, const cost_model& cost) {
@@ -136,13 +136,10 @@ inline constexpr double worth_another_list = 0.95;
 [[nodiscard]] inline double cost_of_service(double boxes, double listed, const cost_model& cost) {
     return boxes * cost.watch_box + listed * cost.test_pair;
 }
-/// What it costs to make a list.
+/// What it costs to make a list; planning it takes as long as if there were some boxes more.
 [[nodiscard]] inline double cost_of_making(double boxes, double listed, const cost_model& cost) {
-    return boxes * cost.keep_box + cost_of_search(boxes, listed, cost);
-}
-/// The mean of as many frames, in the first of which the list is made.
-[[nodiscard]] inline double cost_of_list(double boxes, double listed, std::size_t frames, const cost_model& cost) {
-    return cost_of_making(boxes, listed, cost) / static_cast<double>(frames) + cost_of_service(boxes, listed, cost);
+    constexpr double boxes_of_planning = 64;
+    return (boxes + boxes_of_planning) * cost.keep_box + cost_of_search(boxes + boxes_of_planning, listed, cost);
 }
 /// What a frame costs more, over all that are left, where the list is made in new memory: pages that are touched for
 /// the first time make it take about four times as long as later ones, which reuse them.
@@ -175,48 +172,43 @@ inline constexpr double worth_another_list = 0.95;
     return once / 2 * static_cast<double>(frames) > shortened + made_sooner;
 }
 
-/// The plan that costs least a frame.
-/// @param worth what it must cost less than, over a search in every frame
-/// @param most a frame that a list serves costs less, over one that is searched, or the list is not looked at
+/// Whether it pays to tell which pairs of a list are sure, so that they are not tested in later frames of its age: to
+/// tell takes as long as two tests of each pair.
+[[nodiscard]] inline bool pays_to_tell_sure(const list_outlook& seen, std::size_t listed, double margin) {
+    const double sure = static_cast<double>(seen.pairs) * seen.growth.sure(margin);
+    const double frames_left = seen.law.until(margin) - static_cast<double>(seen.law.age());
+    return sure * frames_left > 2 * static_cast<double>(listed);
+}
+
+/// The plan that costs least a frame; of those that cost about as little the longest, since boxes may move farther than
+/// they seem to.
 [[nodiscard]] inline list_plan plan_list(const list_outlook& seen, double worth = worth_a_list,
-                                         double most = std::numeric_limits<double>::infinity(),
                                          const cost_model& cost = machine_costs()) {
-    constexpr std::array<std::size_t, 19> lifetimes{2,  3,  4,  5,  6,  8,  10,  12,  16, 20,
-                                                    24, 32, 40, 48, 64, 96, 128, 192, 256};
+    constexpr double as_little = 1.01;
+    constexpr std::size_t longest = 1024;
     const auto n = static_cast<double>(seen.boxes);
     list_plan best;
     const std::size_t frames_left = seen.horizon.frames_left;
-    if (seen.motion.empty() || frames_left < 2) return best;
-    const double search = cost_of_search(n, pairs_listed(seen, 0), cost);
-    for (const std::size_t lifetime : lifetimes) {
-        const std::size_t frames = std::min(lifetime, frames_left);
-        const double margin = margin_after(seen.motion, frames - 1);
+    if (seen.law.age() == 0 || frames_left < 2) return best;
+    const double search = cost_of_search(n, seen.listed(0), cost);
+    const double exponent = seen.law.exponent();
+    // Frames after the list's own: 1, 2, 3, 4, 6, 8, 12, …, and at last all that are left.
+    for (std::size_t after = 1, next = 2; after < longest;
+         after = std::exchange(next, next + std::bit_floor(next) / 2)) {
+        after = std::min(after, frames_left - 1);
+        const double margin = seen.law.after(after, exponent);
         if (!(margin <= seen.growth.longest_margin())) break;
-        const double listed = pairs_listed(seen, margin);
-        if (cost_of_service(n, listed, cost) / search >= std::min(best.cost, most)) break;
-        const double each =
-            (cost_of_list(n, listed, frames, cost) + cost_of_new_memory(n, listed, seen.horizon, cost)) / search;
-        if (each < best.cost) best = {frames, margin, each};
-        if (frames == frames_left) break;
+        const double listed = seen.listed(margin);
+        const double served = cost_of_service(n, listed, cost) / search;
+        if (served >= std::min(best.cost, worth)) break;
+        const double made = cost_of_making(n, listed, cost) / static_cast<double>(after + 1) +
+                            cost_of_new_memory(n, listed, seen.horizon, cost);
+        const double each = served + made / search;
+        if (each <= as_little * best.cost) best = {after + 1, margin, std::min(each, best.cost)};
+        if (after == frames_left - 1) break;
     }
     if (best.cost >= worth) best.frames = 1;
     return best;
-}
-
-/// The margin of a plan that pays, longer where that costs next to nothing: boxes may move farther than they seem to.
-/// Where more margin is not known to list more, nothing is known of what it lists.
-[[nodiscard]] inline double spare_margin(const list_outlook& seen, const list_plan& plan,
-                                         const cost_model& cost = machine_costs()) {
-    constexpr double next_to_nothing = 1.01;
-    constexpr double longer = 1.5;
-    const auto n = static_cast<double>(seen.boxes);
-    const auto cost_of = [&](double margin) { return cost_of_list(n, pairs_listed(seen, margin), plan.frames, cost); };
-    const double most = next_to_nothing * cost_of(plan.margin);
-    double margin = plan.margin;
-    while (longer * margin <= seen.growth.longest_margin() &&
-           seen.growth.at(longer * margin) > seen.growth.at(margin) && cost_of(longer * margin) <= most)
-        margin *= longer;
-    return margin;
 }
 
 }  // namespace aabb

@@ -1,8 +1,6 @@
 module;
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -10,7 +8,6 @@ module;
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,15 +19,14 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
+import aabb.prepare.displacement_law;
 import aabb.prepare.grown_boxes;
-import aabb.prepare.list_forecast;
 import aabb.prepare.list_pause;
 import aabb.prepare.list_plan;
 import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
-import aabb.prepare.reach;
 import aabb.prepare.relative_motion;
-import aabb.prepare.rest_watch;
+import aabb.prepare.sample;
 import aabb.simd;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -39,6 +35,40 @@ import aabb.simd;
 namespace aabb {
 
 namespace {
+
+/// What is kept from frame to frame.
+enum class state : std::uint8_t {
+    nothing,    ///< and nothing is known yet, or a search has failed
+    searching,  ///< nothing, since no list was worth its cost; a few boxes are looked at now and then
+    watching,   ///< the boxes of a frame, to see how far they go from there before lists are given up
+    resting,    ///< the pairs of a frame, which are those of later ones until a box moves
+    listing     ///< the pairs of a frame's boxes grown by a margin
+};
+
+/// What a frame shows.
+enum class sight : std::uint8_t {
+    as_before,  ///< what is kept holds its pairs; while no pairs are, no list is in sight
+    settled,    ///< the same, and boxes no longer move
+    changed,    ///< what is kept may lack some; while no pairs are, a list may be worth its cost
+    arrival     ///< an object came
+};
+
+/// What is done then.
+enum class step : std::uint8_t {
+    search,  ///< the boxes as they are
+    keep,    ///< their pairs, too: until a box moves, and to see how far it does
+    plan,    ///< a list, or the next frames without one
+    repeat,  ///< the pairs that are kept
+    serve,   ///< those of them that meet
+    settle   ///< these, and keep them
+};
+
+/// By state and sight.
+constexpr step steps[5][4]{{step::plan, step::plan, step::plan, step::plan},
+                           {step::search, step::search, step::keep, step::search},
+                           {step::search, step::search, step::plan, step::plan},
+                           {step::repeat, step::repeat, step::plan, step::keep},
+                           {step::serve, step::settle, step::plan, step::plan}};
 
 class neighbour_list_stage final : public global_stage {
 public:
@@ -59,95 +89,46 @@ public:
     void search(std::vector<index_pair>& pairs) override;
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
-    [[nodiscard]] std::vector<std::string> plans() const override;
+    [[nodiscard]] std::vector<stage_plan> plans() const override;
     [[nodiscard]] std::vector<omission> left_out() const override;
 
 private:
-    /// Where the pairs of a frame come from.
-    enum class source : std::uint8_t {
-        list,   ///< which may hold others too
-        whole,  ///< the list, which is of these very boxes
-        search  ///< of these boxes, of which nothing is kept
-    };
-
-    struct wanted_list {
+    struct next_list {
+        std::size_t frames;  ///< that it is to serve; 0 where nobody reckoned
         double margin;
-        bool about_kept = false;  ///< about the boxes in `kept_`, not those of this frame
+        bool about_kept = false;  ///< boxes, not those of this frame
     };
 
-    /// Whether pairs that are sure meet in this frame.
-    [[nodiscard]] bool is_within() const noexcept { return moved_both_ways_ <= margin_; }
-    /// In what a plan promises.
-    [[nodiscard]] double trust() const noexcept {
-        return objects_.size() <= hardly_any_boxes ? trust_in_hardly_any * trust_ : trust_;
-    }
-    /// Whether the list is to serve more than a few frames yet, as far as anybody reckoned.
-    [[nodiscard]] bool is_to_serve_on() const noexcept { return planned_ == 0 || planned_ >= age_ + frames_of_sure; }
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
-    [[nodiscard]] bool rests(std::span<const box> boxes);
-    [[nodiscard]] bool serves(std::span<const box> boxes);
-    [[nodiscard]] std::optional<wanted_list> next_list(std::span<const box> boxes, bool same_objects);
-    [[nodiscard]] std::optional<wanted_list> watched(std::span<const box> boxes, bool same_objects);
-    void pass_over(std::span<const box> boxes);
-    [[nodiscard]] std::optional<wanted_list> paying_list(std::span<const box> boxes, bool same_objects);
-    [[nodiscard]] std::optional<double> margin_about_kept(const list_plan& plan) const;
-    [[nodiscard]] bool serves_as_well(const list_plan& plan) const;
-    [[nodiscard]] bool repeats_plan(std::span<const box> boxes);
-    [[nodiscard]] bool serves_few_well() const;
-    [[nodiscard]] double first_margin(std::span<const box> boxes);
-    [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
-        return list_forecast::is_far_too_long(forecast_.reach(boxes, objects_, margin), objects_.size(), found_);
-    }
-    [[nodiscard]] list_outlook outlook() const {
-        return forecast_.outlook(motion_, objects_.size(), found_, horizon());
-    }
-    [[nodiscard]] list_horizon horizon() const noexcept {
-        const bool goes_on = frames_ >= expected_;
-        return {.frames_left = goes_on ? std::numeric_limits<std::size_t>::max() : expected_ - frames_,
-                .in_new_memory = grown_.capacity() == 0};
-    }
-    void search_as_it_is(std::span<const box> boxes);
-    void keep(std::span<const box> boxes, wanted_list next);
-    void judge_first_list();
-    void learn_from_first_list();
-    void keep_those_that_meet(std::span<const box> boxes);
-    [[nodiscard]] std::optional<list_plan> shorter_list() const;
-    void shorten_as_planned(const list_plan& plan);
-    void shorten_list(double margin);
+    [[nodiscard]] bool has_few_boxes() const noexcept { return adapts() && objects_.size() < fewest_boxes; }
+    /// Whether pairs that are sure meet in this frame.
+    [[nodiscard]] bool is_within() const noexcept { return moved_.both_ways <= margin_; }
+    void note_arrivals(bool any) noexcept;
+    [[nodiscard]] sight look(std::span<const box> boxes, bool comes_any);
+    [[nodiscard]] sight look_at_few(std::span<const box> boxes);
+    [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin);
+    [[nodiscard]] std::optional<next_list> first_list(std::span<const box> boxes);
+    [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool has_ended);
+    void plan(std::span<const box> boxes, bool has_ended);
+    void keep(std::span<const box> boxes, next_list next);
+    void serve(std::span<const box> boxes);
+    void settle(std::span<const box> boxes);
+    void shorten_if_it_pays();
     void count_tests(std::size_t tests) noexcept {
         if (counted_ == instrumentation::counters) tests_counted_ += tests;
     }
 
-    /// Where no list pays, boxes are watched so many frames, or less if they move on and on, and then left alone.
-    static constexpr std::uint32_t longest_watch = 8;
-    /// A list that costs so many times what a search does is not waited for.
-    static constexpr double hopeless = 3;
+    /// Fewer are searched in the time that it takes to watch them.
+    static constexpr std::size_t fewest_boxes = 2 * simd::width + 1;
     /// Of fewer frames in all, the first one gets no list: how boxes move is not known, and a list that is made in new
     /// memory takes as long as searching several frames.
     static constexpr std::size_t fewest_frames_of_first_list = 64;
-    /// Fewer are searched in the time that it takes to watch them.
-    static constexpr std::size_t fewest_boxes_of_list = 2 * simd::width + 1;
-    /// Of fewer boxes any list is short.
-    static constexpr std::size_t fewest_boxes_of_long_list = 256;
-    /// Lists of so few take more time than is reckoned: the code of a list is seldom at hand.
-    static constexpr std::size_t hardly_any_boxes = 64;
-    static constexpr double trust_in_hardly_any = 0.75;
-    /// Of plans, after one whose list ended in less than half of its time.
-    static constexpr double less_trust = 0.8;
-    static constexpr double least_trust = 0.5;
-    static constexpr std::size_t longest_history = 256;
-    /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
-    static constexpr unsigned longest_repetition = 16;
-    /// A list of few boxes that lasts so many frames is good enough.
-    static constexpr std::size_t frames_of_good_list = 8;
-    /// To tell which pairs are sure takes longer than to test them, so a list is to have served before, and to serve so
-    /// many frames yet.
-    static constexpr std::uint32_t frames_before_sure = 2;
-    static constexpr std::uint32_t frames_of_sure = 4;
     /// Of the first list, in typical extents: the best where one margin must do for any scene.
     static constexpr double extents_of_first_margin = 0.1;
-    /// So many times as long where hardly any boxes come into reach by that.
-    static constexpr double longer_where_sparse = 3;
+    /// Frames for which boxes are watched before lists are given up.
+    static constexpr std::size_t longest_watch = 8;
+    /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
+    static constexpr unsigned longest_repetition = 8;
 
     std::unique_ptr<global_stage> search_;
     neighbour_list_prepare::config config_;
@@ -156,38 +137,25 @@ private:
     membership objects_;
     frame_state frame_;
     std::span<const box> boxes_;
-    source from_ = source::search;
-    std::vector<box> kept_;          // boxes that the list is about
-    std::vector<box> grown_;         // the same with their margin
-    pair_list list_;                 // what it found, less the pairs of objects that have left
-    bool is_kept_ = false;           // false where that search failed, or there was none
-    bool is_about_earlier_ = false;  // frame than the one in which it was made
-    double moved_both_ways_ = 0;     // by the boxes of this frame, see `relative_motion`
-    std::uint32_t served_ = 0;       // frames, by the list
-    bool is_too_long_ = false;       // so that a search takes less time
-    bool is_first_ = true;           // nothing is known of the scene yet
-    bool seems_sparse_ = false;      // to who looked at some boxes, before the first list was made
-    bool has_learned_ = false;       // from the first list, how long others are
+    state state_ = state::nothing;
+    std::vector<box> kept_;   // boxes that the list is about
+    std::vector<box> grown_;  // the same with their margin
+    pair_list list_;          // what it found, less the pairs of objects that have left
     double margin_ = 0;
     double margin_when_made_ = 0;  // of the list, which may have been shortened since
-    std::vector<double> motion_;   // since boxes were kept, at most until that frame, frame by frame
-    std::uint32_t age_ = 0;        // frames since then
-    std::size_t planned_ = 0;      // frames since then until which the list is to serve; 0 where nobody reckoned
-    double planned_for_ = 0;       // the farthest that boxes had moved when that was reckoned
+    relative_motion moved_{};      // from the kept boxes to those of this frame
+    std::size_t age_ = 0;          // frames for which they have been watched
+    std::size_t made_at_ = 0;      // age at which the list was made
+    bool has_rested_ = false;      // for some frames
+    std::size_t planned_ = 0;      // frames that the list is to serve; 0 where nobody reckoned
     unsigned repeated_ = 0;        // lists made since by the same plan
-    std::size_t found_ = 0;        // pairs of the frame before
-    list_forecast forecast_;
-    rest_watch rest_;
-    bool is_as_kept_ = false;  // in the frame before
-    bool came_to_rest_ = false;
-    bool rested_ = false;        // since the list was kept
-    double trust_ = 1;           // what must be promised for a list to be worth it, after lists that ended early
-    double cost_ = 0;            // of the cheapest list that was thought of last, over that of a search
-    bool watches_ = false;       // how far boxes are from those that are kept, without a list
-    bool watches_long_ = false;  // before anything is planned
+    list_outlook outlook_;
     list_pause pause_;
-    std::size_t frames_ = 0;  // before this one
+    std::uint32_t drawn_ = 0;  // see `drawn_id`
+    std::size_t frames_ = 0;   // before this one
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();
+    std::size_t since_arrival_ = 0;  // frames
+    std::size_t between_arrivals_ = std::numeric_limits<std::size_t>::max();
 };
 
 void neighbour_list_stage::update(std::span<const box> boxes) {
@@ -199,34 +167,22 @@ void neighbour_list_stage::update(std::span<const box> boxes) {
     const bool leaves_any = objects_.any_departures();
     frame_.change([&] { objects_.settle(); });
     // At once: the frame may be refused yet, and who left is not told again.
-    if (leaves_any && is_kept_)
+    if (leaves_any && state_ >= state::resting)
         list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
-    if (adapts() && objects_.size() < fewest_boxes_of_list) {
-        search_as_it_is(boxes);
-    } else if (adapts() && is_first_ && !is_kept_ && horizon().frames_left < fewest_frames_of_first_list) {
-        is_first_ = false;
-        pause_.begin_with_look();
-        pass_over(boxes);
-        search_as_it_is(boxes);
-    } else if (pause_.lasts()) {
-        pass_over(boxes);
-        search_as_it_is(boxes);
-    } else if (!is_kept_ || comes_any || !rests(boxes)) {
-        const bool same_objects = !comes_any && boxes.size() == kept_.size();
-        if (adapts() && is_kept_ && is_first_) judge_first_list();
-        if (is_kept_ && same_objects && serves(boxes) && !is_too_long_) {
-            require_valid(boxes);
-            if (came_to_rest_)
-                keep_those_that_meet(boxes);
-            else if (const std::optional<list_plan> shorter = adapts() ? shorter_list() : std::nullopt)
-                shorten_as_planned(*shorter);
-            else if (margin_ > 0 && config_.every == 0 && ++served_ == frames_before_sure && is_to_serve_on())
-                list_.tell_sure(kept_, margin_);
-        } else if (const std::optional<wanted_list> next =
-                       watches_ ? watched(boxes, same_objects) : next_list(boxes, same_objects)) {
-            keep(boxes, *next);
-        } else {
-            search_as_it_is(boxes);
+    note_arrivals(comes_any);
+    if (has_few_boxes()) {
+        state_ = state::nothing;
+        search_->update(boxes);
+    } else {
+        const sight seen = look(boxes, comes_any);
+        switch (steps[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
+            case step::search: search_->update(boxes); break;
+            case step::keep: keep(boxes, {0, 0}); break;
+            // The boxes of who has come since others were kept say nothing, and may be none.
+            case step::plan: plan(boxes, seen == sight::changed && age_ > 0 && !comes_any); break;
+            case step::repeat: has_rested_ = true; break;
+            case step::serve: serve(boxes); break;
+            case step::settle: settle(boxes); break;
         }
     }
     ++frames_;
@@ -237,14 +193,16 @@ void neighbour_list_stage::search(std::vector<index_pair>& pairs) {
     frame_.require_taken();
     require_ieee_arithmetic();
     const std::size_t before = pairs.size();
-    if (from_ == source::search) {
-        search_->search(pairs);
-    } else if (from_ == source::whole) {
-        pairs.insert(pairs.end(), list_.whole().begin(), list_.whole().end());
-    } else {
-        append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within())); });
+    switch (state_) {
+        case state::nothing:
+        case state::searching:
+        case state::watching: search_->search(pairs); break;
+        case state::resting: pairs.insert(pairs.end(), list_.whole().begin(), list_.whole().end()); break;
+        case state::listing:
+            append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within())); });
+            break;
     }
-    found_ = pairs.size() - before;
+    outlook_.pairs = pairs.size() - before;
 }
 
 work_counters neighbour_list_stage::counters() const {
@@ -255,301 +213,220 @@ work_counters neighbour_list_stage::counters() const {
 
 std::vector<part_bytes> neighbour_list_stage::bytes() const {
     std::vector<part_bytes> parts = search_->bytes();
-    parts.push_back(
-        {"prepare", bytes_of(objects_) + bytes_of(kept_) + bytes_of(grown_) + list_.bytes() + bytes_of(motion_)});
+    parts.push_back({"prepare", bytes_of(objects_) + bytes_of(kept_) + bytes_of(grown_) + list_.bytes()});
     return parts;
 }
 
-std::vector<std::string> neighbour_list_stage::plans() const {
-    std::vector<std::string> all = search_->plans();
-    if (from_ == source::list)
-        all.push_back("a list of " + std::to_string(list_.size()) + " pairs, of boxes " +
-                      (is_about_earlier_ ? "as they were before, " : "") + "grown by " +
-                      shortest(static_cast<float>(margin_)) + " on every side");
-    else if (from_ == source::whole)
-        all.emplace_back("the pairs of a frame since which nothing has moved");
+std::vector<stage_plan> neighbour_list_stage::plans() const {
+    std::vector<stage_plan> all = search_->plans();
+    if (state_ == state::listing)
+        all.push_back({"list of neighbours",
+                       {"a list of {pairs} pairs, of boxes grown by {margin} on every side",
+                        {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
+    else if (state_ == state::resting)
+        all.push_back({"frame at rest", {"the pairs of a frame since which nothing has moved"}});
     return all;
 }
 
 std::vector<omission> neighbour_list_stage::left_out() const {
     std::vector<omission> absent = search_->left_out();
-    if (from_ == source::search)
-        absent.push_back(
-            {"no list of neighbours",
-             adapts() && objects_.size() < fewest_boxes_of_list ? "so few boxes are searched as soon as watched"
-             : expected_ < fewest_frames_of_first_list ? "none has been seen to repay its making in so few frames"
-             : watches_                                ? "boxes are watched for how far they move"
+    if (state_ <= state::watching)
+        absent.push_back({"no list of neighbours", has_few_boxes() ? "so few boxes are searched as soon as watched"
+                                                   : expected_ < fewest_frames_of_first_list
+                                                       ? "none has been seen to repay its making in so few frames"
                                                        : "boxes move too far, or come too often, for one to pay"});
     return absent;
 }
 
-/// Whether nothing has moved since a search of boxes as they were, so that the list is the answer.
-bool neighbour_list_stage::rests(std::span<const box> boxes) {
-    if (!adapts() || margin_ > 0 || boxes.empty() || boxes.size() != kept_.size() ||
-        std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) != 0)
-        return false;
-    motion_.clear();
-    rested_ = true;
-    from_ = source::whole;
-    return true;
+/// No list serves beyond the next arrival, which is to come as soon as the last one did, or later where it is late.
+void neighbour_list_stage::note_arrivals(bool any) noexcept {
+    if (any && frames_ > 0) between_arrivals_ = since_arrival_;
+    since_arrival_ = any ? 1 : since_arrival_ + 1;
+    const std::size_t until_arrival = std::max(between_arrivals_, since_arrival_);
+    const std::size_t until_end = frames_ >= expected_ ? std::numeric_limits<std::size_t>::max() : expected_ - frames_;
+    outlook_.boxes = objects_.size();
+    outlook_.horizon = {.frames_left = std::min(until_arrival, until_end), .in_new_memory = grown_.capacity() == 0};
 }
 
-/// Whether every pair of the frame is in the list.
-bool neighbour_list_stage::serves(std::span<const box> boxes) {
+sight neighbour_list_stage::look(std::span<const box> boxes, bool comes_any) {
+    if (state_ == state::nothing) return sight::changed;
+    if (state_ == state::searching) return look_at_few(boxes);
+    if (comes_any || boxes.size() != kept_.size())
+        // Whoever comes to boxes at rest does not make them move.
+        return state_ == state::resting && !has_rested_ ? sight::changed : sight::arrival;
+    if (state_ == state::resting && std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) == 0)
+        return sight::as_before;
     ++age_;
-    from_ = source::list;
-    if (config_.every > 0 && config_.margin) return age_ < config_.every;
-    const relative_motion moved = motion_between(kept_, boxes, objects_);
-    moved_both_ways_ = moved.both_ways;
-    if (motion_.size() < longest_history)
-        motion_.push_back(motion_.empty() ? moved.margin : std::max(motion_.back(), moved.margin));
-    if (!moved.any && margin_ == 0) from_ = source::whole;
-    if (config_.every > 0) return age_ < config_.every;
-    // For one frame stands still what is about to fall, and what swings may be back where it was kept.
-    const bool stood = std::exchange(is_as_kept_, !moved.any);
-    came_to_rest_ = adapts() && margin_ > 0 && ((stood && is_as_kept_) || rest_.came_to_rest(boxes, moved.margin));
-    return moved.margin <= margin_;
-}
-
-/// The list that is to be kept now; none where none pays. After a pause a frame is kept as it is, to see how boxes
-/// move, and one of boxes that came to rest, to be the answer until they move.
-auto neighbour_list_stage::next_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
-    constexpr wanted_list of_boxes_as_they_are{.margin = 0};
-    forecast_.foresee_nothing();
-    if (config_.margin) return wanted_list{typical_extents(*config_.margin, boxes, objects_)};
-    const bool comes_to_rest = std::exchange(came_to_rest_, false);
-    if (adapts() && is_first_) return wanted_list{first_margin(boxes)};
-    // Whoever comes to boxes at rest does not make them move.
-    if (!is_kept_ || comes_to_rest || (rested_ && motion_.empty())) return of_boxes_as_they_are;
-    if (config_.every > 0)
-        return motion_.empty() || config_.every == 1 ? of_boxes_as_they_are
-                                                     : wanted_list{margin_after(motion_, config_.every - 1)};
-    const bool was_shortened = margin_ < margin_when_made_;
-    if (margin_ > 0 && planned_ > 1 && !was_shortened)
-        trust_ = 2 * std::size_t{age_} < planned_ ? std::max(least_trust, less_trust * trust_) : 1;
-    const bool is_first_look = margin_ == 0 && motion_.size() == 1;
-    // Of a plan that was so wrong, less was known than it seemed.
-    watches_long_ = margin_ > 0 && planned_ > 4 * std::size_t{age_};
-    if (const std::optional<wanted_list> next = paying_list(boxes, same_objects)) return next;
-    // What jiggles about its place shows it only after some frames.
-    watches_ = (is_first_look || margin_ > 0) && cost_ < hopeless && age_ < longest_watch;
-    if (!watches_) pause_.begin(objects_.size());
-    return std::nullopt;
-}
-
-/// The list that is to be kept now, while nothing is kept but boxes of some frames before; none where none pays yet.
-auto neighbour_list_stage::watched(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
-    ++age_;
-    std::optional<wanted_list> next;
-    bool drifts = false;
-    if (same_objects && std::has_single_bit(age_)) {
-        const double half_way = motion_.back();
-        motion_.resize(age_, std::max(half_way, motion_between(kept_, boxes, objects_).margin));
-        drifts = motion_.back() > 1.8 * half_way;
-        if (!watches_long_ || age_ == longest_watch) next = paying_list(boxes, same_objects);
+    // Ever less often, as long as nothing hangs on it.
+    if (state_ == state::watching && !std::has_single_bit(age_)) return sight::as_before;
+    const bool is_due = config_.every > 0 && age_ >= config_.every;
+    if (config_.every > 0 && config_.margin) return is_due ? sight::changed : sight::as_before;
+    const relative_motion before = std::exchange(moved_, motion_between(kept_, boxes, objects_));
+    outlook_.law.observe(age_, moved_.margin);
+    if (config_.every > 0) return is_due ? sight::changed : sight::as_before;
+    if (state_ != state::listing || moved_.margin > margin_) return sight::changed;
+    if (!adapts()) return sight::as_before;
+    if (age_ == made_at_ + 1 && !pays(objects_.size(), outlook_.pairs, list_.size())) {
+        // Not since boxes moved too far.
+        planned_ = 0;
+        return sight::changed;
     }
-    watches_ = same_objects && !next && !drifts && age_ < longest_watch;
-    if (!watches_ && !next) pause_.begin(objects_.size());
+    // As far as in the frame before, to the last bit, are boxes that stand; what falls together moves by roundings.
+    return age_ > 1 && moved_ == before ? sight::settled : sight::as_before;
+}
+
+sight neighbour_list_stage::look_at_few(std::span<const box> boxes) {
+    if (!pause_.lasts()) return sight::changed;
+    if (pause_.pass(boxes, objects_, outlook_, drawn_)) {
+        // What lists held so long ago tells nothing.
+        outlook_.correction = 1;
+        release(kept_);
+        release(grown_);
+        list_.release();
+    }
+    return pause_.lasts() ? sight::as_before : sight::changed;
+}
+
+/// Whether half of a list would not be worth its cost, by a rough count of it: it may hold each box with every other,
+/// whatever is reckoned.
+bool neighbour_list_stage::is_far_too_long(std::span<const box> boxes, double margin) {
+    constexpr std::size_t by_chance = 8;
+    const rough_reach reach = rough_reach_of(boxes, objects_, drawn_, margin);
+    const auto overlapping = std::max(outlook_.pairs, static_cast<std::size_t>(reach.overlapping));
+    return reach.counted >= by_chance &&
+           !pays(objects_.size(), overlapping, static_cast<std::size_t>(reach.in_reach / 2));
+}
+
+/// Before anything is known.
+auto neighbour_list_stage::first_list(std::span<const box> boxes) -> std::optional<next_list> {
+    outlook_.pairs = 0;
+    outlook_.look_anew(boxes, objects_, drawn_);
+    if (outlook_.horizon.frames_left < fewest_frames_of_first_list) {
+        pause_.begin_with_look();
+        static_cast<void>(look_at_few(boxes));
+        return std::nullopt;
+    }
+    const double margin = typical_extents(extents_of_first_margin, boxes, objects_);
+    return next_list{0, is_far_too_long(boxes, margin) ? 0 : margin};
+}
+
+/// The list that costs least from how far boxes moved, or the last one again where that lasted as planned; none where
+/// none is worth its cost, or boxes turned out to move by far more than was thought, so that they are to be watched.
+auto neighbour_list_stage::planned_list(std::span<const box> boxes, bool has_ended) -> std::optional<next_list> {
+    const bool is_list = state_ == state::listing;
+    const bool has_failed = has_ended && is_list && 2 * (age_ - made_at_) < planned_;
+    // Else the pause that may follow is longer than the last one.
+    if (is_list ? !has_failed : has_rested_) pause_.shorten();
+    if (has_failed) return std::nullopt;
+    if (has_ended && is_list && made_at_ == 0 && planned_ <= age_ && age_ < 2 * planned_ &&
+        repeated_ < longest_repetition && !is_far_too_long(boxes, margin_)) {
+        ++repeated_;
+        return next_list{planned_, margin_};
+    }
+    repeated_ = 0;
+    outlook_.look_anew(boxes, objects_, drawn_);
+    if (is_list) outlook_.learn(margin_, list_.size());
+    const list_plan best = plan_list(outlook_);
+    next_list next{best.frames, best.margin};
+    // What gets less far than a random walk swings about its place. Of that it is known how far it goes from the boxes
+    // that are kept, but not from those of this frame, which may be at one end of their ways.
+    constexpr double random_walk = 0.5;
+    if (best.frames > 1 && has_ended && outlook_.law.exponent() < random_walk)
+        next = {best.frames, outlook_.law.after(age_ + best.frames - 1), true};
+    if (best.frames < 2 || is_far_too_long(boxes, next.margin)) return std::nullopt;
     return next;
 }
 
-void neighbour_list_stage::pass_over(std::span<const box> boxes) {
-    if (!pause_.pass(boxes, objects_, found_, forecast_, horizon(), trust() * worth_a_list)) return;
-    release(kept_);
-    release(grown_);
-    list_.release();
-}
-
-auto neighbour_list_stage::paying_list(std::span<const box> boxes, bool same_objects) -> std::optional<wanted_list> {
-    const bool lasted_as_planned = is_kept_ && margin_ > 0 && !motion_.empty() && planned_ > 1 && age_ >= planned_;
-    // A list about an earlier frame ended because boxes went farther from there: from here they may go twice as far.
-    const bool serves_well = serves_few_well();
-    if (!is_about_earlier_ && (serves_well || (lasted_as_planned && repeats_plan(boxes)))) {
-        if (serves_well && planned_ > 0) planned_ = std::max(planned_, frames_of_good_list);
-        const bool is_sparse = ++repeated_ == 1 && !has_learned_ && list_.size() < objects_.size() / 4;
-        return wanted_list{is_sparse ? longer_where_sparse * margin_ : margin_};
+void neighbour_list_stage::plan(std::span<const box> boxes, bool has_ended) {
+    std::optional<next_list> next;
+    if (config_.margin) {
+        outlook_.look_anew(boxes, objects_, drawn_);
+        next = {0, typical_extents(*config_.margin, boxes, objects_)};
+    } else if (config_.every > 0) {
+        const displacement_law& law = outlook_.law;
+        next = {0, law.age() == 0 || config_.every == 1 ? 0 : law.after(config_.every - 1)};
+    } else if (state_ == state::nothing) {
+        next = first_list(boxes);
+    } else {
+        next = planned_list(boxes, has_ended);
     }
-    if (age_ <= 1)
-        forecast_.look_anew(boxes, objects_);
-    else
-        forecast_.look_anew_at_other_sizes(boxes, objects_);
-    if (!has_learned_ && margin_ > 0) learn_from_first_list();
-    planned_for_ = motion_.empty() ? 0 : motion_.back();
-    repeated_ = 0;
-    for (;;) {
-        const list_plan plan = plan_list(outlook(), trust() * (lasted_as_planned ? worth_another_list : worth_a_list));
-        cost_ = plan.cost;
-        planned_ = plan.frames;
-        const bool pays = plan.frames > 1;
-        if (pays && serves_as_well(plan) && !is_far_too_long(boxes, margin_)) {
-            planned_ = age_;
-            forecast_.foresee(outlook(), margin_);
-            return wanted_list{margin_};
-        }
-        const std::optional<double> about_kept = pays && same_objects ? margin_about_kept(plan) : std::nullopt;
-        const double margin = pays ? std::max(spare_margin(outlook(), plan), about_kept.value_or(0)) : plan.margin;
-        const bool may_be_wrong =
-            forecast_.foresee(outlook(), margin) > 0 && objects_.size() >= fewest_boxes_of_long_list &&
-            (pays ? margin > 2 * forecast_.looked_up() : forecast_.looked_up() == 0 && cost_ < hopeless);
-        if (pays && is_far_too_long(boxes, margin)) return std::nullopt;
-        if (may_be_wrong && forecast_.look_up(boxes, objects_, margin, found_, pays)) continue;
-        if (!pays) return std::nullopt;
-        if (about_kept) planned_ += age_;
-        return wanted_list{margin, about_kept.has_value()};
+    if (next) return keep(boxes, *next);
+    if (state_ != state::nothing && has_ended && age_ < longest_watch) {
+        state_ = state::watching;
+    } else {
+        if (state_ != state::nothing) pause_.begin(objects_.size());
+        state_ = state::searching;
     }
-}
-
-/// The margin of a list about the boxes that are kept, for as long as the plan has it; none where they move on. Where
-/// they move about their places, it is known how far they go from those that are kept, but not from those of this
-/// frame, which may be at one end of their ways.
-std::optional<double> neighbour_list_stage::margin_about_kept(const list_plan& plan) const {
-    constexpr std::uint32_t fewest_frames = 4;
-    constexpr double a_little_longer = 1.1;
-    // A random walk gets 1.4 times as far in twice the time, a drift 2 times.
-    constexpr double moves_on = 1.7;
-    if (age_ < fewest_frames || motion_.size() != age_ || motion_.back() >= moves_on * motion_[age_ / 2 - 1])
-        return std::nullopt;
-    const double margin = margin_after(motion_, age_ + plan.frames - 1);
-    return margin <= a_little_longer * plan.margin ? std::optional(margin) : std::nullopt;
-}
-
-/// Whether the last list costs about as little as the next one is to: what is known to serve is not given up for a
-/// promise.
-bool neighbour_list_stage::serves_as_well(const list_plan& plan) const {
-    constexpr double about = 1.03;
-    if (!is_kept_ || margin_ == 0 || margin_ < margin_when_made_ || is_about_earlier_ || age_ < 2) return false;
-    const auto n = static_cast<double>(objects_.size());
-    const double search = cost_of_search(n, pairs_listed(outlook(), 0), machine_costs());
-    return cost_of_list(n, static_cast<double>(list_.size()), age_, machine_costs()) <= about * plan.cost * search;
-}
-
-/// Whether the next list is made as the last one was, since boxes moved as they did before it: of a few boxes, planning
-/// takes as long as searching them.
-bool neighbour_list_stage::repeats_plan(std::span<const box> boxes) {
-    constexpr double alike = 1.02;
-    return age_ == planned_ && motion_.back() <= alike * planned_for_ && planned_for_ <= alike * motion_.back() &&
-           repeated_ < longest_repetition && !is_far_too_long(boxes, margin_);
-}
-
-/// Whether the next list gets the margin of this one without a plan, since few boxes are searched in the time that a
-/// plan takes, and this one lasted.
-bool neighbour_list_stage::serves_few_well() const {
-    return is_kept_ && margin_ > 0 && !is_too_long_ && objects_.size() < fewest_boxes_of_long_list &&
-           repeated_ < longest_repetition && age_ >= std::max<std::size_t>(planned_, frames_of_good_list);
-}
-
-/// Of the first list, which is kept before anything is known; 0 where it would hold far too many.
-double neighbour_list_stage::first_margin(std::span<const box> boxes) {
-    const double margin = typical_extents(extents_of_first_margin, boxes, objects_);
-    found_ = 0;
-    if (objects_.size() < fewest_boxes_of_long_list) return margin;
-    const rough_reach longer = forecast_.reach(boxes, objects_, longer_where_sparse * margin);
-    seems_sparse_ = longer.counted == 0;
-    if (seems_sparse_) return longer_where_sparse * margin;
-    const bool may_be_too_long = list_forecast::is_far_too_long(longer, objects_.size(), found_);
-    return may_be_too_long && is_far_too_long(boxes, margin) ? 0 : margin;
-}
-
-void neighbour_list_stage::search_as_it_is(std::span<const box> boxes) {
-    is_kept_ = false;
-    from_ = source::search;
     search_->update(boxes);
 }
 
-/// What the list of the first frame tells, which was kept before anything was known.
-void neighbour_list_stage::judge_first_list() {
-    is_first_ = false;
-    if (margin_ == 0) return;
-    if (seems_sparse_ && list_.size() > objects_.size()) shorten_list(margin_ / longer_where_sparse);
-    is_too_long_ = !pays(objects_.size(), found_, list_.size());
+/// A list; or where it has no margin and may be given up, the pairs of these boxes until they move.
+void neighbour_list_stage::keep(std::span<const box> boxes, next_list next) {
+    state_ = state::nothing;
+    margin_ = margin_when_made_ = next.margin;
+    if (!next.about_kept) {
+        kept_.assign(boxes.begin(), boxes.end());
+        age_ = 0;
+        moved_ = {};
+        outlook_.law.begin();
+    }
+    made_at_ = age_;
+    planned_ = next.frames;
+    has_rested_ = false;
+    if (margin_ > 0) {
+        // Grown, an inverted box may be none. As they are, the search looks at them.
+        require_valid(boxes);
+        grown_.resize(boxes.size());
+        grow(kept_, margin_, grown_);
+    }
+    search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
+    search_->search(list_.begin());
+    state_ = adapts() && margin_ == 0 ? state::resting : state::listing;
 }
 
-/// What the length of the first list tells of others, when one is planned for the first time.
-void neighbour_list_stage::learn_from_first_list() {
-    has_learned_ = true;
-    forecast_.foresee(outlook(), margin_);
-    forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
-    forecast_.take_as_looked_up(margin_);
+/// A frame in which the list holds all pairs. At an age of two frames it shows how long it will serve.
+void neighbour_list_stage::serve(std::span<const box> boxes) {
+    require_valid(boxes);
+    if (adapts()) shorten_if_it_pays();
+    if (config_.every == 0 && age_ == made_at_ + 2 && pays_to_tell_sure(outlook_, list_.size(), margin_))
+        list_.tell_sure(kept_, margin_);
 }
 
-/// Of a list that serves boxes which came to rest.
-void neighbour_list_stage::keep_those_that_meet(std::span<const box> boxes) {
+/// Those that meet are all pairs until boxes move.
+void neighbour_list_stage::settle(std::span<const box> boxes) {
+    require_valid(boxes);
     if (!is_within()) list_.forget_sure();
     count_tests(list_.tested());
     list_.keep_meeting(boxes);
     list_.forget_sure();
     kept_.assign(boxes.begin(), boxes.end());
     margin_ = 0;
-    is_about_earlier_ = false;
-    motion_.clear();
-    came_to_rest_ = false;
-    rested_ = true;
+    planned_ = 0;
     age_ = 0;
-    from_ = source::whole;
+    made_at_ = 0;
+    has_rested_ = true;
+    outlook_.law.forget();
+    state_ = state::resting;
 }
 
-/// A list that serves for several times as long as this one has, where boxes move by so much less than this one allows
-/// that it holds many in vain; ever less often looked at.
-auto neighbour_list_stage::shorter_list() const -> std::optional<list_plan> {
-    constexpr std::uint32_t first_look = 8;
-    constexpr std::uint32_t times_as_long = 4;
-    constexpr double a_quarter_more = 1.25;
-    constexpr double worth_it = 0.7;
+/// Makes the list that a smaller margin would have made, without a search: where boxes move by so much less than this
+/// one allows that it holds many in vain. It is to serve for four times as long as it has; looked at ever less often.
+void neighbour_list_stage::shorten_if_it_pays() {
+    constexpr std::size_t first_look = 8;
+    constexpr std::size_t times_as_long = 4;
     // Shorter, it lists hardly fewer, and roundings may end it.
     constexpr double shortest = 1.0 / 16;
-    if (age_ < first_look || !std::has_single_bit(age_) || motion_.size() < age_) return std::nullopt;
-    const std::size_t frames = times_as_long * std::size_t{age_};
-    if (!pays_to_shorten(objects_.size(), found_, list_.tested(), frames - age_)) return std::nullopt;
-    // What got more than twice as far in twice the time is to do so in the next two doublings, too.
-    const double speeds_up = std::max(1.0, motion_.back() / (2 * motion_[age_ / 2 - 1]));
-    const double needed = a_quarter_more * speeds_up * speeds_up * margin_after(motion_, frames);
-    const double margin = std::max(needed, shortest * margin_when_made_);
-    return margin < worth_it * margin_ ? std::optional(list_plan{.frames = frames, .margin = margin}) : std::nullopt;
-}
-
-void neighbour_list_stage::shorten_as_planned(const list_plan& plan) {
-    planned_ = plan.frames;
-    planned_for_ = motion_.back();
-    shorten_list(plan.margin);
-}
-
-/// The list that a smaller margin would have made, without a search.
-void neighbour_list_stage::shorten_list(double margin) {
+    if (age_ < first_look || !std::has_single_bit(age_)) return;
+    const std::size_t frames = times_as_long * age_;
+    if (!pays_to_shorten(objects_.size(), outlook_.pairs, list_.tested(), frames - age_)) return;
+    const double margin = std::max(outlook_.law.after(frames), shortest * margin_when_made_);
+    if (!(margin < margin_ / 2)) return;
     margin_ = margin;
+    planned_ = 0;
     grow(kept_, margin_, grown_);
     count_tests(list_.tested());
     list_.keep_meeting(grown_);
     list_.tell_sure(kept_, margin_);
-}
-
-void neighbour_list_stage::keep(std::span<const box> boxes, wanted_list next) {
-    is_kept_ = false;
-    is_about_earlier_ = next.about_kept;
-    margin_ = margin_when_made_ = next.margin;
-    is_as_kept_ = false;
-    if (!is_about_earlier_) {
-        kept_.assign(boxes.begin(), boxes.end());
-        motion_.clear();
-        age_ = 0;
-    }
-    if (margin_ > 0) {
-        // Grown, an inverted box may be none. As they are, the search looks at them.
-        require_valid(boxes);
-        pause_.shorten();
-        grown_.resize(boxes.size());
-        grow(kept_, margin_, grown_);
-    }
-    search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
-    const std::size_t listed_before = list_.size();
-    search_->search(list_.begin());
-    served_ = 0;
-    forecast_.correct(static_cast<double>(list_.size()) - static_cast<double>(found_));
-    // Nobody reckons a list that repeats another: then it is to be about as long.
-    const bool is_judged = forecast_.is_reckoned() || (repeated_ > 0 && list_.size() > 2 * listed_before);
-    is_too_long_ = is_judged && !pays(objects_.size(), found_, list_.size());
-    rested_ = false;
-    is_kept_ = true;
-    from_ = margin_ > 0 ? source::list : source::whole;
 }
 
 }  // namespace

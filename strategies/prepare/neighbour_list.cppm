@@ -1,5 +1,6 @@
 module;
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -9,6 +10,7 @@ module;
 
 export module aabb.prepare.neighbour_list;
 
+import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
 
@@ -20,15 +22,14 @@ export namespace aabb {
 /// go on, none of a pair that overlaps by more than two margins, which cannot part. What all move alike is no motion.
 /// An object that comes makes a search too.
 ///
-/// Without a margin of its own, each list gets the one that costs least, from how far boxes moved under the last one,
-/// or that of the last one where this costs about as little, and more where that lists next to no more. Of the first
-/// one nothing is known yet: it gets a tenth of the mean extent, and three where boxes lie further apart. Where no list
-/// pays, frames are searched as they are, and boxes watched in some of them. Where few frames are expected
-/// (`global_stage::expect`), no list is made before some of the boxes have shown that it repays its making in those
-/// that are left. Where boxes move by far less than was thought, the list becomes the one that a smaller margin would
-/// have made, once that pays; where they swing about their places by more, the next one is about where they were when
-/// the last one was made. What a search costs is reckoned as that of `columns`: before a slower one, lists are given up
-/// sooner than they need to be.
+/// Without a margin of its own, each list gets the one that costs least (`list_plan`), from how far boxes moved under
+/// the last one (`displacement_law`), or the longest of those that cost about as little. Of the first one nothing is
+/// known yet: it gets a tenth of the mean extent. Where no list is worth its cost, or boxes moved by far more than was
+/// planned for, frames are searched as they are, and a few boxes looked at in some of them (`list_pause`). Where few
+/// frames are expected (`global_stage::expect`), no list is made before some of the boxes have shown that it repays its
+/// making in those that are left. Where boxes move by far less than was thought, the list becomes the one that a
+/// smaller margin would have made, once that pays. What a search costs is reckoned as that of `columns`: before a
+/// slower one, lists are given up sooner than they need to be.
 ///
 /// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
 /// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
@@ -52,6 +53,17 @@ struct neighbour_list_prepare {
                          true},
         integer_parameter{"every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
                           "frames from one search to the next, inexact above 1; 0: when boxes have moved too far"}};
+
+    static constexpr std::array contrasts{std::string_view("margin=0.1")};
+    [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
+        constexpr std::size_t fewest = scene_outlook::fewest_frames_to_keep;
+        if (scene.frames < fewest)
+            return {.because = {{"fewer than {frames} frames: a list of neighbours would not repay its making",
+                                 {{{"frames", fewest}}}}}};
+        return {.serves = true,
+                .because = {{"frames follow each other: a list of neighbours is kept while boxes move little, and only "
+                             "then"}}};
+    }
 
     neighbour_list_prepare() = default;
     explicit neighbour_list_prepare(const config& c) : config_(c) {}

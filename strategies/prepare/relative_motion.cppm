@@ -27,11 +27,10 @@ struct motion_range {
                std::numeric_limits<float>::lowest()};
 };
 
-/// Of lower and of upper planes; and whether any plane moved at all.
+/// Of lower and of upper planes.
 struct plane_motion {
     motion_range lower;
     motion_range upper;
-    bool any = false;
 
     void take(const box& from, const box& to) noexcept {
         const auto widen = [](motion_range& range, int k, float moved) {
@@ -42,7 +41,6 @@ struct plane_motion {
             widen(lower, k, to.min[k] - from.min[k]);
             widen(upper, k, to.max[k] - from.max[k]);
         }
-        any |= from != to;
     }
 };
 
@@ -85,7 +83,6 @@ struct plane_motion {
             motion.upper.least[k] = std::min(motion.upper.least[k], down[3 + k]);
             motion.upper.most[k] = std::max(motion.upper.most[k], up[3 + k]);
         }
-        for (std::size_t i = 0; i < 6; ++i) motion.any |= down[i] != 0 || up[i] != 0;
     }
     for (std::size_t i = whole; i < to.size(); ++i) motion.take(from[i], to[i]);
     return motion;
@@ -98,7 +95,8 @@ export namespace aabb {
 struct relative_motion {
     double margin;     ///< see `motion_between`
     double both_ways;  ///< the same, and the least by which the earlier ones, shrunk, lie in the later ones
-    bool any;          ///< whether anything moved, though it were all alike
+
+    bool operator==(const relative_motion&) const = default;
 };
 
 }  // namespace aabb
@@ -111,7 +109,7 @@ namespace aabb::detail {
 }
 
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
-    relative_motion moved{0, 0, motion.any};
+    relative_motion moved{};
     for (int k = 0; k < 3; ++k) {
         moved.margin = std::max(moved.margin, margin_between(motion.lower.least[k], motion.upper.most[k]));
         moved.both_ways =

@@ -44,7 +44,7 @@ public:
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
-    [[nodiscard]] std::vector<std::string> plans() const override { return search_->plans(); }
+    [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
     [[nodiscard]] std::vector<omission> left_out() const override;
 
 private:

@@ -90,7 +90,7 @@ public:
         return all;
     }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return search_->bytes(); }
-    [[nodiscard]] std::vector<std::string> plans() const override { return search_->plans(); }
+    [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
     [[nodiscard]] std::vector<omission> left_out() const override { return search_->left_out(); }
 
 private:

@@ -29,8 +29,14 @@ template <Strategy S>
     if constexpr (requires { S::leaves_out; }) leaves_out.assign(S::leaves_out.begin(), S::leaves_out.end());
     std::string needs_meshes;
     if constexpr (requires { S::needs_meshes; }) needs_meshes = S::needs_meshes;
+    std::vector<strategy_choice> contrasts;
+    if constexpr (requires { S::contrasts; })
+        for (const std::string_view settings : S::contrasts)
+            contrasts.push_back(parse_strategy(std::string(S::name) + ":" + std::string(settings)));
+    scene_fit (*fit)(const scene_outlook&) = nullptr;
+    if constexpr (requires(const scene_outlook& scene) { S::fit(scene); }) fit = &S::fit;
     return {{std::string(S::name), std::string(S::summary), strategy_is_exact<S>, parameters_of<S>(), leaves_out,
-             needs_meshes},
+             needs_meshes, contrasts, fit},
             [](const strategy_choice& choice) { (void)configured<S>(choice.settings); },
             [](const strategy_choice& choice) { return is_exact_as<S>(configured<S>(choice.settings)); }};
 }

@@ -12,6 +12,7 @@ export module aabb.auto_detector;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 

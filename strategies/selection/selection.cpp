@@ -1,6 +1,5 @@
 module;
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -10,98 +9,32 @@ module;
 
 module aabb.selection;
 
-import aabb.costs;
+import aabb.base;
 import aabb.geometry;
-import aabb.local_detection;
 import aabb.policy;
 import aabb.registry;
-import aabb.wide_tree;
 
 namespace aabb {
 
 namespace {
 
-/// Of fewer, what is kept for later frames does not pay where it serves: the first list of neighbours or front, which
-/// takes about as long as two searches.
-constexpr std::size_t fewest_frames_to_keep = 4;
+/// What serves the scene better than the usual strategy; where none does, why the last that might does not.
+struct fitting {
+    std::string name;  ///< empty where none does
+    scene_fit fit;
+};
 
-/// From so many queries on, what a build takes longer for each triangle comes back where each query takes less by that
-/// share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with meshes
-/// of 5,000 to 200,000. Meshes are taken to be alike.
-/// @param longer in ns
-std::size_t queries_that_repay(double longer, double share, const scene_outlook& scene) {
-    constexpr double visits_a_root = 21;
-    constexpr double many = 1e18;
-    const auto triangles = static_cast<double>(scene.triangles);
-    if (triangles == 0) return static_cast<std::size_t>(many);
-    const double of_two = 2 * triangles / static_cast<double>(scene.meshes);
-    const double queries =
-        longer * triangles / (machine_costs().node_visit * visits_a_root * share * std::sqrt(of_two));
-    return static_cast<std::size_t>(std::clamp(std::ceil(queries), 0.0, many));
-}
-
-double sah_takes_longer() {
-    return machine_costs().sah_triangle - machine_costs().median_triangle;
-}
-
-/// Trees by `sah` are visited a twelfth less.
-std::size_t least_queries_of_sah(const scene_outlook& scene) {
-    return queries_that_repay(sah_takes_longer(), 1.0 / 12, scene);
-}
-
-/// Lists of the vertices of each leaf take about half as long to write as `sah` takes longer than `median`. A query is
-/// faster with them by a tenth where the two meshes have 150,000 triangles, whose vertices outgrow the second cache, by
-/// less where they have fewer, and hardly at all where these fit into it.
-std::size_t least_queries_of_vertex_lists(const scene_outlook& scene) {
-    const double of_two = 2 * static_cast<double>(scene.triangles) / static_cast<double>(scene.meshes);
-    return queries_that_repay(sah_takes_longer() / 2, std::clamp(of_two / 1'500'000, 1.0 / 200, 1.0 / 10), scene);
-}
-
-bool fetches_vertices(const scene_outlook& scene) {
-    constexpr std::size_t most_triangles_of_two = 200'000;
-    return scene.triangles > 0 && 2 * scene.triangles <= most_triangles_of_two * scene.meshes &&
-           scene.queries < least_queries_of_vertex_lists(scene);
-}
-
-/// More pairs of objects a frame than fronts are kept of would find none again.
-bool keeps_front(const scene_outlook& scene) {
-    constexpr std::size_t least_triangles = least_leaves_of_front * balanced_order::leaf_triangles;
-    return 2 * scene.triangles >= least_triangles * scene.meshes && scene.frames >= fewest_frames_to_keep &&
-           scene.queries <= scene.frames * most_fronts;
-}
-
-const char* prepare_for(const scene_outlook& scene) {
-    return scene.frames < fewest_frames_to_keep ? "none" : "neighbour_list";
-}
-const char* build_for(const scene_outlook& scene) {
-    return scene.triangles == 0 || scene.queries < least_queries_of_sah(scene) ? "median" : "sah";
-}
-
-std::string rule_of_prepare(const scene_outlook& scene) {
-    return scene.frames < fewest_frames_to_keep
-               ? "fewer than " + std::to_string(fewest_frames_to_keep) +
-                     " frames: a list of neighbours would not repay its making"
-               : "frames follow each other: a list of neighbours is kept while boxes move little, and only then";
-}
-std::string rule_of_build(const scene_outlook& scene) {
-    if (scene.triangles == 0) return "no meshes: nothing is built";
-    const std::string queries = std::to_string(scene.queries);
-    const std::string repaid = std::to_string(least_queries_of_sah(scene));
-    return scene.queries < least_queries_of_sah(scene)
-               ? "built fastest: queries are to be " + queries + ", and only from " + repaid +
-                     " on they repay a better tree"
-               : "queries are to be " + queries + ", and from " + repaid + " on they repay a better tree";
-}
-
-/// Of one that fetches vertices or keeps fronts.
-std::string rule_of_tree(const scene_outlook& scene) {
-    std::string rule;
-    if (fetches_vertices(scene))
-        rule = "queries are to be " + std::to_string(scene.queries) + ", and only from " +
-               std::to_string(least_queries_of_vertex_lists(scene)) + " on they repay lists of vertices";
-    if (fetches_vertices(scene) && keeps_front(scene)) rule += "; ";
-    if (keeps_front(scene)) rule += "frames follow each other: pairs of leaves are kept while meshes move little";
-    return rule;
+/// Among all of the kind where it stands apart, since they go with anything; else the one that the composition has.
+fitting fitting_of(strategy_kind kind, const composition& completed, const scene_outlook& scene) {
+    fitting last;
+    for (const strategy_info& info : strategies(kind)) {
+        if (!info.fit || (!info_of(kind).apart && info.name != completed[kind].name)) continue;
+        last.fit = info.fit(scene);
+        if (!last.fit.serves) continue;
+        last.name = info.name;
+        break;
+    }
+    return last;
 }
 
 /// What is named among what is fastest by itself, or where that is a sort, without a partition: what lies in columns is
@@ -113,7 +46,7 @@ composition completed(const named_strategies& named) {
     composition fastest;
     if (const std::optional<strategy_choice>& sort = named[strategy_kind::sort];
         sort && sort->name != fastest[strategy_kind::sort].name)
-        fastest[strategy_kind::partition] = {"none", {}};
+        fastest[strategy_kind::partition] = {std::string(info_of(strategy_kind::partition).beside), {}};
     for (const stage of : {stage::global_search, stage::local_detection}) {
         const auto take = [&](const composition& others) {
             for (const strategy_kind kind : strategy_kinds)
@@ -128,9 +61,10 @@ composition completed(const named_strategies& named) {
     return whole;
 }
 
-/// @param why it is taken; what it says of itself follows
-std::string rule_of(const std::string& why, strategy_kind kind, const std::string& name) {
-    return why + ": " + std::ranges::find(strategies(kind), name, &strategy_info::name)->summary;
+/// Of a strategy that depends on no scene; what it says of itself follows.
+std::string usual_rule(strategy_kind kind, const strategy_choice& choice) {
+    const std::string why = choice == composition()[kind] ? "the usual one" : "what goes with what is named";
+    return why + ": " + std::ranges::find(strategies(kind), choice.name, &strategy_info::name)->summary;
 }
 
 }  // namespace
@@ -144,7 +78,7 @@ scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std:
 }
 
 bool depends_on_scene(strategy_kind kind) {
-    return kind == strategy_kind::prepare || kind == strategy_kind::build || kind == strategy_kind::tree;
+    return std::ranges::any_of(strategies(kind), [](const strategy_info& info) { return info.fit != nullptr; });
 }
 
 composition complete_composition(const named_strategies& named) {
@@ -153,14 +87,16 @@ composition complete_composition(const named_strategies& named) {
 }
 
 void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene) {
-    if (!named[strategy_kind::prepare]) completed[strategy_kind::prepare].name = prepare_for(scene);
-    if (!named[strategy_kind::build]) completed[strategy_kind::build].name = build_for(scene);
-    if (strategy_choice& tree = completed[strategy_kind::tree];
-        !named[strategy_kind::tree] && tree.name == "implicit") {
-        tree.settings.clear();
-        if (fetches_vertices(scene)) tree.settings.push_back({"vertices", "fetched"});
-        if (keeps_front(scene) && is_exact(completed, stage::local_detection))
-            tree.settings.push_back({"front", "kept"});
+    scene_outlook seen = scene;
+    for (const strategy_kind kind : strategy_kinds) {
+        if (named[kind] || !depends_on_scene(kind)) continue;
+        strategy_choice& choice = completed[kind];
+        choice.settings.clear();
+        if (info_of(kind).apart) choice.name = info_of(kind).fallback;
+        seen.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
+        fitting best = fitting_of(kind, completed, seen);
+        if (!best.fit.serves) continue;
+        choice = {std::move(best.name), std::move(best.fit.settings)};
     }
 }
 
@@ -171,19 +107,16 @@ composition select_composition(const named_strategies& named, const scene_outloo
 }
 
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
-    const composition usual;
     const composition whole = select_composition(named, scene);
+    scene_outlook seen = scene;
+    seen.exact_triangles = is_exact(whole, stage::local_detection);
     std::vector<selected_strategy> all;
     for (const strategy_kind kind : strategy_kinds) {
-        std::string rule =
-            named[kind]                      ? "as it is named"
-            : kind == strategy_kind::prepare ? rule_of_prepare(scene)
-            : kind == strategy_kind::build   ? rule_of_build(scene)
-            : kind == strategy_kind::tree && whole[kind] != usual[kind] && whole[kind].name == usual[kind].name
-                ? rule_of_tree(scene)
-                : rule_of(whole[kind] == usual[kind] ? "the usual one" : "what goes with what is named", kind,
-                          whole[kind].name);
-        all.push_back({kind, whole[kind], std::move(rule)});
+        std::string rule;
+        for (const statement& reason : fitting_of(kind, whole, seen).fit.because)
+            rule += (rule.empty() ? "" : "; ") + to_text(reason);
+        if (rule.empty()) rule = usual_rule(kind, whole[kind]);
+        all.push_back({kind, whole[kind], named[kind] ? "as it is named" : rule});
     }
     return all;
 }

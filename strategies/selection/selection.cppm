@@ -13,15 +13,6 @@ import aabb.registry;
 
 export namespace aabb {
 
-/// What is known of a scene before it is played. What boxes do from frame to frame is left to strategies that watch it:
-/// `neighbour_list`, and the plans of `columns`.
-struct scene_outlook {
-    std::size_t frames = 1;
-    std::size_t triangles = 0;  ///< of all meshes; 0 where there are boxes only
-    std::size_t queries = 1;    ///< of two meshes, that trees are to serve
-    std::size_t meshes = 2;     ///< that the triangles are of; at least 1
-};
-
 /// Of moving meshes: each object is held against one other a frame, as a guess.
 [[nodiscard]] scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames);
 
@@ -35,13 +26,14 @@ struct selected_strategy {
 /// Whether what is selected for the kind depends on the scene.
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
-/// A strategy for each kind: what is named stays; `prepare`, `build` and `tree` are what serves the scene; the others
-/// are what is fastest by itself, or where that cannot be composed with it, what can.
+/// A strategy for each kind: what is named stays; where some strategy of the kind says which scenes it serves (`fit`),
+/// the first one that serves this one, or the usual one; the others are what is fastest by itself, or where that cannot
+/// be composed with it, what can.
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] composition select_composition(const named_strategies& named, const scene_outlook& scene);
 
 /// The same in two steps. The first does not depend on the scene, and may take ten microseconds; the second changes a
-/// composition in place, and takes a tenth of one. It may have been selected for another scene before.
+/// composition in place, and takes less than one. It may have been selected for another scene before.
 [[nodiscard]] composition complete_composition(const named_strategies& named);
 void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene);
 

@@ -174,25 +174,10 @@ TEST_CASE("columns are fewer where they cost more, and more where tests do") {
     CHECK(subsets_made({}, boxes) > usual);
 }
 
-TEST_CASE("the next of lists that last may cost a little more than the first") {
-    const std::vector<box> boxes = spread_boxes(16);
-    const auto frames_of_some = [&](double worth) {
-        std::size_t planned = 0;
-        for (double step = 0.001; step < 1; step *= 1.02) {
-            const std::vector<double> motion{step, 2 * step, 3 * step, 4 * step};
-            const list_outlook seen{motion, 1000, 1000, growth_of_pairs(boxes)};
-            planned += plan_list(seen, worth).frames > 1;
-        }
-        return planned;
-    };
-    CHECK(frames_of_some(worth_a_list) > 0);
-    CHECK(frames_of_some(worth_another_list) > frames_of_some(worth_a_list));
-}
-
 TEST_CASE("a list is planned where testing its pairs is cheap, and none where it is dear") {
     const std::vector<box> boxes = spread_boxes(16);
-    const std::vector<double> motion{0.01, 0.02, 0.03, 0.04};
-    const list_outlook seen{motion, 1000, 1000, growth_of_pairs(boxes)};
+    list_outlook seen{.boxes = 1000, .pairs = 1000, .growth = growth_of_pairs(boxes)};
+    seen.law.observe(1, 0.01);
     CHECK(plan_list(seen).frames > 1);
     cost_model dear;
     dear.test_pair *= 100;

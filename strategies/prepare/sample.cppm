@@ -5,16 +5,27 @@ module;
 #include <cstdint>
 #include <span>
 
-/// How many pairs come into reach as boxes grow, asked of some boxes by chance.
-export module aabb.prepare.reach;
+/// What a few boxes, drawn by chance, tell of all.
+export module aabb.prepare.sample;
 
 import aabb.geometry;
 import aabb.global_search;
-import aabb.prepare.glimpse;
 import aabb.prepare.grown_boxes;
 import aabb.prepare.listed_pairs;
+import aabb.prepare.relative_motion;
 
 export namespace aabb {
+
+/// An id below `count`, by chance: what stands at regular places may be of one kind.
+/// @param drawn how many were drawn before
+[[nodiscard]] inline std::uint32_t drawn_id(std::uint32_t& drawn, std::size_t count) noexcept {
+    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), twice: once alone it goes in even steps, which
+    // may meet one kind only.
+    constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15U;
+    std::uint64_t hash = ++drawn * golden_ratio;
+    hash = (hash ^ hash >> 32U) * golden_ratio;
+    return static_cast<std::uint32_t>((hash >> 32U) * count >> 32U);
+}
 
 /// @param drawn as `drawn_id` has it
 /// @return as many as `of` holds, fewer where some objects are absent
@@ -28,34 +39,19 @@ export namespace aabb {
     return of.first(count);
 }
 
-/// About how many pairs a list with that margin holds: as many as eight boxes have neighbours.
-[[nodiscard]] inline double pairs_in_reach(std::span<const box> boxes, const membership& objects, std::uint32_t& drawn,
-                                           double margin) {
-    std::array<box, 8> some;
-    const std::span<const box> asked = drawn_boxes(boxes, objects, drawn, some);
-    if (asked.empty()) return 0;
-    std::array<box, 8> reach;
-    // Both boxes of a pair are grown.
-    grow(asked, 2 * margin, reach);
-    std::size_t neighbours = 0;
-    for (const box& b : boxes)
-        for (std::size_t i = 0; i < asked.size(); ++i) neighbours += static_cast<std::size_t>(meet(b, reach[i]));
-    // Each is a neighbour of itself.
-    return (static_cast<double>(neighbours) / static_cast<double>(asked.size()) - 1) / 2 *
-           static_cast<double>(objects.size());
-}
-
 /// Pairs by a rough count: eight boxes against one of thirty-two others.
 struct rough_reach {
     double overlapping = 0;
     double in_reach = 0;      ///< when grown by the margin
     std::size_t counted = 0;  ///< of the latter
 };
+/// @param drawn as `drawn_id` has it
 [[nodiscard]] inline rough_reach rough_reach_of(std::span<const box> boxes, const membership& objects,
                                                 std::uint32_t& drawn, double margin) {
     std::array<box, 8> some;
     const std::span<const box> asked = drawn_boxes(boxes, objects, drawn, some);
     std::array<box, 8> reach;
+    // Both boxes of a pair are grown.
     grow(asked, 2 * margin, reach);
     const std::size_t others = std::max<std::size_t>(8, boxes.size() / 32);
     std::size_t overlapping = 0;
@@ -74,5 +70,39 @@ struct rough_reach {
     found.in_reach = static_cast<double>(found.counted) * each;
     return found;
 }
+
+/// A few boxes, which say that all have moved at least so far.
+class glimpse {
+public:
+    /// Frames that it looks on.
+    static constexpr unsigned longest = 8;
+
+    /// @param drawn as `drawn_id` has it
+    void keep(std::span<const box> boxes, std::uint32_t& drawn) {
+        for (std::size_t i = 0; i < ids_.size() && !boxes.empty(); ++i) {
+            ids_[i] = drawn_id(drawn, boxes.size());
+            kept_[i] = boxes[ids_[i]];
+        }
+    }
+
+    /// Not more than `motion_between` the kept one and this over all boxes; 0 where none of them is left.
+    [[nodiscard]] double least_motion(std::span<const box> boxes, const membership& objects) const {
+        std::array<box, few> from{};
+        std::array<box, few> to{};
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < few; ++i) {
+            if (ids_[i] >= boxes.size() || !objects.contains(ids_[i])) continue;
+            from[count] = kept_[i];
+            to[count++] = boxes[ids_[i]];
+        }
+        return count > 0 ? motion_between(std::span(from).first(count), std::span(to).first(count)).margin : 0;
+    }
+
+private:
+    static constexpr std::size_t few = 8;
+
+    std::array<std::uint32_t, few> ids_{};
+    std::array<box, few> kept_{};
+};
 
 }  // namespace aabb
