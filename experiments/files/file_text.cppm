@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -41,6 +42,9 @@ struct file_text {
     const std::string several = many.empty() ? std::string(one) + "s" : std::string(many);
     return std::to_string(count) + " " + (count == 1 ? std::string(one) : several);
 }
+
+/// Two sizes in bytes for a sentence, each in a unit that fits it; in bytes where they would look alike.
+[[nodiscard]] std::array<std::string, 2> different_sizes(double a, double b);
 
 /// Refuses what is not a regular file.
 /// @return its size in bytes.

@@ -16,7 +16,6 @@ module aabblab.files;
 
 import aabb.base;
 import :file_text;
-import :sizes;
 
 namespace aabblab {
 

@@ -5,6 +5,8 @@ module;
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <string_view>
 
 /// Numbers as bytes, on a machine that is little-endian (`gltf_parts.cpp`).
 module aabblab.files:scalar;
@@ -25,6 +27,12 @@ enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 [[nodiscard]] inline double greatest(scalar type) noexcept {
     const bool has_sign = type == scalar::i8 || type == scalar::i16 || type == scalar::i32;
     return std::ldexp(1, static_cast<int>(8 * bytes_of(type)) - has_sign) - 1;
+}
+
+[[nodiscard]] inline std::uint32_t u32_at(std::string_view bytes, std::size_t offset) noexcept {
+    std::uint32_t number = 0;
+    std::memcpy(&number, bytes.data() + offset, sizeof number);
+    return number;
 }
 
 /// The number that begins there. Each is a double exactly.

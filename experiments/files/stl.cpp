@@ -18,6 +18,7 @@ import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :readers;
+import :scalar;
 import :text_decoder;
 import :text_scanner;
 
@@ -88,9 +89,7 @@ constexpr std::size_t header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
 
 std::uint32_t announced_triangles(std::string_view bytes) {
-    std::uint32_t count = 0;
-    std::memcpy(&count, bytes.data() + 80, sizeof count);
-    return count;
+    return u32_at(bytes, 80);
 }
 
 /// Writers disagree about the case of keywords.
