@@ -16,6 +16,7 @@ needs=(
     'libboost-dev                 boost-devel              <boost/math/distributions/students_t.hpp>'
     'libtomlplusplus-dev          tomlplusplus-devel       <toml++/toml.h>'
     'libcli11-dev                 cli11-devel              <CLI/CLI.hpp>'
+    'libeigen3-dev                eigen3-devel             <eigen3/Eigen/Core>'
     'libfmt-dev                   fmt-devel                <fmt/core.h>'
     'nlohmann-json3-dev           json-devel               <nlohmann/json.hpp>'
     'libxxhash-dev                xxhash-devel             <xxhash.h>'

@@ -6,6 +6,7 @@ export import aabb.base;
 export import aabb.costs;
 export import aabb.counters;
 export import aabb.digest;
+export import aabb.eigen;
 export import aabb.geometry;
 export import aabb.global_search;
 export import aabb.local_detection;

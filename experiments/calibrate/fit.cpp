@@ -1,10 +1,12 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 module aabblab.calibrate;
@@ -15,27 +17,37 @@ namespace aabblab {
 
 namespace {
 
+Eigen::Map<const Eigen::VectorXd> work_of(const timed_work& o) {
+    return {o.work.data(), static_cast<Eigen::Index>(o.work.size())};
+}
+
 /// The normal equations of a least-squares problem: sums over observations of products of work, and of work.
 struct normal_equations {
-    explicit normal_equations(std::size_t count) : products(count * count), sums(count) {}
+    explicit normal_equations(Eigen::Index count)
+        : products(Eigen::MatrixXd::Zero(count, count)), sums(Eigen::VectorXd::Zero(count)) {}
 
-    std::vector<double> products;  // a square, row after row
-    std::vector<double> sums;
+    /// That the work took so long.
+    void add(const timed_work& o, double ns, double weight) {
+        const Eigen::VectorXd share = work_of(o) / ns;
+        products += weight * share * share.transpose();
+        sums += weight * share;
+    }
+
+    Eigen::MatrixXd products;
+    Eigen::VectorXd sums;
 };
 
 /// Least squares with none below 0, by going down along one cost after the other from where they are.
-void descend(const normal_equations& equations, std::vector<double>& costs) {
+void descend(const normal_equations& equations, Eigen::VectorXd& costs) {
     constexpr int most_rounds = 20'000;
     constexpr double near_enough = 1e-12;
-    const std::size_t count = costs.size();
     for (int round = 0; round < most_rounds; ++round) {
         double change = 0;
         double all = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const double curvature = equations.products[i * count + i];
+        for (Eigen::Index i = 0; i < costs.size(); ++i) {
+            const double curvature = equations.products(i, i);
             if (!(curvature > 0)) continue;
-            double slope = equations.sums[i];
-            for (std::size_t j = 0; j < count; ++j) slope -= equations.products[i * count + j] * costs[j];
+            const double slope = equations.sums[i] - equations.products.col(i).dot(costs);
             const double next = std::max(0.0, costs[i] + slope / curvature);
             // By how much the prediction changes, whatever the unit of the work.
             change += (next - costs[i]) * (next - costs[i]) * curvature;
@@ -50,65 +62,37 @@ double median_of(std::vector<double> values) {
     return quartiles_of(std::move(values)).median;
 }
 
-double sum_of(std::span<const double> work, std::span<const double> costs) {
-    double sum = 0;
-    for (std::size_t k = 0; k < costs.size(); ++k) sum += work[k] * costs[k];
-    return sum;
-}
-
-/// How much each timed_work counts: less, the further it is off, once that is more than is usual.
-std::vector<double> weights_of(std::span<const timed_work> seen, std::span<const double> costs) {
+/// How much each observation counts: less, the further it is off, once that is more than is usual.
+std::vector<double> weights_of(std::span<const timed_work> seen, const Eigen::VectorXd& costs) {
     constexpr double usual = 1.345;  // deviations: 95 % as efficient as least squares where errors are normal
     constexpr double deviations_a_median = 1.4826;
     constexpr double least_scale = 1e-9;
     std::vector<double> off;
-    for (const timed_work& o : seen) off.push_back(std::abs(sum_of(o.work, costs) / median_of(o.ns) - 1));
+    for (const timed_work& o : seen) off.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
     const double reach = usual * std::max(least_scale, deviations_a_median * median_of(off));
     std::vector<double> weights;
     for (const double one : off) weights.push_back(one <= reach ? 1 : reach / one);
     return weights;
 }
 
-normal_equations equations_of(std::span<const timed_work> seen, std::span<const double> weights) {
-    const std::size_t count = seen.front().work.size();
-    normal_equations all(count);
-    for (std::size_t o = 0; o < seen.size(); ++o) {
-        const double ns = median_of(seen[o].ns);
-        for (std::size_t i = 0; i < count; ++i) {
-            all.sums[i] += weights[o] * seen[o].work[i] / ns;
-            for (std::size_t j = 0; j < count; ++j)
-                all.products[i * count + j] += weights[o] * seen[o].work[i] * seen[o].work[j] / (ns * ns);
-        }
-    }
-    return all;
-}
-
 /// The same as sums that are drawn anew. Scenes stand in the place of processes: what is drawn together.
 class drawn_equations {
 public:
     drawn_equations(std::span<const timed_work> seen, std::span<const double> weights)
-        : count_(seen.front().work.size()) {
+        : count_(static_cast<Eigen::Index>(seen.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;
         for (std::size_t o = 0; o < seen.size(); ++o) scenes[seen[o].scene].push_back(o);
         size_ = {scenes.size(), 1, seen.front().ns.size()};
-        sums_.assign(count_, cells(scenes.size(), 1));
-        products_.assign(count_ * count_, cells(scenes.size(), 1));
+        sums_.assign(seen.front().work.size(), cells(scenes.size(), 1));
+        products_.assign(seen.front().work.size() * seen.front().work.size(), cells(scenes.size(), 1));
         std::size_t scene = 0;
         for (const auto& [name, places] : scenes) {
             for (std::size_t repeat = 0; repeat < size_.repeats; ++repeat) {
                 normal_equations own(count_);
-                for (const std::size_t o : places) {
-                    const double ns = seen[o].ns[repeat];
-                    for (std::size_t i = 0; i < count_; ++i) {
-                        own.sums[i] += weights[o] * seen[o].work[i] / ns;
-                        for (std::size_t j = 0; j <= i; ++j)
-                            own.products[i * count_ + j] += weights[o] * seen[o].work[i] * seen[o].work[j] / (ns * ns);
-                    }
-                }
-                for (std::size_t i = 0; i < count_; ++i) {
-                    sums_[i].add(scene, 0, own.sums[i]);
-                    for (std::size_t j = 0; j <= i; ++j)
-                        products_[i * count_ + j].add(scene, 0, own.products[i * count_ + j]);
+                for (const std::size_t o : places) own.add(seen[o], seen[o].ns[repeat], weights[o]);
+                for (Eigen::Index i = 0; i < count_; ++i) {
+                    sums_[static_cast<std::size_t>(i)].add(scene, 0, own.sums[i]);
+                    for (Eigen::Index j = 0; j <= i; ++j) products_[place(i, j)].add(scene, 0, own.products(i, j));
                 }
             }
             ++scene;
@@ -118,16 +102,20 @@ public:
     [[nodiscard]] const sample_size& size() const { return size_; }
     [[nodiscard]] normal_equations draw(const resample& drawn) const {
         normal_equations all(count_);
-        for (std::size_t i = 0; i < count_; ++i) {
-            all.sums[i] = drawn.mean_of(sums_[i]);
-            for (std::size_t j = 0; j <= i; ++j)
-                all.products[i * count_ + j] = all.products[j * count_ + i] = drawn.mean_of(products_[i * count_ + j]);
+        for (Eigen::Index i = 0; i < count_; ++i) {
+            all.sums[i] = drawn.mean_of(sums_[static_cast<std::size_t>(i)]);
+            for (Eigen::Index j = 0; j <= i; ++j)
+                all.products(i, j) = all.products(j, i) = drawn.mean_of(products_[place(i, j)]);
         }
         return all;
     }
 
 private:
-    std::size_t count_;
+    [[nodiscard]] std::size_t place(Eigen::Index i, Eigen::Index j) const {
+        return static_cast<std::size_t>(i * count_ + j);
+    }
+
+    Eigen::Index count_;
     sample_size size_{};
     std::vector<cells> sums_;
     std::vector<cells> products_;  // below the diagonal, and on it
@@ -137,18 +125,20 @@ private:
 
 std::vector<estimate> fit_costs(std::span<const timed_work> seen) {
     constexpr int rounds = 30;
-    const std::size_t count = seen.front().work.size();
+    const auto count = static_cast<Eigen::Index>(seen.front().work.size());
     std::vector<double> weights(seen.size(), 1.0);
-    std::vector<double> costs(count, 0.0);
+    Eigen::VectorXd costs = Eigen::VectorXd::Zero(count);
     for (int round = 0; round < rounds; ++round) {
-        descend(equations_of(seen, weights), costs);
+        normal_equations equations(count);
+        for (std::size_t o = 0; o < seen.size(); ++o) equations.add(seen[o], median_of(seen[o].ns), weights[o]);
+        descend(equations, costs);
         weights = weights_of(seen, costs);
     }
     const drawn_equations equations(seen, weights);
     std::vector<estimate> all;
-    for (std::size_t k = 0; k < count; ++k) {
+    for (Eigen::Index k = 0; k < count; ++k) {
         all.push_back(bootstrap(equations.size(), [&](const resample& drawn) {
-            std::vector<double> found = costs;
+            Eigen::VectorXd found = costs;
             descend(equations.draw(drawn), found);
             return found[k];
         }));
@@ -158,11 +148,11 @@ std::vector<estimate> fit_costs(std::span<const timed_work> seen) {
 }
 
 accuracy accuracy_of(std::span<const timed_work> seen, std::span<const estimate> costs) {
-    std::vector<double> values;
-    for (const estimate& one : costs) values.push_back(one.value);
+    Eigen::VectorXd values(static_cast<Eigen::Index>(costs.size()));
+    std::ranges::transform(costs, values.begin(), &estimate::value);
     std::vector<double> ratios;
     for (const timed_work& o : seen) {
-        const double ratio = sum_of(o.work, values) / median_of(o.ns);
+        const double ratio = work_of(o).dot(values) / median_of(o.ns);
         ratios.push_back(std::max(ratio, 1 / ratio));
     }
     if (ratios.empty()) return {};

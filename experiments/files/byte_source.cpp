@@ -11,41 +11,29 @@ module;
 #include <cstddef>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <thread>
 
 module aabblab.files;
 
-import aabb.base;
 import :byte_source;
+import :file_text;
 
 namespace aabblab {
-
-namespace {
-
-std::string message_of(int error) {
-    return std::generic_category().message(error);
-}
-
-}  // namespace
 
 byte_source::byte_source() : name_("standard input"), descriptor_(STDIN_FILENO) {}
 
 byte_source::byte_source(const std::filesystem::path& file, const std::string& name)
     : name_(name.empty() ? file.string() : name),
       descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK)) {
-    if (descriptor_ < 0) {
-        if (errno == ENOENT) throw aabb::input_error(name_ + ": no such file");
-        throw aabb::input_error(name_ + ": cannot be read: " + message_of(errno));
-    }
+    if (descriptor_ < 0) refuse(name_, errno == ENOENT ? "no such file" : "cannot be read: " + system_error_text());
     try {
         struct stat about{};
-        if (fstat(descriptor_, &about) != 0) fail("cannot be read: " + message_of(errno));
-        if (S_ISDIR(about.st_mode)) fail("is a folder, not a file");
+        if (fstat(descriptor_, &about) != 0) refuse(name_, "cannot be read: " + system_error_text());
+        if (S_ISDIR(about.st_mode)) refuse(name_, "is a folder, not a file");
         if (S_ISREG(about.st_mode)) size_ = static_cast<std::uintmax_t>(about.st_size);
         if (S_ISFIFO(about.st_mode)) wait_for_writer();
         // Opened so as not to wait for a writer for ever; from here on it is waited for bytes.
-        if (fcntl(descriptor_, F_SETFL, 0) != 0) fail("cannot be read: " + message_of(errno));
+        if (fcntl(descriptor_, F_SETFL, 0) != 0) refuse(name_, "cannot be read: " + system_error_text());
     } catch (...) {
         close(descriptor_);
         throw;
@@ -67,7 +55,7 @@ void byte_source::wait_for_writer() {
         const ssize_t got = ::read(descriptor_, first.data(), first.size());
         if (got > 0) ahead_ = first[0];
         if (got != 0) return;  // something to read, or a writer that has not written yet
-        if (std::chrono::steady_clock::now() > end) fail("is a named pipe with no writer");
+        if (std::chrono::steady_clock::now() > end) refuse(name_, "is a named pipe with no writer");
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
 }
@@ -83,14 +71,9 @@ bool byte_source::read(std::size_t most, std::string& bytes) {
     ssize_t got = 0;
     do got = ::read(descriptor_, bytes.data() + before, most);
     while (got < 0 && errno == EINTR);
-    const int error = errno;
-    bytes.resize(before + static_cast<std::size_t>(got < 0 ? 0 : got));
-    if (got < 0) fail(error == EISDIR ? "is a folder, not a file" : "cannot be read: " + message_of(error));
+    if (got < 0) refuse(name_, errno == EISDIR ? "is a folder, not a file" : "cannot be read: " + system_error_text());
+    bytes.resize(before + static_cast<std::size_t>(got));
     return got > 0;
-}
-
-void byte_source::fail(const std::string& what) const {
-    throw aabb::input_error(name_ + ": " + what);
 }
 
 }  // namespace aabblab

@@ -33,7 +33,6 @@ public:
 
 private:
     void wait_for_writer();
-    [[noreturn]] void fail(const std::string& what) const;
 
     std::string name_;
     int descriptor_;

@@ -16,32 +16,39 @@ namespace aabblab {
 std::size_t size_of_file(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        throw aabb::input_error(file.string() + ": no such file");
-    if (!status_known(status)) throw aabb::input_error(file.string() + ": cannot be read: " + error.message());
-    if (is_directory(status)) throw aabb::input_error(file.string() + ": is a folder, not a file");
-    if (!is_regular_file(status)) throw aabb::input_error(file.string() + ": is not a regular file");
+    if (status.type() == std::filesystem::file_type::not_found) refuse(file, "no such file");
+    if (!status_known(status)) refuse(file, "cannot be read: " + error.message());
+    if (is_directory(status)) refuse(file, "is a folder, not a file");
+    if (!is_regular_file(status)) refuse(file, "is not a regular file");
     const auto size = std::filesystem::file_size(file, error);
-    if (error) throw aabb::input_error(file.string() + ": cannot be read: " + error.message());
+    if (error) refuse(file, "cannot be read: " + error.message());
     return size;
 }
 
-file_handle open_to_read(const std::filesystem::path& file) {
-    file_handle opened{std::fopen(file.c_str(), "rb")};
-    if (!opened)
-        throw aabb::input_error(file.string() +
-                                ": cannot be read: " + std::error_code(errno, std::generic_category()).message());
-    return opened;
+std::string system_error_text() {
+    return std::error_code(errno, std::generic_category()).message();
+}
+
+whole_file::whole_file(const std::filesystem::path& file, std::size_t size)
+    : name_(file), size_(size), file_(std::fopen(file.c_str(), "rb")) {
+    if (!file_) refuse(file, "cannot be read: " + system_error_text());
+}
+
+bool whole_file::has_read(void* to, std::size_t bytes) {
+    const std::size_t got = std::fread(to, 1, bytes, file_.get());
+    done_ += got;
+    return got == bytes;
+}
+
+void whole_file::read(void* to, std::size_t bytes) {
+    if (!has_read(to, bytes))
+        refuse(name_, "cannot be read beyond byte " + std::to_string(done_) + " of " + std::to_string(size_));
 }
 
 file_text read_whole(const std::filesystem::path& file, std::size_t size, double times) {
     require_memory(file.string() + ": reading it", times * static_cast<double>(size));
-    const file_handle opened = open_to_read(file);
     file_text whole{file.string(), std::string(size, '\0')};
-    const std::size_t read = std::fread(whole.text.data(), 1, size, opened.get());
-    if (read != size)
-        throw aabb::input_error(whole.name + ": cannot be read beyond byte " + std::to_string(read) + " of " +
-                                std::to_string(size));
+    whole_file(file, size).read(whole.text.data(), size);
     return whole;
 }
 

@@ -1,5 +1,6 @@
 module;
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
@@ -16,9 +17,16 @@ import :text_decoder;
 
 namespace aabblab {
 
+/// "FILE: SENTENCE"
+[[noreturn]] inline void refuse(const std::filesystem::path& file, const std::string& sentence) {
+    throw aabb::input_error(file.string() + ": " + sentence);
+}
+
 struct file_text {
     std::string name;  ///< as the user gave it
     std::string text;
+
+    [[noreturn]] void fail(const std::string& sentence) const { refuse(name, sentence); }
 };
 
 /// The word in quotes, for a sentence: at most 40 bytes of it, and no part of a character.
@@ -35,6 +43,9 @@ struct file_text {
     return std::to_string(count) + " " + (count == 1 ? std::string(one) : several);
 }
 
+/// Two sizes in bytes for a sentence, each in a unit that fits it; in bytes where they would look alike.
+[[nodiscard]] std::array<std::string, 2> different_sizes(double a, double b);
+
 /// Refuses what is not a regular file.
 /// @return its size in bytes.
 /// @throws aabb::input_error that says what it is instead.
@@ -43,7 +54,7 @@ struct file_text {
 /// Refuses what is not a file with something in it, as `size_of_file`.
 [[nodiscard]] inline std::size_t require_file(const std::filesystem::path& file) {
     const std::size_t size = size_of_file(file);
-    if (size == 0) throw aabb::input_error(file.string() + ": is empty");
+    if (size == 0) refuse(file, "is empty");
     return size;
 }
 
@@ -52,8 +63,26 @@ struct close_file {
 };
 using file_handle = std::unique_ptr<std::FILE, close_file>;
 
-/// @throws aabb::input_error when the file cannot be opened.
-[[nodiscard]] file_handle open_to_read(const std::filesystem::path& file);
+/// What the system says of the last call that failed.
+[[nodiscard]] std::string system_error_text();
+
+/// A regular file that is read from its begin on, as often as is asked for.
+class whole_file {
+public:
+    /// @param size what `require_file` says
+    /// @throws aabb::input_error when it cannot be opened.
+    whole_file(const std::filesystem::path& file, std::size_t size);
+    /// False when there is not so much.
+    [[nodiscard]] bool has_read(void* to, std::size_t bytes);
+    /// @throws aabb::input_error when there is not so much.
+    void read(void* to, std::size_t bytes);
+
+private:
+    std::filesystem::path name_;
+    std::size_t size_;
+    std::size_t done_ = 0;
+    file_handle file_;
+};
 
 /// All of a file.
 /// @param size what `require_file` says
@@ -65,7 +94,7 @@ using file_handle = std::unique_ptr<std::FILE, close_file>;
 /// @throws aabb::input_error where they are none.
 [[nodiscard]] inline file_text as_text(file_text file) {
     decoded_text text = decoded(std::move(file.text));
-    if (!text.problem.empty()) throw aabb::input_error(file.name + ": " + text.problem);
+    if (!text.problem.empty()) file.fail(text.problem);
     return {std::move(file.name), std::move(text.text)};
 }
 

@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +17,7 @@ module aabblab.files;
 
 import aabb.base;
 import aabb.geometry;
+import aabblab.vectors;
 import :file_text;
 import :gltf_asset;
 import :mesh_builder;
@@ -28,23 +30,17 @@ namespace {
 /// How the corners of a primitive make faces, by the number of its mode.
 enum class gltf_mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
-gltf_matrix product(const gltf_matrix& parent, const gltf_matrix& child) {
-    gltf_matrix all{};
-    for (std::size_t column = 0; column < 4; ++column)
-        for (std::size_t row = 0; row < 3; ++row) {
-            for (std::size_t k = 0; k < 3; ++k) all[column][row] += parent[k][row] * child[column][k];
-            if (column == 3) all[column][row] += parent[3][row];
-        }
+gltf_matrix combined(const gltf_matrix& parent, const gltf_matrix& child) {
+    gltf_matrix all;
+    for (int column = 0; column < 4; ++column)
+        // Added to zero, no sum is a negative zero.
+        all.col(column) = product(parent, child.col(column)) + Eigen::Vector3d::Zero();
+    all.col(3) += parent.col(3);
     return all;
 }
 
-aabb::vec3d moved(const gltf_matrix& m, const aabb::vec3d& p) {
-    aabb::vec3d result{};
-    for (int row = 0; row < 3; ++row) {
-        const auto r = static_cast<std::size_t>(row);
-        result[row] = m[0][r] * p[0] + m[1][r] * p[1] + m[2][r] * p[2] + m[3][r];
-    }
-    return result;
+Eigen::Vector3d moved(const gltf_matrix& m, const Eigen::Vector3d& p) {
+    return product(m, p) + m.col(3);
 }
 
 class gltf_reader {
@@ -63,9 +59,11 @@ public:
     }
 
 private:
-    [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error(file_.name + ": " + sentence); }
-    [[noreturn]] void fail_missing(std::string_view list, std::size_t index) const {
-        fail(gltf_place(list, index) + " is used, but is not there");
+    [[nodiscard]] const gltf_node& node(std::size_t index) const {
+        return gltf_element(file_, asset_.nodes, "nodes", index);
+    }
+    [[nodiscard]] const gltf_accessor& accessor(std::size_t index) const {
+        return gltf_element(file_, asset_.accessors, "accessors", index);
     }
 
     /// The nodes of the scene in the order of the file, a node before its children; where each stands is known then.
@@ -79,30 +77,25 @@ private:
             for (std::size_t i = nodes.size(); i-- > 0;) waiting.push_back({nodes[i], parent});
         };
         std::vector<std::size_t> nodes;
-        add(asset_.roots, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}}});
+        add(asset_.roots, gltf_matrix::Identity());
         while (!waiting.empty()) {
             const waiting_node at = waiting.back();
             waiting.pop_back();
-            if (at.node >= asset_.nodes.size()) fail_missing("nodes", at.node);
+            const gltf_node& next = node(at.node);
             std::optional<gltf_matrix>& place = places_[at.node];
-            if (place) fail(gltf_place("nodes", at.node) + " stands in more than one place of the scene");
-            const gltf_node& node = asset_.nodes[at.node];
-            if (!node.extension.empty())
-                fail(gltf_place("nodes", at.node) + " has the extension " + in_quotes(node.extension) +
-                     ", which is not supported");
-            place = product(at.parent, node.place);
+            if (place) file_.fail(gltf_place("nodes", at.node) + " stands in more than one place of the scene");
+            if (!next.extension.empty())
+                file_.fail(gltf_place("nodes", at.node) + " has the extension " + in_quotes(next.extension) +
+                           ", which is not supported");
+            place = combined(at.parent, next.place);
             nodes.push_back(at.node);
-            add(node.children, *place);
+            add(next.children, *place);
         }
         return nodes;
     }
 
-    [[nodiscard]] const gltf_accessor& accessor(std::size_t index) const {
-        if (index >= asset_.accessors.size()) fail_missing("accessors", index);
-        return asset_.accessors[index];
-    }
     [[noreturn]] void fail_accessor(std::size_t index, const std::string& expected) const {
-        fail(gltf_place("accessors", index) + " must be " + expected);
+        file_.fail(gltf_place("accessors", index) + " must be " + expected);
     }
     [[nodiscard]] std::vector<double> numbers(std::size_t index, bool no_view_means_zeros = false) const {
         return gltf_numbers(asset_, file_, index, no_view_means_zeros);
@@ -127,8 +120,7 @@ private:
 
     /// What moves a vertex of the skin from where it was bound to where each joint has taken it.
     [[nodiscard]] std::vector<gltf_matrix> joint_matrices(std::size_t index) const {
-        if (index >= asset_.skins.size()) fail_missing("skins", index);
-        const gltf_skin& skin = asset_.skins[index];
+        const gltf_skin& skin = gltf_element(file_, asset_.skins, "skins", index);
         const std::string name = gltf_place("skins", index);
         std::vector<double> bind;
         if (skin.inverse_bind_matrices) {
@@ -136,26 +128,23 @@ private:
             if (a.type != "MAT4" || a.component != gltf_component::f32)
                 fail_accessor(*skin.inverse_bind_matrices, "of floats and MAT4, as it has inverse bind matrices");
             if (a.count < skin.joints.size())
-                fail(name + " has " + std::to_string(skin.joints.size()) + " joints, but " + std::to_string(a.count) +
-                     " inverse bind matrices");
+                file_.fail(name + " has " + std::to_string(skin.joints.size()) + " joints, but " +
+                           std::to_string(a.count) + " inverse bind matrices");
             bind = numbers(*skin.inverse_bind_matrices);
         }
         std::vector<gltf_matrix> matrices;
         for (std::size_t joint = 0; joint < skin.joints.size(); ++joint) {
-            const std::size_t node = skin.joints[joint];
-            if (node >= asset_.nodes.size()) fail_missing("nodes", node);
-            if (!places_[node]) fail(gltf_place("nodes", node) + " is a joint of " + name + ", but not in the scene");
-            matrices.push_back(*places_[node]);
+            const std::size_t at = skin.joints[joint];
+            static_cast<void>(node(at));
+            const std::optional<gltf_matrix>& place = places_[at];
+            if (!place) file_.fail(gltf_place("nodes", at) + " is a joint of " + name + ", but not in the scene");
+            matrices.push_back(*place);
             if (bind.empty()) continue;
-            const double* const m = &bind[16 * joint];
-            gltf_matrix inverse{};
-            for (std::size_t column = 0; column < 4; ++column) {
-                inverse[column] = {m[4 * column], m[4 * column + 1], m[4 * column + 2]};
-                // Inverted in floats, it may be a little off.
-                if (!(std::abs(m[4 * column + 3] - (column == 3 ? 1 : 0)) <= 1e-6))
-                    fail(name + " has an inverse bind matrix whose last row is not 0 0 0 1");
-            }
-            matrices.back() = product(matrices.back(), inverse);
+            const Eigen::Map<const Eigen::Matrix4d> inverse(&bind[16 * joint]);
+            // Inverted in floats, it may be a little off.
+            if (!((inverse.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().array() <= 1e-6).all())
+                file_.fail(name + " has an inverse bind matrix whose last row is not 0 0 0 1");
+            matrices.back() = combined(*place, inverse.topRows<3>());
         }
         return matrices;
     }
@@ -165,14 +154,14 @@ private:
                const std::string& mesh) const {
         const auto is_zero = [](double weight) { return weight == 0; };
         if (weights.size() != primitive.targets.size() && !std::ranges::all_of(weights, is_zero))
-            fail(mesh + " has a primitive of " + counted(primitive.targets.size(), "morph target") + ", but " +
-                 counted(weights.size(), "weight"));
+            file_.fail(mesh + " has a primitive of " + counted(primitive.targets.size(), "morph target") + ", but " +
+                       counted(weights.size(), "weight"));
         for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
             if (!primitive.targets[t] || weights[t] == 0) continue;
             const std::vector<double> moves = positions(*primitive.targets[t], true);
             if (moves.size() != points.size())
-                fail(mesh + " has a morph target for a number of vertices other than its own: " +
-                     std::to_string(moves.size() / 3) + ", not " + std::to_string(points.size() / 3));
+                file_.fail(mesh + " has a morph target for a number of vertices other than its own: " +
+                           std::to_string(moves.size() / 3) + ", not " + std::to_string(points.size() / 3));
             for (std::size_t i = 0; i < points.size(); ++i) points[i] += weights[t] * moves[i];
         }
     }
@@ -185,8 +174,8 @@ private:
     [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
                                                     const std::string& mesh) const {
         if (primitive.joints.empty() || primitive.joints.size() != primitive.weights.size())
-            fail(mesh + " has a skin and a primitive of " + std::to_string(primitive.joints.size()) +
-                 " lists of joints and " + std::to_string(primitive.weights.size()) + " of weights");
+            file_.fail(mesh + " has a skin and a primitive of " + std::to_string(primitive.joints.size()) +
+                       " lists of joints and " + std::to_string(primitive.weights.size()) + " of weights");
         std::vector<bindings> sets;
         for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
             const std::size_t joints = primitive.joints[set];
@@ -200,17 +189,18 @@ private:
             if (w.type != "VEC4" || (w.component != gltf_component::f32 && !is_fraction))
                 fail_accessor(weights, "of floats or normalized numbers and VEC4, as it has weights of joints");
             if (j.count != vertices || w.count != vertices)
-                fail(mesh + " has " + std::to_string(vertices) + " positions, but joints of " +
-                     std::to_string(j.count) + " and weights of " + std::to_string(w.count) + " vertices");
+                file_.fail(mesh + " has " + std::to_string(vertices) + " positions, but joints of " +
+                           std::to_string(j.count) + " and weights of " + std::to_string(w.count) + " vertices");
             sets.push_back({numbers(joints), numbers(weights)});
         }
         return sets;
     }
 
     /// Where the joints take a point: the mean of where each takes it, by their weights.
-    [[nodiscard]] aabb::vec3d skinned(const aabb::vec3d& p, std::size_t vertex, const std::vector<bindings>& sets,
-                                      const std::vector<gltf_matrix>& joints, const std::string& mesh) const {
-        aabb::vec3d sum{};
+    [[nodiscard]] Eigen::Vector3d skinned(const Eigen::Vector3d& p, std::size_t vertex,
+                                          const std::vector<bindings>& sets, const std::vector<gltf_matrix>& joints,
+                                          const std::string& mesh) const {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         double weights = 0;
         for (const bindings& set : sets)
             for (std::size_t i = 4 * vertex; i < 4 * vertex + 4; ++i) {
@@ -218,17 +208,16 @@ private:
                 if (weight == 0) continue;
                 const auto joint = static_cast<std::size_t>(set.joints[i]);
                 if (joint >= joints.size())
-                    fail(mesh + " has a vertex that refers to joint " + std::to_string(joint) +
-                         ", counted from 0, but its skin has " + counted(joints.size(), "joint"));
-                const aabb::vec3d at = moved(joints[joint], p);
-                for (int k = 0; k < 3; ++k) sum[k] += weight * at[k];
+                    file_.fail(mesh + " has a vertex that refers to joint " + std::to_string(joint) +
+                               ", counted from 0, but its skin has " + counted(joints.size(), "joint"));
+                sum += moved(joints[joint], p) * weight;
                 weights += weight;
             }
         // They must add up to 1; the coarsest type has steps of 1/255, half of which each may have lost.
         if (!(std::abs(weights - 1) <= static_cast<double>(4 * sets.size()) / 255 / 2))
-            fail(mesh + " has a vertex whose weights of joints add up to " + aabb::shortest(weights) + ", not to 1");
-        for (int k = 0; k < 3; ++k) sum[k] /= weights;
-        return sum;
+            file_.fail(mesh + " has a vertex whose weights of joints add up to " + aabb::shortest(weights) +
+                       ", not to 1");
+        return sum / weights;
     }
 
     /// @returns how many there were
@@ -237,7 +226,7 @@ private:
         std::vector<double> points = positions(*primitive.positions, false);
         const std::size_t count = points.size() / 3;
         if (count > std::numeric_limits<std::uint32_t>::max() - mesh_.vertices())
-            fail("its scene has more than 2^32 - 1 vertices");
+            file_.fail("its scene has more than 2^32 - 1 vertices");
         // One mesh may stand in many places.
         require_memory(file_.name + ": its scene",
                        static_cast<double>(mesh_.vertices() + count) * sizeof(aabb::vec3f) +
@@ -247,24 +236,24 @@ private:
         const auto sets = node.skin ? bindings_of(primitive, count, mesh_name) : std::vector<bindings>();
         const gltf_matrix& place = *places_[static_cast<std::size_t>(&node - asset_.nodes.data())];
         for (std::size_t v = 0; v < count; ++v) {
-            const aabb::vec3d p = {points[3 * v], points[3 * v + 1], points[3 * v + 2]};
+            const Eigen::Vector3d p(&points[3 * v]);
             // A skinned mesh stands where its joints are, wherever its node is.
-            const aabb::vec3d at = node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(place, p);
-            mesh_.add_vertex({static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])});
+            mesh_.add_vertex(in_float(node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(place, p)));
         }
         return count;
     }
 
     void add_node(const gltf_node& node) {
         if (!node.mesh) return;
-        if (*node.mesh >= asset_.meshes.size()) fail_missing("meshes", *node.mesh);
+        const std::vector<gltf_primitive>& primitives =
+            gltf_element(file_, asset_.meshes, "meshes", *node.mesh).primitives;
         is_shown_[*node.mesh] = true;
         const std::string mesh = gltf_place("meshes", *node.mesh);
         const auto joints = node.skin ? joint_matrices(*node.skin) : std::vector<gltf_matrix>();
-        for (const gltf_primitive& primitive : asset_.meshes[*node.mesh].primitives) {
-            if (!primitive.positions) fail(mesh + " has a primitive without positions");
+        for (const gltf_primitive& primitive : primitives) {
+            if (!primitive.positions) file_.fail(mesh + " has a primitive without positions");
             if (primitive.mode > static_cast<std::size_t>(gltf_mode::triangle_fan))
-                fail(mesh + " has a primitive of mode " + std::to_string(primitive.mode) + "; modes are 0 to 6");
+                file_.fail(mesh + " has a primitive of mode " + std::to_string(primitive.mode) + "; modes are 0 to 6");
             const std::size_t first = mesh_.vertices();
             const std::size_t count = add_vertices(primitive, node, joints, mesh);
             std::vector<std::uint32_t> corners;
@@ -276,8 +265,8 @@ private:
             }
             for (std::uint32_t& corner : corners) {
                 if (corner >= count)
-                    fail(mesh + " has a face that uses vertex " + std::to_string(corner) + ", but there are " +
-                         std::to_string(count) + " vertices, counted from 0");
+                    file_.fail(mesh + " has a face that uses vertex " + std::to_string(corner) + ", but there are " +
+                               std::to_string(count) + " vertices, counted from 0");
                 corner += static_cast<std::uint32_t>(first);
             }
             add_faces(static_cast<gltf_mode>(primitive.mode), corners);

@@ -1,5 +1,5 @@
 module;
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -66,11 +66,11 @@ struct gltf_skin {
     std::optional<std::size_t> inverse_bind_matrices;
 };
 
-/// Four columns, without the last row, which is 0 0 0 1.
-using gltf_matrix = std::array<std::array<double, 3>, 4>;
+/// Without the last row, which is 0 0 0 1.
+using gltf_matrix = Eigen::Matrix<double, 3, 4>;
 
 struct gltf_node {
-    gltf_matrix place{};  ///< in its parent
+    gltf_matrix place;  ///< in its parent
     std::optional<std::size_t> mesh;
     std::optional<std::size_t> skin;
     std::optional<std::vector<double>> weights;  ///< in the place of those of its mesh
@@ -99,6 +99,14 @@ struct gltf_asset {
 /// "accessors[3]"
 [[nodiscard]] inline std::string gltf_place(std::string_view list, std::size_t index) {
     return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+/// @throws aabb::input_error where the list has nothing of that number.
+template <class Element>
+[[nodiscard]] inline const Element& gltf_element(const file_text& file, const std::vector<Element>& list,
+                                                 std::string_view name, std::size_t index) {
+    if (index >= list.size()) file.fail(gltf_place(name, index) + " is used, but is not there");
+    return list[index];
 }
 
 /// The numbers of an accessor, one after the other; normalized ones from -1 or 0 to 1.

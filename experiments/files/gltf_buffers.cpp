@@ -94,7 +94,7 @@ void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<s
                 throw aabb::input_error("announces " + std::to_string(buffer.length) + " bytes, but has " +
                                         std::to_string(buffer.bytes.size()));
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(file.name + ": " + gltf_place("buffers", i) + ": " + error.what());
+            file.fail(gltf_place("buffers", i) + ": " + error.what());
         }
     }
 }

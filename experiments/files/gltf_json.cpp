@@ -1,5 +1,5 @@
 module;
-#include <array>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,6 @@ module;
 
 module aabblab.files;
 
-import aabb.base;
 import aabblab.json;
 import :file_text;
 import :gltf_asset;
@@ -34,32 +33,21 @@ void require_no_extension(const object& root) {
     }
 }
 
-/// @param rotation a quaternion of length 1, x y z w
-gltf_matrix placed(const std::array<double, 3>& translation, const std::array<double, 4>& rotation,
-                   const std::array<double, 3>& scale) {
-    const auto [x, y, z, w] = rotation;
-    gltf_matrix place = {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                          {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                          {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)},
-                          translation}};
-    for (std::size_t column = 0; column < 3; ++column)
-        for (double& entry : place[column]) entry *= scale[column];
-    return place;
-}
-
 gltf_matrix place_of(const object& node) {
+    gltf_matrix place;
     if (!node.has("matrix")) {
         const auto rotation = node.numbers<4>("rotation", {0, 0, 0, 1});
         const double square = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
         if (!(std::abs(square - 1) < 1e-3)) node.fail("has a rotation that is not a quaternion of length 1");
-        return placed(node.numbers<3>("translation", {}), rotation, node.numbers<3>("scale", {1, 1, 1}));
+        const auto translation = node.numbers<3>("translation", {});
+        const auto scale = node.numbers<3>("scale", {1, 1, 1});
+        const Eigen::Matrix3d turned = Eigen::Quaterniond(rotation.data()).toRotationMatrix();
+        place << turned * Eigen::Vector3d(scale.data()).asDiagonal(), Eigen::Vector3d(translation.data());
+        return place;
     }
     const auto m = node.numbers<16>("matrix", {});
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) node.fail("has a matrix whose last row is not 0 0 0 1");
-    gltf_matrix place{};
-    for (std::size_t column = 0; column < 4; ++column)
-        place[column] = {m[4 * column], m[4 * column + 1], m[4 * column + 2]};
-    return place;
+    return Eigen::Map<const Eigen::Matrix4d>(m.data()).topRows<3>();
 }
 
 gltf_sparse::part part_of(const object& part) {
@@ -138,8 +126,7 @@ gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
                       parts.is_text ? object::position::line : object::position::byte);
     const std::optional<object> about = root.member("asset");
     const std::string version = about ? about->text("version").value_or("") : "";
-    if (!version.starts_with("2."))
-        throw aabb::input_error(file.name + ": is glTF of version " + in_quotes(version) + "; only version 2 is read");
+    if (!version.starts_with("2.")) file.fail("is glTF of version " + in_quotes(version) + "; only version 2 is read");
     require_no_extension(root);
     gltf_asset asset;
     for (const object& buffer : root.objects("buffers"))

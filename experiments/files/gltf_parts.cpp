@@ -2,16 +2,15 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
 
 module aabblab.files;
 
-import aabb.base;
 import :file_text;
 import :gltf_asset;
+import :scalar;
 
 namespace aabblab {
 
@@ -24,12 +23,6 @@ constexpr std::size_t chunk_header_bytes = 8;
 constexpr std::uint32_t json_chunk = 0x4e4f534a;    // "JSON"
 constexpr std::uint32_t binary_chunk = 0x004e4942;  // "BIN"
 
-std::uint32_t number_at(std::string_view bytes, std::size_t offset) {
-    std::uint32_t number = 0;
-    std::memcpy(&number, bytes.data() + offset, sizeof number);
-    return number;
-}
-
 /// Takes a chunk off the front: its type and its bytes.
 struct chunk {
     std::uint32_t type = 0;
@@ -37,14 +30,12 @@ struct chunk {
 };
 chunk take_chunk(const file_text& file, std::string_view& rest) {
     const std::string at = std::to_string(file.text.size() - rest.size());
-    if (rest.size() < chunk_header_bytes)
-        throw aabb::input_error(file.name + ": is no glTF file: it ends in the head of the chunk at byte " + at);
-    const std::size_t length = number_at(rest, 0);
-    const chunk taken{number_at(rest, 4), rest.substr(chunk_header_bytes, length)};
+    if (rest.size() < chunk_header_bytes) file.fail("is no glTF file: it ends in the head of the chunk at byte " + at);
+    const std::size_t length = u32_at(rest, 0);
+    const chunk taken{u32_at(rest, 4), rest.substr(chunk_header_bytes, length)};
     if (taken.bytes.size() != length)
-        throw aabb::input_error(file.name + ": is no glTF file: the chunk at byte " + at + " announces " +
-                                std::to_string(length) + " bytes, but the file has " +
-                                std::to_string(taken.bytes.size()) + " of them");
+        file.fail("is no glTF file: the chunk at byte " + at + " announces " + std::to_string(length) +
+                  " bytes, but the file has " + std::to_string(taken.bytes.size()) + " of them");
     rest.remove_prefix(chunk_header_bytes + length);
     return taken;
 }
@@ -54,17 +45,15 @@ chunk take_chunk(const file_text& file, std::string_view& rest) {
 gltf_parts gltf_parts_of(const file_text& file) {
     std::string_view rest = file.text;
     if (!rest.starts_with("glTF")) return {rest, {}, true};
-    if (rest.size() < header_bytes)
-        throw aabb::input_error(file.name + ": is no glTF file: it ends in the header of 12 bytes");
-    if (const std::uint32_t version = number_at(rest, 4); version != 2)
-        throw aabb::input_error(file.name + ": is glTF of version " + std::to_string(version) +
-                                "; only version 2 is read");
-    if (const std::uint32_t length = number_at(rest, 8); length != rest.size())
-        throw aabb::input_error(file.name + ": is no glTF file: its header announces " + std::to_string(length) +
-                                " bytes, but the file has " + std::to_string(rest.size()));
+    if (rest.size() < header_bytes) file.fail("is no glTF file: it ends in the header of 12 bytes");
+    if (const std::uint32_t version = u32_at(rest, 4); version != 2)
+        file.fail("is glTF of version " + std::to_string(version) + "; only version 2 is read");
+    if (const std::uint32_t length = u32_at(rest, 8); length != rest.size())
+        file.fail("is no glTF file: its header announces " + std::to_string(length) + " bytes, but the file has " +
+                  std::to_string(rest.size()));
     rest.remove_prefix(header_bytes);
     const chunk first = take_chunk(file, rest);
-    if (first.type != json_chunk) throw aabb::input_error(file.name + ": is no glTF file: its first chunk is not JSON");
+    if (first.type != json_chunk) file.fail("is no glTF file: its first chunk is not JSON");
     gltf_parts parts{first.bytes, {}};
     // Chunks of other types belong to extensions.
     while (!rest.empty())

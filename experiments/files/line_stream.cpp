@@ -9,7 +9,6 @@ module;
 
 module aabblab.files;
 
-import aabb.base;
 import :byte_source;
 import :file_text;
 import :text_decoder;
@@ -73,8 +72,7 @@ bool line_stream::next() {
         s.read_on();
     }
     // Lines before what is no text were handed out first.
-    if (end == std::string::npos && !s.decoder.problem().empty())
-        throw aabb::input_error(s.source.name() + ": " + s.decoder.problem());
+    if (end == std::string::npos && !s.decoder.problem().empty()) refuse(s.source.name(), s.decoder.problem());
     if (end == std::string::npos && s.at == s.text.size()) return false;
     const std::size_t length = end == std::string::npos ? std::string::npos : end - s.at;
     s.line = line_without_return(std::string_view(s.text).substr(s.at, length),
@@ -97,7 +95,7 @@ std::uintmax_t line_stream::size() const noexcept {
 }
 
 void line_stream::fail(const std::string& sentence) const {
-    throw aabb::input_error(state_->source.name() + ":" + std::to_string(state_->number) + ": " + sentence);
+    refuse(state_->source.name() + ":" + std::to_string(state_->number), sentence);
 }
 
 std::string text_of_file(const std::filesystem::path& file, std::size_t most) {

@@ -8,7 +8,7 @@ module;
 module aabblab.files;
 
 import aabb.base;
-import :sizes;
+import :file_text;
 
 namespace aabblab {
 

@@ -40,15 +40,10 @@ constexpr format formats[] = {{".off", read_off, always},         {".obj", read_
                               {".ply", read_ply, is_text_ply},    {".stl", read_stl, is_text_stl},
                               {".gltf", read_gltf, is_gltf_text}, {".glb", read_gltf, is_gltf_text}};
 
-/// Sentences with commas between.
-class enumeration {
-public:
-    void add(const std::string& sentence) { text_ += (text_.empty() ? "" : ", ") + sentence; }
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-private:
-    std::string text_;
-};
+/// Each with a comma before it, unless it is the first.
+void add(std::string& text, const std::string& sentence) {
+    text += (text.empty() ? "" : ", ") + sentence;
+}
 
 }  // namespace
 
@@ -65,35 +60,34 @@ std::vector<std::string> mesh_endings() {
 }
 
 std::string mesh_report::left_out() const {
-    enumeration all;
-    if (dropped) all.add(counted(dropped, "face") + " of fewer than three corners dropped");
-    if (stitches) all.add(counted(stitches, "triangle") + " of strips skipped, which repeat a corner");
+    std::string all;
+    if (dropped) add(all, counted(dropped, "face") + " of fewer than three corners dropped");
+    if (stitches) add(all, counted(stitches, "triangle") + " of strips skipped, which repeat a corner");
     if (not_finite)
-        all.add(counted(not_finite, "vertex", "vertices") +
-                " with NaN or infinity, which no face uses, moved onto another");
-    if (animations) all.add(counted(animations, "animation") + " ignored");
-    if (hidden_meshes) all.add(counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
-    for (const auto& [what, name, count] : skipped) all.add(counted(count, what) + " " + in_quotes(name) + " skipped");
-    if (skipped_others) all.add(std::to_string(skipped_others) + " of other names skipped");
-    return all.text();
+        add(all, counted(not_finite, "vertex", "vertices") +
+                     " with NaN or infinity, which no face uses, moved onto another");
+    if (animations) add(all, counted(animations, "animation") + " ignored");
+    if (hidden_meshes) add(all, counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
+    for (const auto& [what, name, count] : skipped) add(all, counted(count, what) + " " + in_quotes(name) + " skipped");
+    if (skipped_others) add(all, std::to_string(skipped_others) + " of other names skipped");
+    return all;
 }
 
 std::string mesh_report::text() const {
-    enumeration all;
-    if (polygons > concave) all.add(counted(polygons - concave, "polygon") + " fan-triangulated");
-    if (concave) all.add(counted(concave, "concave polygon") + " ear-clipped");
-    if (zero_area) all.add(counted(zero_area, "triangle") + " of zero area kept");
-    if (rounded) all.add(counted(rounded, "coordinate") + " rounded to float");
-    if (const std::string others = left_out(); !others.empty()) all.add(others);
-    return all.text();
+    std::string all;
+    if (polygons > concave) add(all, counted(polygons - concave, "polygon") + " fan-triangulated");
+    if (concave) add(all, counted(concave, "concave polygon") + " ear-clipped");
+    if (zero_area) add(all, counted(zero_area, "triangle") + " of zero area kept");
+    if (rounded) add(all, counted(rounded, "coordinate") + " rounded to float");
+    if (const std::string others = left_out(); !others.empty()) add(all, others);
+    return all;
 }
 
 loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     const std::string ending = mesh_ending_of(file);
     const auto found = std::ranges::find(formats, ending, &format::ending);
-    if (found == std::end(formats))
-        throw aabb::input_error(file.string() + ": " + aabb::unknown_name("mesh format", ending, mesh_endings()));
+    if (found == std::end(formats)) refuse(file, aabb::unknown_name("mesh format", ending, mesh_endings()));
     if (ending == ".stl")
         if (std::optional<loaded_mesh> binary = read_binary_stl(file, size)) return *std::move(binary);
     // A mesh takes about as much again as its text.

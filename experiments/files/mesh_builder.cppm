@@ -14,13 +14,18 @@ module aabblab.files:mesh_builder;
 
 import aabb.base;
 import aabb.geometry;
+import :file_text;
 import :loaded_mesh;
 import :polygon;
 
 namespace aabblab {
 
 /// Exactly: the corners of a triangle lie on one line (or are one point).
-[[nodiscard]] bool has_zero_area(const aabb::triangle3f& t);
+[[nodiscard]] inline bool has_zero_area(const aabb::triangle3f& t) {
+    const aabb::triangle3d d = aabb::in_double(t);
+    return aabb::exact_turn(d[0], d[1], d[2], 0) == 0 && aabb::exact_turn(d[0], d[1], d[2], 1) == 0 &&
+           aabb::exact_turn(d[0], d[1], d[2], 2) == 0;
+}
 
 class mesh_builder {
 public:
@@ -93,16 +98,15 @@ public:
     [[nodiscard]] loaded_mesh finish(std::size_t rounded, std::string_view before, std::size_t first) {
         aabb::mesh& m = loaded_.mesh;
         if (greatest_ > m.vertices.size())
-            throw aabb::input_error(std::string(before) + std::to_string(greatest_at_) + ": a face uses vertex " +
-                                    std::to_string(greatest_ - 1 + first) + ", but there are " +
-                                    std::to_string(m.vertices.size()) + " vertices" +
-                                    (first == 0 ? ", counted from 0" : ", counted from 1"));
+            refuse(std::string(before) + std::to_string(greatest_at_),
+                   "a face uses vertex " + std::to_string(greatest_ - 1 + first) + ", but there are " +
+                       std::to_string(m.vertices.size()) + " vertices, counted from " + std::to_string(first));
         settle_vertices(first);
         try {
             aabb::require_valid(m);
         } catch (const aabb::input_error& error) {
             const std::string left_out = loaded_.report.left_out();
-            throw aabb::input_error(file_ + ": " + error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
+            refuse(file_, error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
         }
         cut_polygons(before);
         m.vertices.shrink_to_fit();
@@ -125,8 +129,8 @@ private:
             const polygon_shape shape =
                 cutter.cut(loaded_.mesh.vertices, std::span(loaded_.mesh.triangles).subspan(p.first, p.corners - 2));
             const auto fail = [&](const std::string& sentence) {
-                throw aabb::input_error(std::string(before) + std::to_string(p.place) + ": the boundary of a face of " +
-                                        std::to_string(p.corners) + " corners " + sentence);
+                refuse(std::string(before) + std::to_string(p.place),
+                       "the boundary of a face of " + std::to_string(p.corners) + " corners " + sentence);
             };
             if (shape == polygon_shape::no_normal) fail("has no normal, as its signed area is zero");
             if (shape == polygon_shape::crosses_itself) fail("crosses itself");
@@ -150,9 +154,9 @@ private:
             for (const std::uint32_t corner : triangle) is_used[corner] = true;
         for (const auto& [index, line] : not_finite_) {
             if (is_used[index])
-                throw aabb::input_error(file_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": vertex " +
-                                        std::to_string(index + first) +
-                                        " has a coordinate that is not finite, and a face uses it");
+                refuse(file_ + (line == 0 ? "" : ":" + std::to_string(line)),
+                       "vertex " + std::to_string(index + first) +
+                           " has a coordinate that is not finite, and a face uses it");
             if (!m.triangles.empty()) m.vertices[index] = m.vertices[m.triangles[0][0]];
         }
         loaded_.report.not_finite = not_finite_.size();

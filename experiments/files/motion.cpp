@@ -111,8 +111,8 @@ public:
         steps_ = reader.read();
         meshes = std::move(given);
         if (meshes.size() > reader.objects())
-            throw aabb::input_error(file.string() + ": moves " + std::to_string(reader.objects()) +
-                                    " objects, but there are " + std::to_string(meshes.size()) + " meshes");
+            refuse(file, "moves " + std::to_string(reader.objects()) + " objects, but there are " +
+                             std::to_string(meshes.size()) + " meshes");
         poses_.resize(reader.objects());
         for (std::size_t object = 0; object < poses_.size(); ++object)
             mesh_of.push_back(static_cast<std::uint32_t>(object % meshes.size()));

@@ -1,13 +1,11 @@
 module;
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 module aabblab.files;
@@ -46,14 +44,6 @@ private:
     bool goes_on_ = false;
 };
 
-/// What may stand behind the coordinates of a vertex.
-bool is_number(std::string_view word) {
-    double value = 0;
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error != std::errc::invalid_argument && end == word.data() + word.size();
-}
-
 /// What may stand behind the vertex of a corner: "/vt", "//vn" or "/vt/vn".
 bool are_other_indices(std::string_view rest) {
     return rest.find_first_not_of("/-0123456789") == std::string_view::npos && std::ranges::count(rest, '/') <= 2;
@@ -63,10 +53,10 @@ bool are_other_indices(std::string_view rest) {
 /// vertex so far.
 std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
     const std::string_view number = word.substr(0, word.find('/'));
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (error != std::errc{} || end != number.data() + number.size() || !are_other_indices(word.substr(number.size())))
+    const read_number<std::int64_t> read(number);
+    if (!read.is_one || read.out_of_range || !are_other_indices(word.substr(number.size())))
         in.expected("the number of a vertex", word);
+    const std::int64_t value = read.value;
     if (value == 0) in.fail("a face uses vertex 0, but vertices are counted from 1");
     const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(vertices) + value;
     if (index < 0 || index > std::numeric_limits<std::uint32_t>::max())
@@ -97,7 +87,7 @@ loaded_mesh read_obj(const file_text& file) {
             for (int k = 0; k < 3; ++k) p[k] = in.coordinate(words.next());
             mesh.add_vertex(p, line);
             for (std::string_view word = words.next(); !word.empty(); word = words.next())
-                if (!is_number(word)) in.expected("the weight or the colour of a vertex", word);
+                if (!read_number<double>(word).is_one) in.expected("the weight or the colour of a vertex", word);
         } else if (statement == "f" || statement == "fo") {  // "fo" is what the first versions of the format had
             corners.clear();
             for (std::string_view word = words.next(); !word.empty(); word = words.next())

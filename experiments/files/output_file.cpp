@@ -16,7 +16,6 @@ module aabblab.files;
 
 import aabb.base;
 import :file_text;
-import :sizes;
 
 namespace aabblab {
 
@@ -35,10 +34,8 @@ struct output_file::state {
         if (folder >= 0) close(folder);
     }
 
-    [[noreturn]] void refuse(const std::string& why) const {
-        throw aabb::input_error(target.string() + ": cannot be written: " + why);
-    }
-    [[noreturn]] void fail() const { refuse(std::error_code(errno, std::generic_category()).message()); }
+    [[noreturn]] void refuse(const std::string& why) const { aabblab::refuse(target, "cannot be written: " + why); }
+    [[noreturn]] void fail() const { refuse(system_error_text()); }
 
     [[nodiscard]] std::filesystem::path folder_path() const {
         return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
@@ -110,7 +107,7 @@ void output_file::require_space(double bytes) const {
     const auto available = static_cast<double>(space.available);
     if (bytes <= available) return;
     const auto [wanted, free] = different_sizes(bytes, available);
-    throw aabb::input_error(state_->target.string() + ": would take " + wanted + ", but only " + free + " are free");
+    refuse(state_->target, "would take " + wanted + ", but only " + free + " are free");
 }
 
 void output_file::write(const void* data, std::size_t bytes) {

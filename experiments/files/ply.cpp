@@ -1,7 +1,6 @@
 module;
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,12 +13,12 @@ module;
 
 module aabblab.files;
 
-import aabb.base;
 import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :ply_header;
 import :readers;
+import :scalar;
 import :text_scanner;
 
 namespace aabblab {
@@ -99,41 +98,24 @@ public:
     [[nodiscard]] static std::size_t place(std::uint64_t face) { return face; }
     void end() const {
         if (bytes_.find_first_not_of(" \t\r\n") != std::string_view::npos)
-            throw aabb::input_error(file_ + ": goes on for " + std::to_string(bytes_.size()) +
-                                    " bytes after the last element that its header announces");
+            refuse(file_, "goes on for " + std::to_string(bytes_.size()) +
+                              " bytes after the last element that its header announces");
     }
     [[nodiscard]] std::size_t rounded() const { return rounded_; }
     [[nodiscard]] static std::size_t line() { return 0; }
     static constexpr std::string_view before_place = ": face ";
 
 private:
-    /// Every scalar of PLY is a double exactly.
     [[nodiscard]] double number(scalar type) {
-        switch (type) {
-            case scalar::i8: return take<std::int8_t>();
-            case scalar::u8: return take<std::uint8_t>();
-            case scalar::i16: return take<std::int16_t>();
-            case scalar::u16: return take<std::uint16_t>();
-            case scalar::i32: return take<std::int32_t>();
-            case scalar::u32: return take<std::uint32_t>();
-            case scalar::f32: return static_cast<double>(take<float>());
-            case scalar::f64: return take<double>();
-        }
-        return 0;
-    }
-    template <class Value>
-    [[nodiscard]] Value take() {
-        std::array<char, sizeof(Value)> raw{};
-        if (bytes_.size() < raw.size())
-            throw aabb::input_error(file_ + ": ends in element " + std::to_string(index_) + " of " +
-                                    std::to_string(element_->count) + " elements " + in_quotes(element_->name));
-        bytes_.copy(raw.data(), raw.size());
-        bytes_.remove_prefix(raw.size());
-        if (big_) std::ranges::reverse(raw);
-        return std::bit_cast<Value>(raw);
+        if (bytes_.size() < bytes_of(type))
+            refuse(file_, "ends in element " + std::to_string(index_) + " of " + std::to_string(element_->count) +
+                              " elements " + in_quotes(element_->name));
+        const double value = number_at(bytes_.data(), type, big_);
+        bytes_.remove_prefix(bytes_of(type));
+        return value;
     }
     [[noreturn]] void fail(const std::string& what) const {
-        throw aabb::input_error(file_ + ": " + element_->name + " " + std::to_string(index_) + " " + what);
+        refuse(file_, element_->name + " " + std::to_string(index_) + " " + what);
     }
 
     std::string file_;

@@ -13,11 +13,10 @@ module;
 module aabblab.files:ply_header;
 
 import :file_text;
+import :scalar;
 import :text_scanner;
 
 namespace aabblab::ply {
-
-enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 
 struct scalar_name {
     std::string_view name;
@@ -28,10 +27,6 @@ inline constexpr scalar_name scalar_names[] = {
     {"short", scalar::i16}, {"int16", scalar::i16},   {"ushort", scalar::u16}, {"uint16", scalar::u16},
     {"int", scalar::i32},   {"int32", scalar::i32},   {"uint", scalar::u32},   {"uint32", scalar::u32},
     {"float", scalar::f32}, {"float32", scalar::f32}, {"double", scalar::f64}, {"float64", scalar::f64}};
-
-[[nodiscard]] inline bool is_whole(scalar type) {
-    return type != scalar::f32 && type != scalar::f64;
-}
 
 /// What a property is to a mesh.
 enum class role : std::uint8_t { none, x, y, z, corners, strip };

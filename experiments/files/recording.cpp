@@ -4,7 +4,6 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -51,7 +50,7 @@ box_record packed(const aabb::box& b) {
 
 class recording final : public aabb::box_scene {
 public:
-    recording(std::string name, file_handle file, const header& h)
+    recording(std::string name, whole_file file, const header& h)
         : name_(std::move(name)),
           file_(std::move(file)),
           records_(static_cast<std::size_t>(h.objects)),
@@ -63,14 +62,13 @@ public:
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames_) return false;
         const std::string here = "frame " + std::to_string(frame_);
-        if (std::fread(records_.data(), sizeof(box_record), records_.size(), file_.get()) != records_.size())
-            throw aabb::input_error(name_ + ": ends in " + here);
+        if (!file_.has_read(records_.data(), records_.size() * sizeof(box_record))) refuse(name_, "ends in " + here);
         boxes.resize(records_.size());
         std::ranges::transform(records_, boxes.begin(), unpacked);
         try {
             aabb::require_valid(boxes);
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(name_ + ": " + here + ": " + error.what());
+            refuse(name_, here + ": " + error.what());
         }
         ++frame_;
         return true;
@@ -78,17 +76,16 @@ public:
 
 private:
     std::string name_;
-    file_handle file_;
+    whole_file file_;
     std::vector<box_record> records_;
     std::size_t frames_;
     std::size_t frame_ = 0;
 };
 
 /// Without objects no size bounds the number of frames, and playing them does nothing for hours.
-void require_few_empty_frames(const std::string& name, std::size_t objects, std::size_t frames) {
+void require_few_empty_frames(const std::filesystem::path& file, std::size_t objects, std::size_t frames) {
     if (objects == 0 && frames > 1'000'000)
-        throw aabb::input_error(name + ": a recording of 0 objects holds at most 1000000 frames, not " +
-                                std::to_string(frames));
+        refuse(file, "a recording of 0 objects holds at most 1000000 frames, not " + std::to_string(frames));
 }
 
 /// The text in a field of the header, cut to what fits; never empty, which Broadmark refuses.
@@ -103,42 +100,39 @@ std::array<char, 128> field(const std::string& text, const std::string& otherwis
 
 std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
-    const std::string name = file.string();
     if (size < sizeof(header))
-        throw aabb::input_error(name + ": is no recording: its header takes " + std::to_string(sizeof(header)) +
-                                " bytes, but the file has " + std::to_string(size));
-    file_handle opened = open_to_read(file);
+        refuse(file, "is no recording: its header takes " + std::to_string(sizeof(header)) +
+                         " bytes, but the file has " + std::to_string(size));
+    whole_file opened(file, size);
     header h{};
-    if (std::fread(&h, sizeof h, 1, opened.get()) != 1) throw aabb::input_error(name + ": cannot be read");
+    if (!opened.has_read(&h, sizeof h)) refuse(file, "cannot be read");
     if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
-        throw aabb::input_error(name + ": is no recording: its header does not hold two names and two zeros");
+        refuse(file, "is no recording: its header does not hold two names and two zeros");
     if (h.objects < 0 || h.last_frame < 0)
-        throw aabb::input_error(name + ": its header announces " + std::to_string(h.objects) + " objects and " +
-                                std::to_string(h.last_frame) + " frames; neither can be negative");
-    if (!aabb::is_valid(unpacked(h.world)))
-        throw aabb::input_error(name + ": the world box in its header is inverted or not finite");
+        refuse(file, "its header announces " + std::to_string(h.objects) + " objects and " +
+                         std::to_string(h.last_frame) + " frames; neither can be negative");
+    if (!aabb::is_valid(unpacked(h.world))) refuse(file, "the world box in its header is inverted or not finite");
     // Counted in boxes: in bytes the announced size may not fit a number.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
     const std::uint64_t held = (size - sizeof(header)) / sizeof(box_record);
     if (boxes != held || (size - sizeof(header)) % sizeof(box_record) != 0)
-        throw aabb::input_error(name + ": its header announces " + std::to_string(boxes) + " boxes (" +
-                                std::to_string(h.objects) + " objects, " + std::to_string(h.last_frame) +
-                                " + 1 frames), but the file has " + std::to_string(size - sizeof(header)) +
-                                " bytes of them, " + std::to_string(sizeof(box_record)) + " each");
-    require_few_empty_frames(name, static_cast<std::size_t>(h.objects), static_cast<std::size_t>(h.last_frame) + 1);
-    require_memory(name + ": a frame of " + std::to_string(h.objects) + " boxes",
+        refuse(file, "its header announces " + std::to_string(boxes) + " boxes (" + std::to_string(h.objects) +
+                         " objects, " + std::to_string(h.last_frame) + " + 1 frames), but the file has " +
+                         std::to_string(size - sizeof(header)) + " bytes of them, " +
+                         std::to_string(sizeof(box_record)) + " each");
+    require_few_empty_frames(file, static_cast<std::size_t>(h.objects), static_cast<std::size_t>(h.last_frame) + 1);
+    require_memory(file.string() + ": a frame of " + std::to_string(h.objects) + " boxes",
                    static_cast<double>(h.objects) * (sizeof(box_record) + sizeof(aabb::box)));
-    return std::make_unique<recording>(name, std::move(opened), h);
+    return std::make_unique<recording>(file.string(), std::move(opened), h);
 }
 
 void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress) {
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (scene.objects() > most || scene.frames() > most || scene.frames() == 0)
-        throw aabb::input_error(file.string() +
-                                ": a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not " +
-                                std::to_string(scene.objects()) + " and " + std::to_string(scene.frames()));
-    require_few_empty_frames(file.string(), scene.objects(), scene.frames());
+        refuse(file, "a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not " +
+                         std::to_string(scene.objects()) + " and " + std::to_string(scene.frames()));
+    require_few_empty_frames(file, scene.objects(), scene.frames());
     header h{field(name, "scene"),
              field(type, "boxes"),
              static_cast<std::int32_t>(scene.objects()),

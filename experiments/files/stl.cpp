@@ -4,7 +4,6 @@ module;
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -15,11 +14,11 @@ module;
 
 module aabblab.files;
 
-import aabb.base;
 import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :readers;
+import :scalar;
 import :text_decoder;
 import :text_scanner;
 
@@ -90,9 +89,7 @@ constexpr std::size_t header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
 
 std::uint32_t announced_triangles(std::string_view bytes) {
-    std::uint32_t count = 0;
-    std::memcpy(&count, bytes.data() + 80, sizeof count);
-    return count;
+    return u32_at(bytes, 80);
 }
 
 /// Writers disagree about the case of keywords.
@@ -160,15 +157,9 @@ bool is_space(char c) {
 // holds, and is read in parts: memory that is touched for the first time takes most of the time of reading.
 std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size) {
     if (size < header_bytes) return {};
-    const file_handle opened = open_to_read(file);
-    auto read = [&, done = std::size_t{0}](void* to, std::size_t bytes) mutable {
-        if (std::fread(to, 1, bytes, opened.get()) != bytes)
-            throw aabb::input_error(file.string() + ": cannot be read beyond byte " + std::to_string(done) + " of " +
-                                    std::to_string(size));
-        done += bytes;
-    };
+    whole_file opened(file, size);
     std::array<char, header_bytes> header{};
-    read(header.data(), header.size());
+    opened.read(header.data(), header.size());
     const std::uint32_t count = announced_triangles({header.data(), header.size()});
     if (size != bytes_of_binary(count)) return {};
     require_memory(file.string() + ": reading it", static_cast<double>(size));
@@ -181,14 +172,13 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
     std::array<std::size_t, 3 * most_at_once> hashes{};
     for (std::uint32_t first = 0; first < count; first += std::min(most_at_once, count - first)) {
         const std::uint32_t triangles = std::min(most_at_once, count - first);
-        read(bytes.data(), triangle_bytes * triangles);
+        opened.read(bytes.data(), triangle_bytes * triangles);
         for (std::size_t t = 0; t < triangles; ++t)
             // A normal, three vertices, two bytes of attributes.
             std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + 12, 3 * sizeof points[0]);
         for (std::size_t i = 0; i < 3 * triangles; ++i) {
             if (!aabb::is_finite(points[i]))
-                throw aabb::input_error(file.string() + ": triangle " + std::to_string(first + i / 3) +
-                                        " has a coordinate that is not finite");
+                refuse(file, "triangle " + std::to_string(first + i / 3) + " has a coordinate that is not finite");
             hashes[i] = merger.prefetch(points[i]);
         }
         for (std::size_t t = 0; t < triangles; ++t) {
@@ -215,13 +205,11 @@ loaded_mesh read_stl(const file_text& file) {
     if (is_text_stl(file.text)) return read_text(file);
     const std::size_t size = file.text.size();
     if (size < header_bytes)
-        throw aabb::input_error(file.name +
-                                ": is no STL file: it is neither text that begins with solid nor holds the 84 bytes of "
-                                "a binary header");
+        file.fail(
+            "is no STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header");
     const std::uint32_t count = announced_triangles(file.text);
-    throw aabb::input_error(file.name + ": its header announces " + std::to_string(count) + " triangles, which take " +
-                            std::to_string(bytes_of_binary(count)) + " bytes, but the file has " +
-                            std::to_string(size));
+    file.fail("its header announces " + std::to_string(count) + " triangles, which take " +
+              std::to_string(bytes_of_binary(count)) + " bytes, but the file has " + std::to_string(size));
 }
 
 }  // namespace aabblab

@@ -5,7 +5,6 @@ module;
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,6 +18,34 @@ import :comment;
 import :file_text;
 
 namespace aabblab {
+
+/// The number that a text is.
+template <class Number>
+struct read_number {
+    explicit read_number(std::string_view text) {
+        // from_chars takes no plus sign.
+        const bool has_plus = std::floating_point<Number> && text.starts_with('+') && !text.starts_with("+-");
+        const char* const end = text.data() + text.size();
+        const auto [stopped, error] = std::from_chars(text.data() + has_plus, end, value);
+        is_one = stopped == end && error != std::errc::invalid_argument;
+        out_of_range = error == std::errc::result_out_of_range;
+        // Too small is a rounded zero, too large infinite; only this tells which it was.
+        if constexpr (std::floating_point<Number>)
+            if (out_of_range) value = from_text(text);
+    }
+
+    Number value = 0;
+    bool is_one = false;  ///< and nothing else
+    bool out_of_range = false;
+
+private:
+    [[nodiscard]] static Number from_text(std::string_view text) {
+        if constexpr (std::same_as<Number, float>)
+            return std::strtof(std::string(text).c_str(), nullptr);
+        else
+            return std::strtod(std::string(text).c_str(), nullptr);
+    }
+};
 
 class text_scanner {
 public:
@@ -63,35 +90,30 @@ public:
 
     /// @throws aabb::input_error with the file, the line and the sentence.
     [[noreturn]] void fail(const std::string& sentence) const {
-        throw aabb::input_error(file_ + ":" + std::to_string(number_) + ": " + sentence);
+        refuse(file_ + ":" + std::to_string(number_), sentence);
     }
     [[noreturn]] void expected(const std::string& what, std::string_view found) const {
         fail("expected " + what + ", found " + (found.empty() ? "the end of the line" : in_quotes(found)));
     }
     /// For a file that ends too early.
-    [[noreturn]] void ends(const std::string& where) const { throw aabb::input_error(file_ + ": ends " + where); }
+    [[noreturn]] void ends(const std::string& where) const { refuse(file_, "ends " + where); }
 
     /// A whole number that fits.
     template <std::integral Whole>
     [[nodiscard]] Whole whole(const std::string& what) {
         const std::string_view text = word();
-        Whole value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || end != text.data() + text.size()) expected(what, text);
-        return value;
+        const read_number<Whole> number(text);
+        if (!number.is_one || number.out_of_range) expected(what, text);
+        return number.value;
     }
 
     /// A finite number, correctly rounded to double.
     [[nodiscard]] double number(const std::string& what) {
         const std::string_view text = word();
-        const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-"));
-        double value = 0;
-        const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-        if (end != text.data() + text.size() || error == std::errc::invalid_argument) expected(what, text);
-        // Too small for a double is a rounded zero, too large is refused.
-        if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
-        if (!std::isfinite(value)) fail(in_quotes(text) + " is not a finite number");
-        return value;
+        const read_number<double> number(text);
+        if (!number.is_one) expected(what, text);
+        if (!std::isfinite(number.value)) fail(in_quotes(text) + " is not a finite number");
+        return number.value;
     }
 
     /// Three coordinates, as `coordinate`.
@@ -103,23 +125,13 @@ public:
 
     /// One coordinate, correctly rounded to float; NaN or infinite only where the text says so.
     [[nodiscard]] float coordinate(std::string_view text) {
-        // from_chars takes no plus sign.
-        const char* const begin = text.data() + (text.starts_with('+') && !text.starts_with("+-"));
-        const char* const end = text.data() + text.size();
-        float value = 0;
-        const auto [stopped, error] = std::from_chars(begin, end, value);
-        if (stopped != end || error == std::errc::invalid_argument) expected("three coordinates", text);
-        double fine = value;
-        if (error == std::errc::result_out_of_range) {
-            // Too small for a float is a rounded zero, too large is refused; only strtof tells which it was.
-            value = std::strtof(std::string(text).c_str(), nullptr);
-            fine = std::numeric_limits<double>::quiet_NaN();
-            if (std::isinf(value)) fail("the coordinate " + in_quotes(text) + " is too large for a float");
-        } else {
-            std::from_chars(begin, end, fine);
-        }
-        if (std::isfinite(value)) rounded_ += fine != value;
-        return value;
+        const read_number<float> number(text);
+        if (!number.is_one) expected("three coordinates", text);
+        if (number.out_of_range && std::isinf(number.value))
+            fail("the coordinate " + in_quotes(text) + " is too large for a float");
+        if (std::isfinite(number.value))
+            rounded_ += number.out_of_range || read_number<double>(text).value != double{number.value};
+        return number.value;
     }
 
     /// Coordinates so far whose text, read as a double, differs from the float.

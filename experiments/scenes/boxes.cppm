@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabblab.files;
 import :drift;
+import :parameters;
 import :random;
 import :spacing;
 
@@ -25,9 +27,6 @@ struct scene_size {
     std::uint32_t objects = 1000;
     std::uint32_t frames = 20;
 };
-inline constexpr std::tuple size_parameters{
-    aabb::integer_parameter{"objects", &scene_size::objects, 0U, 0x7fffffffU, "how many boxes"},
-    aabb::integer_parameter{"frames", &scene_size::frames, 0U, 0x7ffffffeU, "frames after the first one"}};
 
 /// What a displacement is a fraction of: the mean extent of the boxes, or their mean spacing.
 enum class length_unit : unsigned char { extent, spacing };
@@ -38,29 +37,28 @@ struct motion_config : scene_size {
     length_unit unit = length_unit::extent;
 };
 /// @param way what `displacement` is
-template <class Config>
-[[nodiscard]] constexpr auto displacement_parameters(std::string_view way) {
-    return std::tuple{
-        aabb::number_parameter{"displacement", &Config::displacement, 0.0, 1e9, way},
-        aabb::choice_parameter{
-            "unit", &Config::unit, std::array<std::string_view, 2>{"extent", "spacing"},
-            "what displacement is a fraction of: the mean extent of a box, or the mean spacing (the edge of the "
-            "cube that each box would have for itself)"}};
+[[nodiscard]] constexpr auto motion_parameters_of(std::string_view way) {
+    return std::tuple_cat(
+        size_parameters<scene_size>("how many boxes"),
+        std::tuple{
+            aabb::number_parameter{"displacement", &motion_config::displacement, 0.0, 1e9, way},
+            aabb::choice_parameter{
+                "unit", &motion_config::unit, std::array<std::string_view, 2>{"extent", "spacing"},
+                "what displacement is a fraction of: the mean extent of a box, or the mean spacing (the edge of the "
+                "cube that each box would have for itself)"}});
 }
-inline constexpr auto motion_parameters = std::tuple_cat(
-    size_parameters,
-    displacement_parameters<motion_config>("the way of every box in a frame, unfolded where walls reflect it"));
+inline constexpr auto motion_parameters =
+    motion_parameters_of("the way of every box in a frame, unfolded where walls reflect it");
 
 /// `displacement` as a length.
 /// @param extent of the boxes, mean
 /// @param sides of the world, 0 on a flat axis
-template <class Config>
-[[nodiscard]] double step_of(const Config& c, double extent, const aabb::vec3d& sides) {
+[[nodiscard]] inline double step_of(const motion_config& c, double extent, const aabb::vec3d& sides) {
     return c.displacement * (c.unit == length_unit::extent ? extent : mean_spacing(sides, c.objects));
 }
 
 /// The cube with this lowest corner.
-[[nodiscard]] inline aabb::box cube_at(const aabb::vec3d& corner, double edge) {
+[[nodiscard]] inline aabb::box cube_at(const Eigen::Vector3d& corner, double edge) {
     aabb::box b{};
     for (int k = 0; k < 3; ++k) {
         b.min[k] = static_cast<float>(corner[k]);
@@ -75,17 +73,15 @@ template <class Config>
     return edge_of(static_cast<double>(objects) * (1 << axes) / 2, axes);
 }
 
-/// The corners of unit cubes that drift on the first `axes` axes in a world of that width.
-[[nodiscard]] inline drifting_points drifting_corners(const motion_config& c, int axes, random_source& random) {
-    const double width = width_for(c.objects, axes);
-    aabb::vec3d sides{};
-    for (int k = 0; k < axes; ++k) sides[k] = width + 1;
-    const double step = step_of(c, 1, sides);
-    return {c.objects, axes, width, {step, step}, random};
+/// The edge of the smallest cubic lattice of so many cells.
+[[nodiscard]] inline std::uint32_t lattice_side(std::uint64_t cells) {
+    std::uint64_t side = 1;
+    while (side * side * side < cells) ++side;
+    return static_cast<std::uint32_t>(side);
 }
-
-inline void place_cubes(const drifting_points& corners, std::span<aabb::box> boxes) {
-    for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = cube_at(corners[i], 1);
+/// Of a cell, by its number, along each axis; the last axis changes first.
+[[nodiscard]] inline Eigen::Vector3d lattice_cell(std::uint64_t cell, std::uint64_t side) {
+    return Eigen::Matrix<std::uint64_t, 3, 1>(cell / (side * side), cell / side % side, cell % side).cast<double>();
 }
 
 /// A scene of boxes that is made as it is played. A kind moves what it holds and places the boxes of a frame.
@@ -95,8 +91,8 @@ public:
     [[nodiscard]] std::size_t frames() const final { return std::size_t{size_.frames} + 1; }
 
     bool next(std::vector<aabb::box>& boxes) final {
-        if (frame_ == frames()) return false;
-        if (frame_++ > 0) advance();
+        if (played_ == frames()) return false;
+        if (played_++ > 0) advance();
         boxes.resize(objects());
         place(boxes);
         return true;
@@ -104,21 +100,61 @@ public:
 
 protected:
     /// @param bytes_each what the kind holds of an object
-    generated_boxes(std::string_view name, const scene_size& size, std::uint64_t seed, double bytes_each)
+    /// @param noun behind the name, where it is not one itself
+    generated_boxes(std::string_view name, const scene_size& size, std::uint64_t seed, double bytes_each,
+                    std::string_view noun = " scene")
         : random_(seed), size_(size) {
-        require_memory("a " + std::string(name) + " scene of " + std::to_string(size.objects) + " objects",
-                       size.objects * (bytes_each + sizeof(aabb::box)));
+        require_memory(
+            "a " + std::string(name) + std::string(noun) + " of " + std::to_string(size.objects) + " objects",
+            size.objects * (bytes_each + sizeof(aabb::box)));
     }
 
     /// From one frame to the next.
     virtual void advance() {}
     virtual void place(std::span<aabb::box> boxes) = 0;
+    /// The number of the frame that is advanced to, or placed.
+    [[nodiscard]] std::size_t frame() const { return played_ - 1; }
 
     random_source random_;
 
 private:
     scene_size size_;
-    std::size_t frame_ = 0;
+    std::size_t played_ = 0;
+};
+
+/// Boxes each of which drifts with a point: where not said otherwise, a unit cube with its lowest corner there.
+class drifting_boxes : public generated_boxes {
+protected:
+    /// @param further_bytes_each what the kind holds of an object beside its point
+    drifting_boxes(std::string_view name, const scene_size& size, std::uint64_t seed, double further_bytes_each = 0)
+        : generated_boxes(name, size, seed, drifting_points::bytes_each + further_bytes_each) {}
+
+    /// @param width of the cube (square, segment) that points drift in
+    /// @param extent, sides see `step_of`
+    void drift(const motion_config& c, double width, double extent, const aabb::vec3d& sides, int axes = 3) {
+        const double step = step_of(c, extent, sides);
+        points_ = {c.objects, axes, width, {step, step}, random_};
+    }
+    void drift(const motion_config& c, double width, double extent, double side) {
+        drift(c, width, extent, {side, side, side});
+    }
+    /// Unit cubes on the first `axes` axes, as close as `width_for` says.
+    void drift(const motion_config& c, int axes = 3) {
+        const double width = width_for(c.objects, axes);
+        aabb::vec3d sides{};
+        for (int k = 0; k < axes; ++k) sides[k] = width + 1;
+        drift(c, width, 1, sides, axes);
+    }
+
+    void advance() override { points_.advance(random_); }
+    void place(std::span<aabb::box> boxes) final {
+        for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = box_at(points_[i], i);
+    }
+    [[nodiscard]] virtual aabb::box box_at(const Eigen::Vector3d& point, std::size_t /*object*/) const {
+        return cube_at(point, 1);
+    }
+
+    drifting_points points_;
 };
 
 }  // namespace aabblab

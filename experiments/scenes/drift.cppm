@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +8,6 @@ module;
 /// Points that drift, and roots that are the same everywhere.
 module aabblab.scenes:drift;
 
-import aabb.geometry;
 import :random;
 
 namespace aabblab {
@@ -38,24 +38,21 @@ struct step_range {
 /// hundredth of the points, drawn anew, change their direction every frame.
 class drifting_points {
 public:
-    drifting_points(std::uint32_t count, double width, double most_step, random_source& random)
-        : drifting_points(count, 3, width, {0, most_step}, random) {}
-
+    drifting_points() = default;
     /// On the first `axes` axes only; the other coordinates stay 0.
     drifting_points(std::uint32_t count, int axes, double width, step_range steps, random_source& random)
         : axes_(axes), width_(width > 0 ? width : 0) {
         points_.reserve(count);
         for (std::uint32_t i = 0; i < count; ++i) {
-            point p{};
+            point& p = points_.emplace_back();
             for (int k = 0; k < axes; ++k) p.at[k] = random.unit() * width_;
             p.step = steps.least + random.unit() * (steps.most - steps.least);
             p.direction = random.direction(axes);
-            points_.push_back(p);
         }
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
-    [[nodiscard]] const aabb::vec3d& operator[](std::size_t i) const noexcept { return points_[i].at; }
+    [[nodiscard]] const Eigen::Vector3d& operator[](std::size_t i) const noexcept { return points_[i].at; }
 
     void advance(random_source& random) {
         const auto count = static_cast<std::uint32_t>(points_.size());
@@ -70,9 +67,9 @@ public:
 
 private:
     struct point {
-        aabb::vec3d at;
-        aabb::vec3d direction;
-        double step;
+        Eigen::Vector3d at = Eigen::Vector3d::Zero();
+        Eigen::Vector3d direction;
+        double step = 0;
     };
     static_assert(sizeof(point) == static_cast<std::size_t>(bytes_each));
 
@@ -88,8 +85,8 @@ private:
         p.at[k] = along;
     }
 
-    int axes_;
-    double width_;
+    int axes_ = 0;
+    double width_ = 0;
     std::vector<point> points_;
     std::uint64_t to_turn_ = 0;
 };

@@ -1,5 +1,5 @@
 module;
-#include <array>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,7 @@ module aabblab.scenes;
 
 import aabb.geometry;
 import aabblab.stepping;
+import :boxes;
 import :dropped_world;
 import :random;
 import :rotation;
@@ -31,16 +32,14 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     const double spring = gravity / (c.depth * extent);  // for 1 kg
     const double girth = std::numbers::pi * extent;      // 2πR
     world.law = {contact_geometry::shared_volume, spring / girth, 2 * c.loss * std::sqrt(spring) / girth, 0};
-    std::uint32_t side = 1;
-    while (std::uint64_t{side} * side * side < c.balls) ++side;
+    const std::uint32_t side = lattice_side(c.balls);
+    // In the middle of the floor.
+    const double beside = extent * gap * (side - 1) / 2;
+    const Eigen::Vector3d first = {-beside, -beside, extent * (c.height + 0.5)};
     random_source random(seed);
     for (std::uint32_t i = 0; i < c.balls; ++i) {
-        const std::array cell = {i % side, i / side % side, i / side / side};
-        aabb::vec3d place{};
-        for (int k = 0; k < 3; ++k)
-            place[k] = extent * (gap * cell[static_cast<std::size_t>(k)] + perturbation * random.within());
-        for (int k = 0; k < 2; ++k) place[k] -= extent * gap * (side - 1) / 2;
-        place[2] += extent * (c.height + 0.5);
+        const Eigen::Vector3d off = {random.within(), random.within(), random.within()};
+        const Eigen::Vector3d place = (lattice_cell(i, side).reverse() * gap + off * perturbation) * extent + first;
         const aabb::pose at = placed(centre_of(bounds), random_rotation(random), place);
         world.bodies.push_back(
             {.mesh = 1, .position = at.translation, .velocity = {0, 0, -c.speed}, .mass = 1, .rotation = at.rotation});

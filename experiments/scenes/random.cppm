@@ -1,5 +1,5 @@
 module;
-#include <cmath>
+#include <Eigen/Core>
 #include <cstdint>
 #include <random>
 
@@ -7,7 +7,7 @@ module;
 /// distributions, and of functions only the square root is rounded alike everywhere.
 module aabblab.scenes:random;
 
-import aabb.geometry;
+import aabblab.vectors;
 
 namespace aabblab {
 
@@ -24,19 +24,17 @@ public:
     }
 
     /// Evenly over the unit sphere; over the unit circle of the first two axes; along the first.
-    [[nodiscard]] aabb::vec3d direction(int axes = 3) {
+    [[nodiscard]] Eigen::Vector3d direction(int axes = 3) {
         while (true) {
-            aabb::vec3d p{};
+            Eigen::Vector3d p = Eigen::Vector3d::Zero();
             for (int k = 0; k < axes; ++k) p[k] = within();
-            const double square = aabb::dot(p, p);
-            if (square > 1 || square < 1e-6) continue;
-            const double length = std::sqrt(square);
-            return {p[0] / length, p[1] / length, p[2] / length};
+            const double square = dot(p, p);
+            if (square <= 1 && square >= 1e-6) return p / length_of(p);
         }
     }
 
     /// In the cube [0, width)^3.
-    [[nodiscard]] aabb::vec3d point(double width) { return {unit() * width, unit() * width, unit() * width}; }
+    [[nodiscard]] Eigen::Vector3d point(double width) { return {unit() * width, unit() * width, unit() * width}; }
 
     /// In [-1, 1).
     [[nodiscard]] double within() { return 2 * unit() - 1; }

@@ -1,32 +1,38 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
 module aabblab.stepping;
 
 import aabb.geometry;
+import aabblab.vectors;
 
 namespace aabblab {
 
 namespace {
 
-aabb::vec3d vector_at(std::span<const double> all, std::size_t body) {
-    return {all[3 * body], all[3 * body + 1], all[3 * body + 2]};
+/// Of a body among all, three numbers each.
+auto vector_at(std::span<const double> all, std::size_t body) {
+    return Eigen::Map<const Eigen::Vector3d>(all.subspan(3 * body, 3).data());
+}
+auto vector_at(std::span<double> all, std::size_t body) {
+    return Eigen::Map<Eigen::Vector3d>(all.subspan(3 * body, 3).data());
 }
 
 }  // namespace
 
 motion_state stepped_world::start() const {
     motion_state state;
-    for (const body& b : bodies)
-        for (int k = 0; k < 3; ++k) {
-            state.position.push_back(b.position[k]);
-            state.velocity.push_back(b.velocity[k]);
-        }
+    for (const body& b : bodies) {
+        state.position.insert(state.position.end(), std::begin(b.position.at), std::end(b.position.at));
+        state.velocity.insert(state.velocity.end(), std::begin(b.velocity.at), std::end(b.velocity.at));
+    }
     return state;
 }
 
@@ -38,7 +44,7 @@ std::vector<std::uint32_t> stepped_world::mesh_of() const {
 
 void stepped_world::place(std::span<const double> position, std::vector<aabb::pose>& poses) const {
     poses.resize(bodies.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i) poses[i] = {bodies[i].rotation, vector_at(position, i)};
+    for (std::size_t i = 0; i < bodies.size(); ++i) poses[i] = {bodies[i].rotation, from_eigen(vector_at(position, i))};
 }
 
 void dynamics::accelerate(std::span<const double> position, std::span<const double> velocity,
@@ -53,14 +59,11 @@ void dynamics::accelerate(std::span<const double> position, std::span<const doub
         const std::uint32_t a = from->a;
         const std::uint32_t b = from->b;
         const auto to = std::find_if(from, contacts.end(), [&](const auto& c) { return c.a != a || c.b != b; });
-        const contact_force found =
-            force_of(world_.law, {from, to}, {&world_.meshes[bodies[a].mesh], poses_[a]},
-                     {&world_.meshes[bodies[b].mesh], poses_[b]}, vector_at(velocity, b) - vector_at(velocity, a));
-        for (int k = 0; k < 3; ++k) {
-            const auto axis = static_cast<std::size_t>(k);
-            acceleration[std::size_t{3} * a + axis] -= found.force[k] / bodies[a].mass;
-            acceleration[std::size_t{3} * b + axis] += found.force[k] / bodies[b].mass;
-        }
+        const contact_force found = force_of(world_.law, {from, to}, {&world_.meshes[bodies[a].mesh], poses_[a]},
+                                             {&world_.meshes[bodies[b].mesh], poses_[b]},
+                                             from_eigen(vector_at(velocity, b) - vector_at(velocity, a)));
+        vector_at(acceleration, a) -= in_eigen(found.force) / bodies[a].mass;
+        vector_at(acceleration, b) += in_eigen(found.force) / bodies[b].mass;
         spring_energy_ += found.energy;
         from = to;
     }
@@ -71,7 +74,7 @@ double dynamics::mechanical_energy(const motion_state& state) const {
     for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
         const double mass = world_.bodies[i].mass;
         if (!std::isfinite(mass)) continue;
-        const aabb::vec3d v = vector_at(state.velocity, i);
+        const auto v = vector_at(state.velocity, i);
         sum += mass * (dot(v, v) / 2 + world_.gravity * state.position[3 * i + 2]);
     }
     return sum;

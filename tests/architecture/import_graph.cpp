@@ -21,6 +21,7 @@ const std::vector<std::string> rooms = {
     "modules/costs",
     "modules/policy",
     "modules/geometry",
+    "modules/eigen",
     "modules/digest",
     "modules/global_search",
     "modules/local_detection",

@@ -85,13 +85,13 @@ export PATH=$work/bin WORK=$work
 
 everything='clang\+\+ 19 or newer, clang-scan-deps, CMake 3.28 or newer, ninja, <catch2/catch_test_macros.hpp>,'
 everything+=' <rapidcheck.h>, <benchmark/benchmark.h>, <CGAL/version.h>,'
-everything+=' <boost/math/distributions/students_t.hpp>, <toml\+\+/toml.h>, <CLI/CLI.hpp>, <fmt/core.h>,'
+everything+=' <boost/math/distributions/students_t.hpp>, <toml\+\+/toml.h>, <CLI/CLI.hpp>, <eigen3/Eigen/Core>, <fmt/core.h>,'
 everything+=' <nlohmann/json.hpp>, <xxhash.h>, <oneapi/tbb/task_arena.h>, <openssl/evp.h>, <archive.h>, <fcl/config.h>, <ccd/ccd.h>,'
 everything+=' <embree4/rtcore.h>, <bullet/LinearMath/btScalar.h>, <ode/ode.h>, valgrind'
 tools='clang-19 libclang-rt-19-dev clang-tools-19'
 libraries='librapidcheck-dev libbenchmark-dev libcgal-dev libboost-dev'
-libraries+=' libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libssl-dev libarchive-dev'
-libraries+=' libfcl-dev libeigen3-dev libccd-dev libembree-dev libbullet-dev libode-dev valgrind'
+libraries+=' libtomlplusplus-dev libcli11-dev libeigen3-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libssl-dev libarchive-dev'
+libraries+=' libfcl-dev libccd-dev libembree-dev libbullet-dev libode-dev valgrind'
 all="$tools cmake ninja-build catch2 $libraries"
 install='apt-get update && apt-get install -y --no-install-recommends'
 
@@ -99,7 +99,7 @@ install='apt-get update && apt-get install -y --no-install-recommends'
 
 here='aabblab: packages are installed on Debian 12 and 13 only, and here is missing:'
 fedora='clang compiler-rt clang-tools-extra cmake ninja-build catch-devel google-benchmark-devel CGAL-devel'
-fedora+=' boost-devel tomlplusplus-devel cli11-devel fmt-devel json-devel xxhash-devel tbb-devel openssl-devel'
+fedora+=' boost-devel tomlplusplus-devel cli11-devel eigen3-devel fmt-devel json-devel xxhash-devel tbb-devel openssl-devel'
 fedora+=' libarchive-devel libccd-devel embree-devel bullet-devel valgrind'
 unpackaged='Fedora has no package of <rapidcheck.h>, <fcl/config.h>, <ode/ode.h>'
 on ID=fedora

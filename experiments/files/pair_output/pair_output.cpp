@@ -19,14 +19,12 @@ import aabblab.files;
 namespace aabblab {
 
 void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where) {
-    const auto twice = std::ranges::adjacent_find(pairs);
-    if (twice != pairs.end())
+    if (const auto twice = std::ranges::adjacent_find(pairs); twice != pairs.end())
         throw defect(fmt::format("{}: the pair {},{} was reported more than once", where, twice->a, twice->b));
 }
 
 void require_each_once(std::span<const aabb::contact> contacts, std::string_view where) {
-    const auto twice = std::ranges::adjacent_find(contacts);
-    if (twice != contacts.end())
+    if (const auto twice = std::ranges::adjacent_find(contacts); twice != contacts.end())
         throw defect(fmt::format("{}: the contact {},{},{},{} was reported more than once", where, twice->a, twice->b,
                                  twice->triangle_a, twice->triangle_b));
 }

@@ -1,8 +1,7 @@
 module;
-#include <algorithm>
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -12,14 +11,13 @@ module aabblab.scenes:clustered;
 import aabb.geometry;
 import aabb.policy;
 import :boxes;
-import :drift;
 import :random;
 
 namespace aabblab {
 
 /// Unit cubes in tight clusters far apart; object i drifts in cluster i modulo their number. Each cluster is a cube at
 /// a random place in the middle of a cell of its own, eight times as wide.
-class clustered final : public generated_boxes {
+class clustered final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "clustered";
     static constexpr std::string_view summary =
@@ -32,50 +30,37 @@ public:
         motion_parameters,
         std::tuple{aabb::integer_parameter{"clusters", &config::clusters, 1U, 1'000'000U, "how many clusters"}});
 
-    clustered(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each),
-          width_(width_for((c.objects + c.clusters - 1) / c.clusters, 3)),
-          corners_(cluster_corners(c.clusters)),
-          points_(drifting(c)) {}
+    clustered(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
+        const double width = width_for((c.objects + c.clusters - 1) / c.clusters, 3);
+        place_clusters(c.clusters, width + 1);
+        // The world is what the clusters span.
+        Eigen::Vector3d least = corners_.front();
+        Eigen::Vector3d most = corners_.front();
+        for (const Eigen::Vector3d& corner : corners_) {
+            least = least.cwiseMin(corner);
+            most = most.cwiseMax(corner);
+        }
+        aabb::vec3d sides{};
+        for (int k = 0; k < 3; ++k) sides[k] = most[k] - least[k] + width + 1;
+        drift(c, width, 1, sides);
+    }
 
 private:
     /// Takes cells of the smallest lattice that has enough of them, every choice of cells equally likely.
-    std::vector<aabb::vec3d> cluster_corners(std::uint32_t wanted) {
-        std::uint32_t side = 1;
-        while (side * side * side < wanted) ++side;
-        std::vector<aabb::vec3d> corners;
-        corners.reserve(wanted);
-        for (std::uint32_t cell = 0, cells = side * side * side; corners.size() < wanted; ++cell) {
-            if (random_.below(cells - cell) >= wanted - corners.size()) continue;
-            const std::uint32_t at[3] = {cell / (side * side), cell / side % side, cell % side};
-            aabb::vec3d corner{};
-            for (int k = 0; k < 3; ++k) corner[k] = (width_ + 1) * (8 * at[k] + 2 + 3 * random_.unit());
-            corners.push_back(corner);
+    void place_clusters(std::uint32_t wanted, double width) {
+        const std::uint32_t side = lattice_side(wanted);
+        for (std::uint32_t cell = 0, cells = side * side * side; corners_.size() < wanted; ++cell) {
+            if (random_.below(cells - cell) >= wanted - corners_.size()) continue;
+            const Eigen::Vector3d start = lattice_cell(cell, side) * 8 + Eigen::Vector3d::Constant(2);
+            corners_.emplace_back((start + random_.point(1) * 3) * width);
         }
-        return corners;
     }
 
-    /// The world is what the clusters span.
-    drifting_points drifting(const config& c) {
-        aabb::vec3d sides{};
-        for (int k = 0; k < 3; ++k) {
-            const auto [least, most] = std::ranges::minmax(corners_, {}, [k](const aabb::vec3d& p) { return p[k]; });
-            sides[k] = most[k] - least[k] + width_ + 1;
-        }
-        const double step = step_of(c, 1, sides);
-        return {c.objects, 3, width_, {step, step}, random_};
+    [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& point, std::size_t i) const override {
+        return cube_at(corners_[i % corners_.size()] + point, 1);
     }
 
-    void advance() override { points_.advance(random_); }
-
-    void place(std::span<aabb::box> boxes) override {
-        for (std::size_t i = 0; i < boxes.size(); ++i)
-            boxes[i] = cube_at(corners_[i % corners_.size()] + points_[i], 1);
-    }
-
-    double width_;
-    std::vector<aabb::vec3d> corners_;  // by cluster
-    drifting_points points_;            // within their cluster
+    std::vector<Eigen::Vector3d> corners_;  // by cluster
 };
 
 }  // namespace aabblab

@@ -1,5 +1,5 @@
 module;
-#include <cmath>
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,8 +11,10 @@ module aabblab.scenes:explosion;
 
 import aabb.geometry;
 import aabb.policy;
+import aabblab.vectors;
 import :boxes;
 import :drift;
+import :parameters;
 import :random;
 
 namespace aabblab {
@@ -29,45 +31,40 @@ public:
         /// How far a cube moves in a frame while it flies, in edges; before, a hundredth of that.
         double displacement = 0.5;
     };
-    static constexpr auto parameters = std::tuple_cat(
-        size_parameters, std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
-                                                           "the way of a cube in a frame while it flies, in edges"}});
+    static constexpr auto parameters =
+        std::tuple_cat(size_parameters<config>("how many boxes"),
+                       std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
+                                                         "the way of a cube in a frame while it flies, in edges"}});
 
     explosion(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, sizeof(flying_box)), frames_(c.frames) {
+        : generated_boxes(name, c, seed, sizeof(flying_box)), flight_(c.displacement) {
         const double side = cube_root(c.objects);
-        flight_ = c.displacement;
-        boxes_.reserve(c.objects);
-        for (std::uint32_t i = 0; i < c.objects; ++i) {
-            flying_box b{};
-            for (int k = 0; k < 3; ++k) b.corner[k] = side * random_.within() / 2;
-            const double away = std::sqrt(aabb::dot(b.corner, b.corner));
+        boxes_.resize(c.objects);
+        for (flying_box& b : boxes_) {
+            for (double& x : b.corner) x = side * random_.within() / 2;
+            const double away = length_of(b.corner);
             b.direction = random_.direction();
-            for (int k = 0; k < 3 && away > 0; ++k) b.direction[k] = b.corner[k] / away;
-            boxes_.push_back(b);
+            if (away > 0) b.direction = b.corner / away;
         }
     }
 
 private:
     struct flying_box {
-        aabb::vec3d corner;
-        aabb::vec3d direction;
+        Eigen::Vector3d corner;
+        Eigen::Vector3d direction;
     };
 
     void advance() override {
-        ++frame_;
-        const double step = 3 * frame_ <= frames_ ? flight_ / 100 : 3 * frame_ <= 2 * frames_ ? flight_ : 0;
-        for (flying_box& b : boxes_)
-            for (int k = 0; k < 3; ++k) b.corner[k] += step * b.direction[k];
+        const std::size_t last = frames() - 1;
+        const double step = 3 * frame() <= last ? flight_ / 100 : 3 * frame() <= 2 * last ? flight_ : 0;
+        for (flying_box& b : boxes_) b.corner += b.direction * step;
     }
 
     void place(std::span<aabb::box> boxes) override {
         for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = cube_at(boxes_[i].corner, 1);
     }
 
-    std::uint64_t frames_;
-    std::uint64_t frame_ = 0;
-    double flight_ = 0;
+    double flight_;
     std::vector<flying_box> boxes_;
 };
 

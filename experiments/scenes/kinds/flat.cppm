@@ -1,21 +1,15 @@
 module;
-#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string_view>
-#include <tuple>
 
 module aabblab.scenes:flat;
 
-import aabb.geometry;
 import :boxes;
-import :drift;
-import :random;
 
 namespace aabblab {
 
 /// Unit cubes in one plane. All have the same extent on the third axis, where sorting and cutting are in vain.
-class flat final : public generated_boxes {
+class flat final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "flat";
     static constexpr std::string_view summary =
@@ -24,14 +18,7 @@ public:
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;
 
-    flat(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each), corners_(drifting_corners(c, 2, random_)) {}
-
-private:
-    void advance() override { corners_.advance(random_); }
-    void place(std::span<aabb::box> boxes) override { place_cubes(corners_, boxes); }
-
-    drifting_points corners_;
+    flat(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) { drift(c, 2); }
 };
 
 }  // namespace aabblab

@@ -1,16 +1,15 @@
 module;
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 module aabblab.scenes:free_fall;
 
 import aabb.geometry;
-import aabb.policy;
 import :boxes;
 import :random;
 
@@ -25,35 +24,28 @@ public:
     static constexpr std::string_view summary =
         "unit cubes released above a floor, which fall along z, bounce with losses and gather at the floor";
 
-    struct config {
-        std::uint32_t objects = 1000;
-        std::uint32_t frames = 60;
-        /// How far a box from the greatest height moves in the frame in which it meets the floor.
-        double displacement = 1;
-        length_unit unit = length_unit::extent;
+    /// The displacement is that of a box from the greatest height in the frame in which it meets the floor.
+    struct config : motion_config {
+        config() {
+            frames = 60;
+            displacement = 1;
+        }
     };
-    static constexpr auto parameters = std::tuple_cat(
-        std::tuple{aabb::integer_parameter{"objects", &config::objects, 0U, 0x7fffffffU, "how many boxes"},
-                   aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"}},
-        displacement_parameters<config>("the longest way of a box in a frame"));
+    static constexpr auto parameters = motion_parameters_of("the longest way of a box in a frame");
 
-    free_fall(const config& c, std::uint64_t seed)
-        : generated_boxes(name, {c.objects, c.frames}, seed, sizeof(falling_box)) {
+    free_fall(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(falling_box)) {
         const double width = std::sqrt(c.objects);
         const double fastest = step_of(c, 1, {width + 1, width + 1, height + 1});
         gravity_ = fastest * fastest / (2 * height);
-        boxes_.reserve(c.objects);
-        for (std::uint32_t i = 0; i < c.objects; ++i) {
-            falling_box b{};
-            for (int k = 0; k < 3; ++k) b.corner[k] = random_.unit() * (k == 2 ? height : width);
-            boxes_.push_back(b);
-        }
+        boxes_.resize(c.objects);
+        for (falling_box& b : boxes_)
+            b.corner = {random_.unit() * width, random_.unit() * width, random_.unit() * height};
     }
 
 private:
     struct falling_box {
-        aabb::vec3d corner;
-        double speed;  // upwards, a frame
+        Eigen::Vector3d corner;
+        double speed = 0;  // upwards, a frame
     };
     static constexpr double height = 10;
     static constexpr double kept = 0.5;  // of the speed, by a bounce

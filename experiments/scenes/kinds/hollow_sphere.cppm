@@ -1,16 +1,17 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 module aabblab.scenes:hollow_sphere;
 
 import aabb.geometry;
+import aabblab.vectors;
 import :boxes;
 import :random;
 
@@ -39,7 +40,7 @@ public:
         across_ = 2 * sine * std::sqrt(1 - sine * sine);
         points_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
-            const aabb::vec3d at = random_.direction();
+            const Eigen::Vector3d at = random_.direction();
             points_.push_back({at, tangent_at(at)});
         }
     }
@@ -49,21 +50,17 @@ private:
 
     /// On the unit sphere, with the direction in which it moves, which is orthogonal to it.
     struct point {
-        aabb::vec3d at;
-        aabb::vec3d direction;
+        Eigen::Vector3d at;
+        Eigen::Vector3d direction;
     };
 
-    static aabb::vec3d scaled(double factor, const aabb::vec3d& v) {
-        return {factor * v[0], factor * v[1], factor * v[2]};
-    }
+    static Eigen::Vector3d unit(const Eigen::Vector3d& v) { return v * (1 / length_of(v)); }
 
-    static aabb::vec3d unit(const aabb::vec3d& v) { return scaled(1 / std::sqrt(aabb::dot(v, v)), v); }
-
-    aabb::vec3d tangent_at(const aabb::vec3d& at) {
+    Eigen::Vector3d tangent_at(const Eigen::Vector3d& at) {
         while (true) {
-            const aabb::vec3d any = random_.direction();
-            const aabb::vec3d across = any - scaled(aabb::dot(any, at), at);
-            if (aabb::dot(across, across) > 1e-3) return unit(across);
+            const Eigen::Vector3d any = random_.direction();
+            const Eigen::Vector3d across = any - at * dot(any, at);
+            if (dot(across, across) > 1e-3) return unit(across);
         }
     }
 
@@ -75,16 +72,16 @@ private:
             turned.direction = tangent_at(turned.at);
         }
         for (point& p : points_) {
-            const aabb::vec3d before = p.at;
-            p.at = unit(scaled(along_, before) + scaled(across_, p.direction));
-            const aabb::vec3d ahead = scaled(along_, p.direction) - scaled(across_, before);
-            p.direction = unit(ahead - scaled(aabb::dot(ahead, p.at), p.at));
+            const Eigen::Vector3d before = p.at;
+            p.at = unit(before * along_ + p.direction * across_);
+            const Eigen::Vector3d ahead = p.direction * along_ - before * across_;
+            p.direction = unit(ahead - p.at * dot(ahead, p.at));
         }
     }
 
     void place(std::span<aabb::box> boxes) override {
         for (std::size_t i = 0; i < boxes.size(); ++i)
-            boxes[i] = cube_at(scaled(radius_, points_[i].at) - aabb::vec3d{0.5, 0.5, 0.5}, 1);
+            boxes[i] = cube_at(points_[i].at * radius_ - Eigen::Vector3d::Constant(0.5), 1);
     }
 
     double radius_ = 0;

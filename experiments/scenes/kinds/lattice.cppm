@@ -1,67 +1,55 @@
 module;
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <span>
 #include <string_view>
 #include <tuple>
-#include <vector>
 
 module aabblab.scenes:lattice;
 
 import aabb.geometry;
-import aabb.pipeline;
 import aabb.policy;
-import aabblab.files;
+import :boxes;
+import :parameters;
 
 namespace aabblab {
 
 /// Unit cubes side by side on an integer lattice: each touches its neighbours, corners included, without a gap, so
 /// every answer hangs on closed comparisons, and sorted lists are full of ties. All move along the diagonal by the same
 /// step; coordinates that are equal stay equal, whatever the step is rounded to.
-class lattice final : public aabb::box_scene {
+class lattice final : public generated_boxes {
 public:
     static constexpr std::string_view name = "lattice";
     static constexpr std::string_view summary =
         "unit cubes that touch on an integer lattice and move as one: nothing but ties; the seed does not matter";
 
-    struct config {
-        std::uint32_t objects = 1000;
-        std::uint32_t frames = 20;
+    struct config : scene_size {
         /// How far all cubes move along each axis in a frame, in edges.
         double displacement = 0.25;
     };
-    static constexpr std::tuple parameters{
-        aabb::integer_parameter{"objects", &config::objects, 0U, 0x7fffffffU, "how many cubes"},
-        aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"},
-        aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
-                               "the way of all cubes along each axis in a frame, in edges"}};
+    static constexpr auto parameters =
+        std::tuple_cat(size_parameters<config>("how many cubes"),
+                       std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
+                                                         "the way of all cubes along each axis in a frame, in edges"}});
 
-    lattice(const config& c, std::uint64_t) : config_(c) {
-        require_memory("a lattice of " + std::to_string(c.objects) + " objects", double{sizeof(aabb::box)} * c.objects);
-        while (side_ * side_ * side_ < c.objects) ++side_;
-    }
-
-    [[nodiscard]] std::size_t objects() const override { return config_.objects; }
-    [[nodiscard]] std::size_t frames() const override { return std::size_t{config_.frames} + 1; }
-
-    bool next(std::vector<aabb::box>& boxes) override {
-        if (frame_ == frames()) return false;
-        const double shift = static_cast<double>(frame_++) * config_.displacement;
-        boxes.resize(config_.objects);
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const std::size_t cell[3] = {i / (side_ * side_), i / side_ % side_, i % side_};
-            for (int k = 0; k < 3; ++k) {
-                boxes[i].min[k] = static_cast<float>(static_cast<double>(cell[k]) + shift);
-                boxes[i].max[k] = static_cast<float>(static_cast<double>(cell[k] + 1) + shift);
-            }
-        }
-        return true;
-    }
+    lattice(const config& c, std::uint64_t seed)
+        : generated_boxes(name, c, seed, 0, ""), displacement_(c.displacement), side_(lattice_side(c.objects)) {}
 
 private:
-    config config_;
-    std::size_t side_ = 1;
-    std::size_t frame_ = 0;
+    void place(std::span<aabb::box> boxes) override {
+        const double shift = static_cast<double>(frame()) * displacement_;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const Eigen::Vector3d cell = lattice_cell(i, side_);
+            for (int k = 0; k < 3; ++k) {
+                boxes[i].min[k] = static_cast<float>(cell[k] + shift);
+                boxes[i].max[k] = static_cast<float>(cell[k] + 1 + shift);
+            }
+        }
+    }
+
+    double displacement_;
+    std::uint32_t side_;
 };
 
 }  // namespace aabblab

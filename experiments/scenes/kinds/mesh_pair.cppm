@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +11,9 @@ module;
 module aabblab.scenes:mesh_pair;
 
 import aabb.geometry;
-import aabb.pipeline;
 import aabb.policy;
+import :parameters;
+import :posed_meshes;
 import :random;
 import :rotation;
 
@@ -20,7 +22,7 @@ namespace aabblab {
 /// Two meshes: the first stands still with its centre at the origin; the second passes through it on a straight line,
 /// turning about its own centre. Line, axis and first rotation come from the seed. With distance and turn 0 it
 /// stands still.
-class mesh_pair final : public aabb::mesh_scene {
+class mesh_pair final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_pair";
     static constexpr std::string_view summary = "one mesh stands, another passes through it and turns";
@@ -36,52 +38,42 @@ public:
         scaling normalise = scaling::yes;
     };
     static constexpr std::tuple parameters{
-        aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"},
+        frames_parameter<config>(),
         aabb::number_parameter{"distance", &config::distance, 0.0, 1e6,
                                "of the centres at both ends of the path, over the meshes' mean extent", true},
         aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh in a frame, in radians", true},
-        aabb::choice_parameter{"normalise", &config::normalise, std::array<std::string_view, 2>{"yes", "no"},
-                               "scale each mesh to a longest extent of 1"}};
+        normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
-    mesh_pair(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed) : frames_(std::size_t{c.frames} + 1) {
-        meshes = std::move(given);
-        if (c.normalise == scaling::yes)
-            for (aabb::mesh& m : meshes) normalise(m);
+    mesh_pair(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
+        : generated_meshes(c.frames, std::move(given), c.normalise), turns_(c.turn > 0) {
         mesh_of = {0, static_cast<std::uint32_t>(meshes.size() - 1)};
         const aabb::box first = aabb::bounds_of(meshes.front());
         const aabb::box second = aabb::bounds_of(meshes.back());
-        standing_ = placed(centre_of(first), {1, 0, 0, 0}, {0, 0, 0});
+        standing_ = placed(centre_of(first), Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
         centre_ = centre_of(second);
         random_source random(seed);
         rotation_ = random_rotation(random);
-        turns_ = c.turn > 0;
         turn_ = turn(random.direction(), c.turn);
-        start_ = random.direction();
-        const double distance = c.distance * (longest_extent(first) + longest_extent(second)) / 2;
-        for (double& coordinate : start_.at) coordinate *= distance;
-    }
-
-    [[nodiscard]] std::size_t frames() const override { return frames_; }
-
-    bool next(std::vector<aabb::pose>& poses) override {
-        if (frame_ == frames_) return false;
-        if (frame_ > 0 && turns_) rotation_ = composed(turn_, rotation_);
-        // From the start, through the origin, to its mirror image.
-        const double left = frames_ > 1 ? 1 - 2 * static_cast<double>(frame_) / static_cast<double>(frames_ - 1) : 1;
-        ++frame_;
-        poses = {standing_, placed(centre_, rotation_, {left * start_[0], left * start_[1], left * start_[2]})};
-        return true;
+        start_ = random.direction() * (c.distance * (longest_extent(first) + longest_extent(second)) / 2);
     }
 
 private:
-    std::size_t frames_;
-    std::size_t frame_ = 0;
+    void advance() override {
+        if (turns_) rotation_ = composed(turn_, rotation_);
+    }
+
+    void place(std::size_t frame, std::vector<aabb::pose>& poses) override {
+        // From the start, through the origin, to its mirror image.
+        const double left = frames() > 1 ? 1 - 2 * static_cast<double>(frame) / static_cast<double>(frames() - 1) : 1;
+        poses = {standing_, placed(centre_, rotation_, start_ * left)};
+    }
+
     aabb::pose standing_;
-    aabb::vec3d centre_{};
-    aabb::vec3d start_{};
-    quaternion rotation_{};
-    bool turns_ = true;
-    quaternion turn_{};
+    Eigen::Vector3d centre_;
+    Eigen::Vector3d start_;
+    Eigen::Quaterniond rotation_;
+    bool turns_;
+    Eigen::Quaterniond turn_;
 };
 
 }  // namespace aabblab

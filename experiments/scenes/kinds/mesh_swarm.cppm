@@ -1,10 +1,10 @@
 module;
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -14,10 +14,11 @@ module;
 module aabblab.scenes:mesh_swarm;
 
 import aabb.geometry;
-import aabb.pipeline;
 import aabb.policy;
 import aabblab.files;
 import :drift;
+import :parameters;
+import :posed_meshes;
 import :random;
 import :rotation;
 
@@ -26,7 +27,7 @@ namespace aabblab {
 /// Many meshes that drift and turn in a cube; object i is mesh i modulo the number of meshes. Unless told otherwise,
 /// each mesh is scaled to a longest extent of 1, since models come in units of their own. Where some objects are huge
 /// they are the first, and of the first mesh; the others are the other meshes in turn, or the same where there is one.
-class mesh_swarm final : public aabb::mesh_scene {
+class mesh_swarm final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_swarm";
     static constexpr std::string_view summary =
@@ -46,34 +47,29 @@ public:
         std::uint32_t huge = 0;
         double span = 0.5;
     };
-    static constexpr std::tuple parameters{
-        aabb::integer_parameter{"objects", &config::objects, 0U, 0x7fffffffU, "how many objects"},
-        aabb::integer_parameter{"frames", &config::frames, 0U, 0x7ffffffeU, "frames after the first one"},
-        aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
-                               "volume of cubes as long as the objects over that of the world"},
-        aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e6,
-                               "the longest way of an object in a frame, in mean extents (and radians it turns)"},
-        aabb::choice_parameter{"normalise", &config::normalise, std::array<std::string_view, 2>{"yes", "no"},
-                               "scale each mesh to a longest extent of 1"},
-        aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
-        aabb::number_parameter{"span", &config::span, 0.0, 1.0,
-                               "longest extent of a huge object over the side of the world"}};
+    static constexpr auto parameters = std::tuple_cat(
+        size_parameters<config>("how many objects"),
+        std::tuple{
+            aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
+                                   "volume of cubes as long as the objects over that of the world"},
+            aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e6,
+                                   "the longest way of an object in a frame, in mean extents (and radians it turns)"},
+            normalise_parameter<config>("scale each mesh to a longest extent of 1"),
+            aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
+            aabb::number_parameter{"span", &config::span, 0.0, 1.0,
+                                   "longest extent of a huge object over the side of the world"}});
 
     mesh_swarm(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
-        : frames_(std::size_t{c.frames} + 1), random_(seed) {
+        : generated_meshes(c.frames, std::move(given), c.normalise), random_(seed) {
         require_memory(
             "a mesh_swarm of " + std::to_string(c.objects) + " objects",
             c.objects * (drifting_points::bytes_each + sizeof(spin) + sizeof(aabb::pose) + sizeof(std::uint32_t)));
-        meshes = std::move(given);
         const std::uint32_t huge = std::min(c.huge, c.objects);
         const std::uint32_t others = c.objects - huge;
         const std::uint32_t first = huge > 0 ? 1 : 0;  // mesh of the others
         if (meshes.size() == first) meshes.push_back(meshes[0]);
         std::vector<double> extents;
-        for (aabb::mesh& m : meshes) {
-            if (c.normalise == scaling::yes) normalise(m);
-            extents.push_back(longest_extent(aabb::bounds_of(m)));
-        }
+        for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(aabb::bounds_of(m)));
         mesh_of.assign(huge, 0);
         double sum = 0;
         double volume = 0;
@@ -89,49 +85,45 @@ public:
         for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(aabb::bounds_of(m)));
         huge_extent_ = c.span * side;
         const double mean = c.objects == 0 ? 0 : (sum + huge * huge_extent_) / c.objects;
-        points_.emplace(others, side - extent_, c.displacement * mean, random_);
-        huge_.emplace(huge, side - huge_extent_, c.displacement * mean, random_);
+        points_ = {others, 3, side - extent_, {0, c.displacement * mean}, random_};
+        huge_ = {huge, 3, side - huge_extent_, {0, c.displacement * mean}, random_};
         spins_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
-            const quaternion at = random_rotation(random_);
-            const aabb::vec3d axis = random_.direction();
+            const Eigen::Quaterniond at = random_rotation(random_);
+            const Eigen::Vector3d axis = random_.direction();
             spins_.push_back({at, turn(axis, random_.unit() * c.displacement)});
         }
     }
 
-    [[nodiscard]] std::size_t frames() const override { return frames_; }
+private:
+    void advance() override {
+        points_.advance(random_);
+        huge_.advance(random_);
+        for (spin& s : spins_) s.at = composed(s.by, s.at);
+    }
 
-    bool next(std::vector<aabb::pose>& poses) override {
-        if (frame_ == frames_) return false;
-        if (frame_++ > 0) {
-            points_->advance(random_);
-            huge_->advance(random_);
-            for (spin& s : spins_) s.at = composed(s.by, s.at);
-        }
+    void place(std::size_t, std::vector<aabb::pose>& poses) override {
         poses.resize(spins_.size());
         for (std::size_t i = 0; i < poses.size(); ++i) {
             // The centre keeps half an extent from the walls of the world, which begins at the origin.
-            const bool is_huge = i < huge_->size();
-            aabb::vec3d place = is_huge ? (*huge_)[i] : (*points_)[i - huge_->size()];
-            for (double& coordinate : place.at) coordinate += (is_huge ? huge_extent_ : extent_) / 2;
-            poses[i] = placed(centres_[mesh_of[i]], spins_[i].at, place);
+            const bool is_huge = i < huge_.size();
+            const Eigen::Vector3d& point = is_huge ? huge_[i] : points_[i - huge_.size()];
+            const double wall = (is_huge ? huge_extent_ : extent_) / 2;
+            poses[i] = placed(centres_[mesh_of[i]], spins_[i].at, point + Eigen::Vector3d::Constant(wall));
         }
-        return true;
     }
 
-private:
     struct spin {
-        quaternion at;
-        quaternion by;  // a frame
+        Eigen::Quaterniond at;
+        Eigen::Quaterniond by;  // a frame
     };
-    std::size_t frames_;
-    std::size_t frame_ = 0;
+
     random_source random_;
     double extent_ = 0;  // mean, of objects that are not huge
     double huge_extent_ = 0;
-    std::vector<aabb::vec3d> centres_;  // by mesh
-    std::optional<drifting_points> points_;
-    std::optional<drifting_points> huge_;
+    std::vector<Eigen::Vector3d> centres_;  // by mesh
+    drifting_points points_;
+    drifting_points huge_;
     std::vector<spin> spins_;
 };
 

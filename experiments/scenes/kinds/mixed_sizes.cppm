@@ -1,10 +1,8 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -15,14 +13,13 @@ import aabb.geometry;
 import aabb.policy;
 import :boxes;
 import :drift;
-import :random;
 import :sizes;
 
 namespace aabblab {
 
 /// Cubes of very different sizes, evenly spread in the logarithm: as many between 1 and 10 as between 10 and 100.
 /// Object i is the i-th in size. The world lies around the origin, where floats are finest.
-class mixed_sizes final : public generated_boxes {
+class mixed_sizes final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "mixed_sizes";
     static constexpr std::string_view summary =
@@ -37,10 +34,13 @@ public:
                                                              "edge of the largest cube over that of the smallest"}});
 
     mixed_sizes(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each + sizeof(double)),
+        : drifting_boxes(name, c, seed, sizeof(double)),
           edges_(spread_edges(c.objects, c.ratio)),
-          width_(width_around(edges_)),
-          centres_(drifting(c)) {}
+          width_(width_around(edges_)) {
+        double sum = 0;
+        for (const double e : edges_) sum += e;
+        drift(c, width_, sum / std::max(c.objects, 1U), width_ + c.ratio);
+    }
 
 private:
     /// The width in which each cube overlaps two others on average: cubes of edges a and b overlap where their centres
@@ -57,26 +57,12 @@ private:
         return cube_root(count * (2 * third + 6 * second * first) / 2);
     }
 
-    drifting_points drifting(const config& c) {
-        double sum = 0;
-        for (const double e : edges_) sum += e;
-        const double side = width_ + c.ratio;
-        const double step = step_of(c, sum / std::max(c.objects, 1U), {side, side, side});
-        return {c.objects, 3, width_, {step, step}, random_};
-    }
-
-    void advance() override { centres_.advance(random_); }
-
-    void place(std::span<aabb::box> boxes) override {
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const double shift = -(width_ + edges_[i]) / 2;
-            boxes[i] = cube_at(centres_[i] + aabb::vec3d{shift, shift, shift}, edges_[i]);
-        }
+    [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& centre, std::size_t i) const override {
+        return cube_at(centre + Eigen::Vector3d::Constant(-(width_ + edges_[i]) / 2), edges_[i]);
     }
 
     std::vector<double> edges_;
     double width_;
-    drifting_points centres_;
 };
 
 }  // namespace aabblab

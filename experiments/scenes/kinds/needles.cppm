@@ -1,7 +1,7 @@
 module;
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <tuple>
 
@@ -11,13 +11,12 @@ import aabb.geometry;
 import aabb.policy;
 import :boxes;
 import :drift;
-import :random;
 
 namespace aabblab {
 
 /// Boxes that are long on one axis and thin on the other two; object i is long on axis i modulo 3. Cells and segments
 /// that fit one axis of a needle do not fit the others.
-class needles final : public generated_boxes {
+class needles final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "needles";
     static constexpr std::string_view summary =
@@ -30,11 +29,10 @@ public:
         motion_parameters, std::tuple{aabb::number_parameter{"length", &config::length, 1.0, 1e6,
                                                              "long edge of a needle; its other edges are 1"}});
 
-    needles(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each),
-          length_(c.length),
-          width_(width_around(c)),
-          centres_(drifting(c)) {}
+    needles(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed), length_(c.length) {
+        const double width = width_around(c);
+        drift(c, width, (c.length + 2) / 3, width + c.length);
+    }
 
 private:
     /// The width in which each needle overlaps two others on average: the centres of two differ on every axis by half
@@ -44,26 +42,17 @@ private:
         return cube_root(c.objects * volume / 2);
     }
 
-    drifting_points drifting(const config& c) {
-        const double side = width_ + c.length;
-        const double step = step_of(c, (c.length + 2) / 3, {side, side, side});
-        return {c.objects, 3, width_, {step, step}, random_};
-    }
-
-    void advance() override { centres_.advance(random_); }
-
-    void place(std::span<aabb::box> boxes) override {
-        for (std::size_t i = 0; i < boxes.size(); ++i)
-            for (int k = 0; k < 3; ++k) {
-                const double reach = (i % 3 == static_cast<std::size_t>(k) ? length_ : 1) / 2;
-                boxes[i].min[k] = static_cast<float>(centres_[i][k] - reach);
-                boxes[i].max[k] = static_cast<float>(centres_[i][k] + reach);
-            }
+    [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& centre, std::size_t i) const override {
+        aabb::box b{};
+        for (int k = 0; k < 3; ++k) {
+            const double reach = (i % 3 == static_cast<std::size_t>(k) ? length_ : 1) / 2;
+            b.min[k] = static_cast<float>(centre[k] - reach);
+            b.max[k] = static_cast<float>(centre[k] + reach);
+        }
+        return b;
     }
 
     double length_;
-    double width_;
-    drifting_points centres_;
 };
 
 }  // namespace aabblab

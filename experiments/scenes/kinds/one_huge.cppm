@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -41,12 +42,12 @@ public:
 
 private:
     one_huge(const config& c, std::uint64_t seed, std::uint32_t huge, double width)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each),
-          edge_(c.span * (width + 1)),
-          step_(step_of(c, (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U),
-                        {width + 1, width + 1, width + 1})),
-          huge_(huge, 3, width + 1 - edge_, {step_, step_}, random_),
-          unit_(c.objects - huge, 3, width, {step_, step_}, random_) {}
+        : generated_boxes(name, c, seed, drifting_points::bytes_each), edge_(c.span * (width + 1)) {
+        const double extent = (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U);
+        const double step = step_of(c, extent, {width + 1, width + 1, width + 1});
+        huge_ = {huge, 3, width + 1 - edge_, {step, step}, random_};
+        unit_ = {c.objects - huge, 3, width, {step, step}, random_};
+    }
 
     void advance() override {
         huge_.advance(random_);
@@ -54,12 +55,11 @@ private:
     }
 
     void place(std::span<aabb::box> boxes) override {
-        for (std::size_t i = 0; i < huge_.size(); ++i) boxes[i] = cube_at(huge_[i], edge_);
-        place_cubes(unit_, boxes.subspan(huge_.size()));
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            boxes[i] = i < huge_.size() ? cube_at(huge_[i], edge_) : cube_at(unit_[i - huge_.size()], 1);
     }
 
     double edge_;
-    double step_;
     drifting_points huge_;
     drifting_points unit_;
 };

@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@ module aabblab.scenes:pile;
 
 import aabb.geometry;
 import aabb.policy;
+import aabblab.vectors;
 import :boxes;
 import :drift;
 import :random;
@@ -24,15 +26,13 @@ public:
     static constexpr std::string_view summary =
         "unit cubes heaped on a floor, each overlapping many others and jiggling about its place";
 
-    struct config : scene_size {
-        /// How far a box moves in a frame.
-        double displacement = 0.02;
-        length_unit unit = length_unit::extent;
+    struct config : motion_config {
+        config() { displacement = 0.02; }
         /// How many others a box overlaps, mean.
         std::uint32_t neighbours = 20;
     };
     static constexpr auto parameters =
-        std::tuple_cat(size_parameters, displacement_parameters<config>("the way of every box in a frame"),
+        std::tuple_cat(motion_parameters_of("the way of every box in a frame"),
                        std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
                                                           "mean number of others that a box overlaps"}});
 
@@ -41,24 +41,24 @@ public:
         step_ = step_of(c, 1, {2 * height + 1, 2 * height + 1, height + 1});
         boxes_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
-            const aabb::vec3d home = place_in_heap(height);
+            const Eigen::Vector3d home = place_in_heap(height);
             boxes_.push_back({home, home});
         }
     }
 
 private:
     struct jiggling_box {
-        aabb::vec3d home;
-        aabb::vec3d corner;
+        Eigen::Vector3d home;
+        Eigen::Vector3d corner;
     };
 
-    static bool is_in_heap(const aabb::vec3d& p, double height) {
+    static bool is_in_heap(const Eigen::Vector3d& p, double height) {
         return p[2] >= 0 && std::abs(p[0]) <= height - p[2] && std::abs(p[1]) <= height - p[2];
     }
 
-    aabb::vec3d place_in_heap(double height) {
+    Eigen::Vector3d place_in_heap(double height) {
         while (true) {
-            const aabb::vec3d p = {random_.within() * height, random_.within() * height, random_.unit() * height};
+            const Eigen::Vector3d p = {random_.within() * height, random_.within() * height, random_.unit() * height};
             if (is_in_heap(p, height)) return p;
         }
     }
@@ -81,7 +81,7 @@ private:
         constexpr int samples = 4096;
         int inside = 0;
         for (int i = 0; i < samples; ++i) {
-            const aabb::vec3d beside = {random_.within(), random_.within(), random_.within()};
+            const Eigen::Vector3d beside = {random_.within(), random_.within(), random_.within()};
             inside += is_in_heap(place_in_heap(height) + beside, height);
         }
         return static_cast<double>(inside) / samples;
@@ -90,9 +90,8 @@ private:
     /// Of the two ways along a random line a box takes the one that leads nearer home, and it bounces off the floor.
     void advance() override {
         for (jiggling_box& b : boxes_) {
-            const aabb::vec3d direction = random_.direction();
-            const double step = aabb::dot(direction, b.corner - b.home) > 0 ? -step_ : step_;
-            for (int k = 0; k < 3; ++k) b.corner[k] += step * direction[k];
+            const Eigen::Vector3d direction = random_.direction();
+            b.corner += direction * (dot(direction, b.corner - b.home) > 0 ? -step_ : step_);
             b.corner[2] = std::abs(b.corner[2]);
         }
     }

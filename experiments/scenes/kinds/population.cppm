@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,14 +12,13 @@ module aabblab.scenes:population;
 import aabb.geometry;
 import aabb.policy;
 import :boxes;
-import :drift;
 import :random;
 
 namespace aabblab {
 
 /// Unit cubes that come and go, whoever is there drifting. Those that are absent are points on a lattice below the
 /// world, as far from one another as objects are in it, so that ignoring absence costs what it should.
-class population final : public generated_boxes {
+class population final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "population";
     static constexpr std::string_view summary =
@@ -33,39 +33,33 @@ public:
                                                              "share of the objects that come or go in a frame"}});
 
     population(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each + 1),
+        : drifting_boxes(name, c, seed, 1),
           turnover_(c.turnover),
-          corners_(drifting_corners(c, 3, random_)),
-          present_(c.objects) {
+          present_(c.objects),
+          places_(lattice_side(c.objects)),
+          gap_(width_for(c.objects, 3) / places_) {
+        drift(c);
         for (std::size_t i = 0; i < present_.size(); i += 2) present_[i] = 1;
-        while (places_ * places_ * places_ < present_.size()) ++places_;
-        gap_ = width_for(c.objects, 3) / static_cast<double>(places_);
     }
 
     [[nodiscard]] std::span<const std::uint8_t> present() const override { return present_; }
 
 private:
     void advance() override {
-        corners_.advance(random_);
+        drifting_boxes::advance();
         for (std::uint8_t& p : present_)
             if (random_.unit() < turnover_) p = p == 0;
     }
 
-    void place(std::span<aabb::box> boxes) override {
-        for (std::size_t i = 0; i < boxes.size(); ++i)
-            boxes[i] = present_[i] ? cube_at(corners_[i], 1) : cube_at(parking_place(i), 0);
-    }
-
-    [[nodiscard]] aabb::vec3d parking_place(std::size_t i) const {
-        const std::size_t row = i / places_, layer = row / places_;
-        return {gap_ * static_cast<double>(i % places_), gap_ * static_cast<double>(row % places_),
-                -1 - gap_ * static_cast<double>(layer)};
+    [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& point, std::size_t i) const override {
+        if (present_[i]) return cube_at(point, 1);
+        const Eigen::Vector3d parked = lattice_cell(i, places_) * gap_;
+        return cube_at({parked[2], parked[1], -1 - parked[0]}, 0);
     }
 
     double turnover_;
-    drifting_points corners_;
     std::vector<std::uint8_t> present_;
-    std::size_t places_ = 1;  // of the lattice, along each axis
+    std::uint32_t places_;  // of the lattice, along each axis
     double gap_;
 };
 

@@ -1,16 +1,16 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 module aabblab.scenes:still;
 
 import aabb.geometry;
 import :boxes;
+import :parameters;
 import :random;
 
 namespace aabblab {
@@ -22,12 +22,12 @@ public:
     static constexpr std::string_view summary = "unit cubes in a cube, none of which ever moves: all frames are equal";
 
     using config = scene_size;
-    static constexpr auto parameters = size_parameters;
+    static constexpr auto parameters = size_parameters<config>("how many boxes");
 
     still(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(aabb::box)) {
         const double width = width_for(c.objects, 3);
-        boxes_.reserve(c.objects);
-        for (std::uint32_t i = 0; i < c.objects; ++i) boxes_.push_back(cube_at(random_.point(width), 1));
+        boxes_.resize(c.objects);
+        for (aabb::box& b : boxes_) b = cube_at(random_.point(width), 1);
     }
 
 private:

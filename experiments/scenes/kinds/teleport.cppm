@@ -1,14 +1,14 @@
 module;
-#include <cstddef>
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <tuple>
 
 module aabblab.scenes:teleport;
 
 import aabb.geometry;
 import :boxes;
+import :parameters;
 import :random;
 
 namespace aabblab {
@@ -21,7 +21,7 @@ public:
         "unit cubes, each at a fresh random place in every frame: no coherence between frames";
 
     using config = scene_size;
-    static constexpr auto parameters = size_parameters;
+    static constexpr auto parameters = size_parameters<config>("how many boxes");
 
     teleport(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, 0), width_(width_for(c.objects, 3)) {}

@@ -1,4 +1,5 @@
 module;
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,9 +25,12 @@ namespace aabblab {
 
 namespace {
 
-using aabb::triangle3d;
-using aabb::vec3d;
-using pair = aabb::triangle_pair<double>;
+using Eigen::Vector3d;
+using triangle = std::array<Vector3d, 3>;
+struct pair {
+    triangle a;
+    triangle b;
+};
 
 /// The numbers that a pair is rounded to.
 struct format {
@@ -38,51 +42,47 @@ template <class Real>
 constexpr format format_of{double{std::numeric_limits<Real>::denorm_min()}, double{std::numeric_limits<Real>::max()},
                            double{std::numeric_limits<Real>::epsilon()}};
 
-vec3d scaled(const vec3d& p, double by) {
-    return {p[0] * by, p[1] * by, p[2] * by};
-}
-
 template <class Change>
 pair changed(pair p, Change change) {
-    for (triangle3d* t : {&p.a, &p.b})
-        for (vec3d& corner : t->corner) corner = change(corner);
+    for (triangle* t : {&p.a, &p.b})
+        for (Vector3d& corner : *t) corner = change(corner);
     return p;
 }
 
-triangle3d any_triangle(random_source& random) {
-    return {{random.point(1), random.point(1), random.point(1)}};
+triangle any_triangle(random_source& random) {
+    return {random.point(1), random.point(1), random.point(1)};
 }
 
 pair any_pair(random_source& random) {
-    const triangle3d a = any_triangle(random);
+    const triangle a = any_triangle(random);
     return {a, any_triangle(random)};
 }
 
 /// In the plane of a triangle, in it or near it.
-vec3d near_triangle(random_source& random, const triangle3d& t) {
+Vector3d near_triangle(random_source& random, const triangle& t) {
     const double u = 2 * random.unit() - 0.5;
     const double v = 2 * random.unit() - 0.5;
-    return t[0] + scaled(t[1] - t[0], u) + scaled(t[2] - t[0], v);
+    return t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v;
 }
 
 /// Whole numbers from 0 to `most`.
-vec3d lattice_point(random_source& random, std::uint32_t most) {
+Vector3d lattice_point(random_source& random, std::uint32_t most) {
     const auto coordinate = [&] { return static_cast<double>(random.below(most + 1)); };
     // Braces are evaluated from left to right.
-    return vec3d{coordinate(), coordinate(), coordinate()};
+    return Vector3d{coordinate(), coordinate(), coordinate()};
 }
-triangle3d lattice_triangle(random_source& random, std::uint32_t most) {
-    return triangle3d{{lattice_point(random, most), lattice_point(random, most), lattice_point(random, most)}};
+triangle lattice_triangle(random_source& random, std::uint32_t most) {
+    return {lattice_point(random, most), lattice_point(random, most), lattice_point(random, most)};
 }
 pair lattice_pair(random_source& random, std::uint32_t most) {
-    const triangle3d a = lattice_triangle(random, most);
+    const triangle a = lattice_triangle(random, most);
     return {a, lattice_triangle(random, most)};
 }
 
 /// The other triangle lies in the plane of the first, off it by what rounding and a step of the last place do.
 pair near_coplanar(random_source& random, const format& f) {
     pair p = any_pair(random);
-    for (vec3d& corner : p.b.corner) {
+    for (Vector3d& corner : p.b) {
         corner = near_triangle(random, p.a);
         for (int k = 0; k < 3; ++k) corner[k] *= 1 + (static_cast<double>(random.below(3)) - 1) * f.step;
     }
@@ -98,8 +98,8 @@ pair vertex_on_plane(random_source& random, const format&) {
 /// An edge passes through a point of an edge of the other.
 pair edge_on_edge(random_source& random, const format&) {
     pair p = any_pair(random);
-    const vec3d meeting = p.a[0] + scaled(p.a[1] - p.a[0], 1.5 * random.unit() - 0.25);
-    p.b[1] = meeting + scaled(meeting - p.b[0], random.unit());
+    const Vector3d meeting = p.a[0] + (p.a[1] - p.a[0]) * (1.5 * random.unit() - 0.25);
+    p.b[1] = meeting + (meeting - p.b[0]) * random.unit();
     return p;
 }
 
@@ -120,7 +120,7 @@ pair shared_edge(random_source& random, const format&) {
 pair skew_coplanar(random_source& random, const format&) {
     const double m = static_cast<double>(random.below(7)) - 3;
     const double n = static_cast<double>(random.below(7)) - 3;
-    return changed(lattice_pair(random, 1000), [&](vec3d p) {
+    return changed(lattice_pair(random, 1000), [&](Vector3d p) {
         p[2] = m * p[0] + n * p[1];
         return p;
     });
@@ -128,7 +128,7 @@ pair skew_coplanar(random_source& random, const format&) {
 
 pair coplanar(random_source& random, const format&) {
     const double height = random.unit();
-    return changed(any_pair(random), [&](vec3d p) {
+    return changed(any_pair(random), [&](Vector3d p) {
         p[2] = height;
         return p;
     });
@@ -137,12 +137,13 @@ pair coplanar(random_source& random, const format&) {
 /// A millionth as high as long, and near each other.
 pair sliver(random_source& random, const format&) {
     pair p = any_pair(random);
-    const vec3d meeting = random.point(1);
-    for (triangle3d* t : {&p.a, &p.b}) {
-        const vec3d along = random.direction();
-        const vec3d off = random.direction();
-        const vec3d start = meeting - scaled(along, random.unit()) + scaled(off, 1e-6 * random.within());
-        *t = {{start, start + along, start + scaled(along, random.unit()) + scaled(off, 1e-6)}};
+    const Vector3d meeting = random.point(1);
+    for (triangle* t : {&p.a, &p.b}) {
+        const Vector3d along = random.direction();
+        const Vector3d off = random.direction();
+        const double back = random.unit();
+        const Vector3d start = meeting - along * back + off * (1e-6 * random.within());
+        *t = {start, start + along, start + along * random.unit() + off * 1e-6};
     }
     return p;
 }
@@ -150,11 +151,11 @@ pair sliver(random_source& random, const format&) {
 /// One triangle or both are segments or points.
 pair zero_area(random_source& random, const format&) {
     pair p = lattice_pair(random, 4);
-    const auto flatten = [&](triangle3d& t) {
+    const auto flatten = [&](triangle& t) {
         const double further = static_cast<double>(random.below(4)) - 1;
-        t[2] = t[0] + scaled(t[1] - t[0], further);
+        t[2] = t[0] + (t[1] - t[0]) * further;
         if (random.below(4) == 0) t[1] = t[0];
-        std::swap(t[0], t[static_cast<int>(random.below(3))]);
+        std::swap(t[0], t[random.below(3)]);
     };
     flatten(p.b);
     if (random.below(2) == 0) flatten(p.a);
@@ -163,25 +164,24 @@ pair zero_area(random_source& random, const format&) {
 
 /// Multiples of the smallest number.
 pair denormal(random_source& random, const format& f) {
-    return changed(lattice_pair(random, 64), [&](const vec3d& p) { return scaled(p, f.smallest); });
+    return changed(lattice_pair(random, 64), [&](const Vector3d& p) -> Vector3d { return p * f.smallest; });
 }
 
 pair huge(random_source& random, const format& f) {
-    return changed(any_pair(random), [&](const vec3d& p) { return scaled(p, f.largest); });
+    return changed(any_pair(random), [&](const Vector3d& p) -> Vector3d { return p * f.largest; });
 }
 
 /// A hundred in size, a million away: floats there are a sixteenth apart.
 pair far(random_source& random, const format&) {
-    return changed(any_pair(random), [](const vec3d& p) { return scaled(p, 100) + vec3d{1e6, 1e6, 1e6}; });
+    return changed(any_pair(random), [](const Vector3d& p) -> Vector3d { return p * 100 + Vector3d::Constant(1e6); });
 }
 
 /// The other triangle is up to a million times as large, or as small, about a point of the first.
 pair mixed_magnitudes(random_source& random, const format&) {
     pair p = any_pair(random);
-    const vec3d meeting = near_triangle(random, p.a);
+    const Vector3d meeting = near_triangle(random, p.a);
     const double size = std::ldexp(1, static_cast<int>(random.below(41)) - 20);
-    for (vec3d& corner : p.b.corner)
-        corner = meeting + scaled({corner[0] - 0.5, corner[1] - 0.5, corner[2] - 0.5}, size);
+    for (Vector3d& corner : p.b) corner = meeting + (corner - Vector3d::Constant(0.5)) * size;
     return p;
 }
 
@@ -195,7 +195,7 @@ constexpr std::array<pair_class, 16> classes{{
      [](random_source& random, const format&) { return any_pair(random); }},
     {{"small", "the same, a thousandth in size"},
      [](random_source& random, const format&) {
-         return changed(any_pair(random), [](const vec3d& p) { return scaled(p, 1e-3); });
+         return changed(any_pair(random), [](const Vector3d& p) -> Vector3d { return p * 1e-3; });
      }},
     {{"near_coplanar", "in one plane but for a step of the last place"}, near_coplanar},
     {{"vertex_on_plane", "a corner in the other's plane, as near as it can be written"}, vertex_on_plane},
@@ -215,10 +215,10 @@ constexpr std::array<pair_class, 16> classes{{
 }};
 
 template <class Real>
-aabb::triangle3<Real> rounded(const triangle3d& t) {
+aabb::triangle3<Real> rounded(const triangle& t) {
     aabb::triangle3<Real> made{};
     for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) made[i][k] = static_cast<Real>(t[i][k]);
+        for (int k = 0; k < 3; ++k) made[i][k] = static_cast<Real>(t[static_cast<std::size_t>(i)][k]);
     return made;
 }
 

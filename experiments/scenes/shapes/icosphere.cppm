@@ -1,17 +1,19 @@
 module;
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 module aabblab.scenes:icosphere;
 
 import aabb.geometry;
-import aabb.policy;
+import aabblab.vectors;
+import :shape_size;
 
 namespace aabblab {
 
@@ -20,12 +22,9 @@ struct icosphere {
     static constexpr std::string_view name = "icosphere";
     static constexpr std::string_view summary = "a sphere of nearly equal triangles";
 
-    struct config {
-        /// About how many: 20 n², the nearest to it.
-        std::uint32_t triangles = 5000;
-    };
-    static constexpr std::tuple parameters{
-        aabb::integer_parameter{"triangles", &config::triangles, 20U, 100'000'000U, "about how many triangles"}};
+    /// About how many: 20 n², the nearest to it.
+    using config = shape_size<5000>;
+    static constexpr auto parameters = config::parameters(20, "about how many triangles");
 
     [[nodiscard]] static aabb::mesh make(const config& c) {
         builder b;
@@ -38,7 +37,7 @@ struct icosphere {
 
 private:
     // Cyclic permutations of (0, ±1, ±golden ratio).
-    [[nodiscard]] static std::array<aabb::vec3d, 12> corners() {
+    [[nodiscard]] static std::array<Eigen::Vector3d, 12> corners() {
         const double g = (1 + std::sqrt(5.0)) / 2;
         return {{{-1, g, 0},
                  {1, g, 0},
@@ -58,11 +57,7 @@ private:
          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
          {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 
-    [[nodiscard]] static aabb::vec3f on_sphere(const aabb::vec3d& p) {
-        const double length = std::sqrt(aabb::dot(p, p));
-        return {static_cast<float>(p[0] / length), static_cast<float>(p[1] / length),
-                static_cast<float>(p[2] / length)};
-    }
+    [[nodiscard]] static aabb::vec3f on_sphere(const Eigen::Vector3d& p) { return in_float(p / length_of(p)); }
 
     struct builder {
         aabb::mesh mesh;
@@ -82,11 +77,9 @@ private:
         }
 
         /// p, plus i steps towards q and j towards r.
-        [[nodiscard]] aabb::vec3f between(const aabb::vec3d& p, const aabb::vec3d& q, const aabb::vec3d& r,
+        [[nodiscard]] aabb::vec3f between(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
                                           std::uint32_t i, std::uint32_t j) const {
-            aabb::vec3d sum{};
-            for (int k = 0; k < 3; ++k) sum[k] = (cuts - i - j) * p[k] + i * q[k] + j * r[k];
-            return on_sphere(sum);
+            return on_sphere(p * (cuts - i - j) + q * i + r * j);
         }
 
         void cut_face(std::uint32_t p, std::uint32_t q, std::uint32_t r) {

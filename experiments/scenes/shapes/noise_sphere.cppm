@@ -1,16 +1,17 @@
 module;
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <string_view>
-#include <tuple>
 
 module aabblab.scenes:noise_sphere;
 
 import aabb.geometry;
-import aabb.policy;
+import aabblab.vectors;
 import :circle;
 import :random;
 import :rings;
+import :shape_size;
 
 namespace aabblab {
 
@@ -20,12 +21,9 @@ struct noise_sphere {
     static constexpr std::string_view name = "noise_sphere";
     static constexpr std::string_view summary = "a sphere with dents and bumps";
 
-    struct config {
-        /// About how many: rings · vertices of a ring · 2, the nearest to it that keeps the triangles' shape.
-        std::uint32_t triangles = 5000;
-    };
-    static constexpr std::tuple parameters{
-        aabb::integer_parameter{"triangles", &config::triangles, 18U, 100'000'000U, "about how many triangles"}};
+    /// About how many: rings · vertices of a ring · 2, the nearest to it that keeps the triangles' shape.
+    using config = shape_size<5000>;
+    static constexpr auto parameters = config::parameters(18, "about how many triangles");
 
     [[nodiscard]] static aabb::mesh make(const config& c) {
         const auto [rings, around] = rings_for(c.triangles, 0.5);
@@ -45,11 +43,7 @@ struct noise_sphere {
         const std::uint32_t south = rings * around + 1;
         const auto at = [=](std::uint32_t ring, std::uint32_t i) { return 1 + ring * around + i % around; };
         for (std::uint32_t i = 0; i < around; ++i) m.triangles.push_back({0, at(0, i), at(0, i + 1)});
-        for (std::uint32_t ring = 0; ring + 1 < rings; ++ring)
-            for (std::uint32_t i = 0; i < around; ++i) {
-                m.triangles.push_back({at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
-                m.triangles.push_back({at(ring, i), at(ring + 1, i + 1), at(ring, i + 1)});
-            }
+        add_bands(m, rings - 1, around, at);
         for (std::uint32_t i = 0; i < around; ++i)
             m.triangles.push_back({at(rings - 1, i), south, at(rings - 1, i + 1)});
         return m;
@@ -68,17 +62,16 @@ private:
             }
         }
         /// The point of the surface in this direction.
-        [[nodiscard]] aabb::vec3f surface(const aabb::vec3d& direction) const {
+        [[nodiscard]] aabb::vec3f surface(const Eigen::Vector3d& direction) const {
             double radius = 1;
             for (const wave& w : waves_)
-                radius += w.height * on_circle(w.frequency * aabb::dot(w.direction, direction) + w.phase).sin;
-            return {static_cast<float>(radius * direction[0]), static_cast<float>(radius * direction[1]),
-                    static_cast<float>(radius * direction[2])};
+                radius += w.height * on_circle(w.frequency * dot(w.direction, direction) + w.phase).sin;
+            return in_float(direction * radius);
         }
 
     private:
         struct wave {
-            aabb::vec3d direction;
+            Eigen::Vector3d direction;
             double frequency;  // periods a unit of length
             double phase;      // turns
             double height;

@@ -1,10 +1,11 @@
 module;
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
-/// Meshes of rings: how many rings of how many vertices.
+/// Meshes of rings: how many rings of how many vertices, and the triangles between neighbours.
 module aabblab.scenes:rings;
+
+import aabb.geometry;
 
 namespace aabblab {
 
@@ -29,6 +30,21 @@ struct ring_counts {
         best_error = error;
     }
     return best;
+}
+
+/// Four corners as two triangles, which meet between the first and the third.
+inline void add_quad(aabb::mesh& m, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    m.triangles.push_back({a, b, c});
+    m.triangles.push_back({a, c, d});
+}
+
+/// The band from each ring to the next, and around it.
+/// @param at the number of a vertex, by ring and place in the ring, which may be one beyond the last
+template <class At>
+void add_bands(aabb::mesh& m, std::uint32_t bands, std::uint32_t around, At at) {
+    for (std::uint32_t ring = 0; ring < bands; ++ring)
+        for (std::uint32_t i = 0; i < around; ++i)
+            add_quad(m, at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1));
 }
 
 }  // namespace aabblab

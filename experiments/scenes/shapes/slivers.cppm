@@ -1,12 +1,11 @@
 module;
 #include <cstdint>
 #include <string_view>
-#include <tuple>
 
 module aabblab.scenes:slivers;
 
 import aabb.geometry;
-import aabb.policy;
+import :shape_size;
 
 namespace aabblab {
 
@@ -17,11 +16,8 @@ struct slivers {
     static constexpr std::string_view name = "slivers";
     static constexpr std::string_view summary = "thin triangles in a row along a diagonal, whose boxes all overlap";
 
-    struct config {
-        std::uint32_t triangles = 3000;
-    };
-    static constexpr std::tuple parameters{
-        aabb::integer_parameter{"triangles", &config::triangles, 2U, 100'000'000U, "how many"}};
+    using config = shape_size<3000>;
+    static constexpr auto parameters = config::parameters(2, "how many");
 
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr double half_length = 28.867513459481287;  // 50 √⅓ along each axis

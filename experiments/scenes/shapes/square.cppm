@@ -1,12 +1,12 @@
 module;
 #include <cstdint>
 #include <string_view>
-#include <tuple>
 
 module aabblab.scenes:square;
 
 import aabb.geometry;
-import aabb.policy;
+import :rings;
+import :shape_size;
 
 namespace aabblab {
 
@@ -15,12 +15,9 @@ struct square {
     static constexpr std::string_view name = "square";
     static constexpr std::string_view summary = "a flat square of side 100 that faces up, as a floor";
 
-    struct config {
-        /// About how many: 2 n², the nearest from below.
-        std::uint32_t triangles = 2;
-    };
-    static constexpr std::tuple parameters{
-        aabb::integer_parameter{"triangles", &config::triangles, 2U, 100'000'000U, "about how many triangles"}};
+    /// About how many: 2 n², the nearest from below.
+    using config = shape_size<2>;
+    static constexpr auto parameters = config::parameters(2, "about how many triangles");
 
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr float side = 100;
@@ -33,8 +30,7 @@ struct square {
         for (std::uint32_t y = 0; y < n; ++y)
             for (std::uint32_t x = 0; x < n; ++x) {
                 const std::uint32_t corner = y * (n + 1) + x;
-                m.triangles.push_back({corner, corner + 1, corner + n + 2});
-                m.triangles.push_back({corner, corner + n + 2, corner + n + 1});
+                add_quad(m, corner, corner + 1, corner + n + 2, corner + n + 1);
             }
         return m;
     }

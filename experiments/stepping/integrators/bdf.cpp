@@ -6,13 +6,14 @@ module;
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 module aabblab.stepping;
@@ -28,7 +29,9 @@ namespace {
 class bdf final : public integrator {
 public:
     explicit bdf(double tolerance) : tolerance_(tolerance) {
-        if (SUNContext_Create(nullptr, context_.put()) != 0) throw aabb::input_error("bdf: SUNDIALS gives no context");
+        SUNContext context = nullptr;
+        if (SUNContext_Create(nullptr, &context) != 0) throw aabb::input_error("bdf: SUNDIALS gives no context");
+        context_.reset(context);
     }
 
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
@@ -53,38 +56,26 @@ public:
 
 private:
     // Handles of SUNDIALS, let go in the reverse order.
-    template <class Handle, auto Free>
-    class owned {
-    public:
-        owned() = default;
-        explicit owned(Handle handle) : handle_(handle) {}
-        owned(const owned&) = delete;
-        owned& operator=(const owned&) = delete;
-        owned(owned&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
-        owned& operator=(owned&& other) noexcept {
-            std::swap(handle_, other.handle_);
-            return *this;
+    template <auto Free>
+    struct freed_by {
+        template <class T>
+        void operator()(T* handle) const {
+            if constexpr (std::invocable<decltype(Free), T*>)
+                Free(handle);
+            else
+                Free(&handle);
         }
-        ~owned() {
-            if (handle_ != nullptr) Free(handle_);
-        }
-        [[nodiscard]] Handle get() const { return handle_; }
-        [[nodiscard]] Handle* put() { return &handle_; }
-        explicit operator bool() const { return handle_ != nullptr; }
-
-    private:
-        Handle handle_ = nullptr;
     };
-    static void free_context(SUNContext context) { SUNContext_Free(&context); }
-    static void free_memory(void* memory) { CVodeFree(&memory); }
+    template <class Handle, auto Free>
+    using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
     void start(const std::vector<double>& both, double time) {
         const auto size = static_cast<sunindextype>(both.size());
-        values_ = owned<N_Vector, &N_VDestroy>(N_VNew_Serial(size, context_.get()));
+        values_.reset(N_VNew_Serial(size, context_.get()));
         std::ranges::copy(both, N_VGetArrayPointer(values_.get()));
-        memory_ = owned<void*, &free_memory>(CVodeCreate(CV_BDF, context_.get()));
-        matrix_ = owned<SUNMatrix, &SUNMatDestroy>(SUNDenseMatrix(size, size, context_.get()));
-        solver_ = owned<SUNLinearSolver, &SUNLinSolFree>(SUNLinSol_Dense(values_.get(), matrix_.get(), context_.get()));
+        memory_.reset(CVodeCreate(CV_BDF, context_.get()));
+        matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
+        solver_.reset(SUNLinSol_Dense(values_.get(), matrix_.get(), context_.get()));
         CVodeInit(memory_.get(), &derivative, time, values_.get());
         CVodeSStolerances(memory_.get(), tolerance_, tolerance_);
         CVodeSetUserData(memory_.get(), this);
@@ -110,11 +101,11 @@ private:
     }
 
     double tolerance_;
-    owned<SUNContext, &free_context> context_;
+    owned<SUNContext, &SUNContext_Free> context_;
     owned<N_Vector, &N_VDestroy> values_;
     owned<SUNMatrix, &SUNMatDestroy> matrix_;
     owned<SUNLinearSolver, &SUNLinSolFree> solver_;
-    owned<void*, &free_memory> memory_;
+    owned<void*, &CVodeFree> memory_;
     std::optional<first_order_system> system_;
     std::vector<double> from_;
     std::vector<double> to_;

@@ -1,0 +1,34 @@
+module;
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+
+/// Parameters that several kinds of scenes have.
+module aabblab.scenes:parameters;
+
+import aabb.policy;
+
+namespace aabblab {
+
+template <class Config>
+[[nodiscard]] constexpr auto frames_parameter() {
+    return aabb::integer_parameter{"frames", &Config::frames, 0U, 0x7ffffffeU, "frames after the first one"};
+}
+
+/// @param objects how many of what
+template <class Config>
+[[nodiscard]] constexpr auto size_parameters(std::string_view objects) {
+    return std::tuple{aabb::integer_parameter{"objects", &Config::objects, 0U, 0x7fffffffU, objects},
+                      frames_parameter<Config>()};
+}
+
+/// Whether meshes are scaled to one size.
+enum class scaling : unsigned char { yes, no };
+
+template <class Config>
+[[nodiscard]] constexpr auto normalise_parameter(std::string_view what) {
+    return aabb::choice_parameter{"normalise", &Config::normalise, std::array<std::string_view, 2>{"yes", "no"}, what};
+}
+
+}  // namespace aabblab
