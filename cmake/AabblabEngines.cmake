@@ -1,9 +1,10 @@
-# aabblab_engine(NAME [PACKAGE package] [CALLED name] [LINKS target…] [DEFINES definition…]
+# aabblab_engine(NAME [IN folder] [PACKAGE package] [CALLED name] [LINKS target…] [DEFINES definition…]
 #                [DEBIAN package,… FEDORA package,…|- SHOWS <header>]): declares an engine, whose sources are all of
-# NAME/*.cpp. Without its package, which sentences and the manifest of results call by its name, it is left out of the
-# build. The last three are for the set-up (cmake/setup.bash): what brings the package, and what shows that it is there.
+# NAME/*.cpp, or those of another engine of its package, in whose folder it is. Without its package, which sentences and
+# the manifest of results call by its name, it is left out of the build. The last three are for the set-up
+# (cmake/setup.bash): what brings the package, and what shows that it is there.
 function(aabblab_engine name)
-    cmake_parse_arguments(PARSE_ARGV 1 engine "" "PACKAGE;CALLED;DEBIAN;FEDORA;SHOWS" "LINKS;DEFINES")
+    cmake_parse_arguments(PARSE_ARGV 1 engine "" "IN;PACKAGE;CALLED;DEBIAN;FEDORA;SHOWS" "LINKS;DEFINES")
     if(engine_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "aabblab_engine(${name}) does not take ${engine_UNPARSED_ARGUMENTS}.")
     endif()
@@ -25,9 +26,11 @@ function(aabblab_engine name)
         list(REMOVE_DUPLICATES versions)
         set_property(GLOBAL PROPERTY aabblab_engine_versions "${versions}")
     endif()
-    file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
-    target_sources(aabblab_engines PRIVATE ${sources})
-    set_source_files_properties(${sources} PROPERTIES COMPILE_DEFINITIONS "${engine_DEFINES}")
+    if(NOT engine_IN)
+        file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+        target_sources(aabblab_engines PRIVATE ${sources})
+        set_source_files_properties(${sources} PROPERTIES COMPILE_DEFINITIONS "${engine_DEFINES}")
+    endif()
     target_link_libraries(aabblab_engines PRIVATE ${engine_LINKS})
     set_property(GLOBAL APPEND PROPERTY aabblab_engine_names ${name})
 endfunction()

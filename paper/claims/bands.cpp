@@ -9,9 +9,6 @@ module;
 
 module aabblab.claims;
 
-import aabblab.statistics;
-import aabblab.tables;
-
 namespace aabblab {
 
 namespace {

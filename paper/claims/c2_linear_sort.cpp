@@ -10,13 +10,7 @@ module;
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.figures;
 import aabblab.numbers;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 
@@ -64,10 +58,7 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
         t.columns.push_back({value_of(c->of(), "objects") + " elements"});
     for (const auto& [displacement, conditions] : by_displacement) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{displacement});
-        for (const condition* c : conditions) {
-            const auto inversions = c->spread({{kind::sort, "insertion"}}, an_object(measured("inversions")));
-            cells.push_back(inversions ? three_digits(inversions->median) : "-");
-        }
+        for (const condition* c : conditions) cells.push_back(digits_cell(inversions_of(*c)));
     }
     return t;
 }
@@ -75,19 +66,13 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
 struct sort_told {
     const char* sort;
     const char* subject;
-    bool is_primary;
 };
-constexpr sort_told sorts[] = {{"insertion", "with insertion sort", true},
-                               {"shell:gaps=four_one", "with Shell sort of two gaps", true},
-                               {"shell:gaps=ciura_eight", "with Ciura's eight gaps", true},
-                               {"shell:gaps=ciura", "with Ciura's gaps extended as N grows", true},
-                               {"shell:gaps=tokuda", "with Tokuda's gaps", false},
-                               {"shell:gaps=shell", "with Shell's own gaps", false}};
-
-std::optional<double> inversions_of(const condition& c) {
-    const auto found = c.spread({{kind::sort, "insertion"}}, an_object(measured("inversions")));
-    return found ? std::optional(found->median) : std::nullopt;
-}
+constexpr sort_told sorts[] = {{"insertion", "with insertion sort"},
+                               {"shell:gaps=four_one", "with Shell sort of two gaps"},
+                               {"shell:gaps=ciura_eight", "with Ciura's eight gaps"},
+                               {"shell:gaps=ciura", "with Ciura's gaps extended as N grows"},
+                               {"shell:gaps=tokuda", "with Tokuda's gaps"},
+                               {"shell:gaps=shell", "with Shell's own gaps"}};
 
 /// As it is at most sizes.
 std::optional<double> inversions_of(const std::vector<const condition*>& conditions) {
@@ -113,17 +98,16 @@ std::vector<const condition*> comparable(std::vector<const condition*> condition
 
 }  // namespace
 
-draft linear_sort(const measurements& m) {
-    draft made;
-    claim_result& claim = made.claim;
-    claim.id = "C2";
-    claim.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too";
-    claim.measured =
-        "comparisons and moves for an element at ten times as many elements over those now, by the straight line "
-        "through them against log N, from 10,000 elements on";
-    claim.lead = "For an element at ten times as many";
-    claim.expected = expectation::not_more;
-    claim.experiments = {"c2"};
+draft c2_claim(const measurements& m) {
+    draft made{{.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",
+                .measured = "comparisons and moves for an element at ten times as many elements over those now, by the "
+                            "straight line through them against log N, from 10,000 elements on",
+                .lead = "For an element at ten times as many",
+                .experiments = {"c2"}},
+               {{{"sort", "insertion"}, {"displacement", "0.1"}},
+                {{"sort", "shell:gaps=four_one"}, {"displacement", "0.1"}},
+                {{"sort", "shell:gaps=ciura_eight"}, {"displacement", "0.1"}},
+                {{"sort", "shell:gaps=ciura"}, {"displacement", "0.1"}}}};
     std::map<std::string, std::vector<const condition*>> by_displacement;
     for (const condition& c : m.of("c2")) by_displacement[value_of(c.of(), "displacement")].push_back(&c);
     for (const sort_told& one : sorts)
@@ -144,26 +128,23 @@ draft linear_sort(const measurements& m) {
                 c.observed = {{"inversions", three_digits(*inversions)}};
             c.log_ratios = {
                 bootstrap(all.per_element.front().size(), [&](const resample& d) { return all.growth(d); })};
-            c.primary = one.is_primary && displacement == "0.1";
             c.source = "c2: growth of comparisons and moves of sort=" + std::string(one.sort);
-            made.candidates.push_back(told(std::move(c), one.subject, "inversions", quantity::work));
+            made.add(told(std::move(c), one.subject, "inversions", quantity::work));
         }
     if (by_displacement.empty()) return made;
-    claim.tables.push_back({"c2_inversions", "Inversions for each element, which are to be the same at every size.",
-                            inversions_table(by_displacement)});
-    figure f{"c2",
-             "Comparisons and moves for each element against the number of elements, at a displacement of a tenth of "
-             "an edge: a level line is O(N).",
-             {"elements", true, {}},
-             {"comparisons and moves for each element", true, {}},
-             {},
-             {}};
-    for (const sort_told& one : sorts)
-        f.lines.push_back(
-            series_of(one.sort, by_displacement["0.1"], "objects", {{kind::sort, one.sort}}, an_object(work())));
+    made.claim.tables.push_back({"c2_inversions",
+                                 "Inversions for each element, which are to be the same at every size.",
+                                 inversions_table(by_displacement)});
+    figure& f = made.claim.figures.emplace_back(
+        log_log("c2",
+                "Comparisons and moves for each element against the number of elements, at a displacement of a tenth "
+                "of an edge: a level line is O(N).",
+                "elements", "comparisons and moves for each element"));
+    std::vector<method> methods;
+    for (const sort_told& one : sorts) methods.push_back({one.sort, {{kind::sort, one.sort}}});
+    f.lines = series_of(methods, by_displacement["0.1"], "objects", an_object(work()));
     f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {{kind::sort, "insertion"}},
                                 an_object(measured("inversions"))));
-    claim.figures.push_back(f);
     return made;
 }
 

@@ -1,20 +1,12 @@
 module;
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.figures;
 import aabblab.numbers;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 
@@ -33,8 +25,8 @@ selection cut_into(int axes, const std::string& segments) {
 
 /// Segments on each axis that was cut; empty where it was not measured.
 std::optional<double> segments_got(const condition& c, int axes, int wanted) {
-    const auto got = c.spread(cut_into(axes, std::to_string(wanted)), measured("segments_got"));
-    return got ? std::optional(got->median / axes) : std::nullopt;
+    const auto got = median_of(c, cut_into(axes, std::to_string(wanted)), measured("segments_got"));
+    return got ? std::optional(*got / axes) : std::nullopt;
 }
 
 /// The limit leaves a finer cut as it is: it makes hardly a segment more.
@@ -45,14 +37,12 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
 }
 
 figure figure_of(const std::string& name, const condition& c) {
-    figure f{name,
-             "Time of global search against the segments wanted on each axis, with one, two and three axes cut, on " +
-                 value_of(c.of(), "scene") +
-                 "; the marks say how many segments the limit of one cut a box leaves. The level is without a cut.",
-             {"segments wanted on each axis", true, {}},
-             {"time a frame (ms)", true, {}},
-             {},
-             {}};
+    figure f = log_log(
+        name,
+        "Time of global search against the segments wanted on each axis, with one, two and three axes cut, on " +
+            value_of(c.of(), "scene") +
+            "; the marks say how many segments the limit of one cut a box leaves. The level is without a cut.",
+        "segments wanted on each axis", "time a frame (ms)");
     for (int axes = 1; axes <= 3; ++axes) {
         series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes"), series_style::line, {}};
         for (const int wanted : segments_wanted())
@@ -75,12 +65,12 @@ table automatic(const std::vector<condition>& conditions) {
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
             const candidate ratio = candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), "frame_cpu_ms");
-            const auto chosen = c.spread(cut_into(axes, "auto"), measured("segments_got"));
+            const auto chosen = median_of(c, cut_into(axes, "auto"), measured("segments_got"));
             const auto limit = segments_got(c, axes, 256);
             if (!ratio.known() || !chosen || !limit) continue;
             std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
-            for (const std::string& cell : {std::to_string(axes), three_digits(chosen->median / axes),
-                                            three_digits(*limit), ratio_text(endpoint_of(ratio, expectation::less))})
+            for (const std::string& cell :
+                 {std::to_string(axes), three_digits(*chosen / axes), three_digits(*limit), ratio_cell(ratio)})
                 cells.push_back(cell);
         }
     return t;
@@ -88,60 +78,60 @@ table automatic(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-draft more_segments(const measurements& m) {
-    draft made;
-    claim_result& claim = made.claim;
-    claim.id = "C4";
-    claim.claim = "The more segments, the faster, up to the limit; and segments need not be tiny";
-    claim.measured =
-        "time a frame at the limit of one cut a box over that with eight segments on each axis; with more segments "
-        "over that with the next fewer, up to the limit; and with the automatic number over that at the limit";
-    claim.experiments = {"c4"};
+draft c4_claim(const measurements& m) {
+    draft made{{.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
+                .measured = "time a frame at the limit of one cut a box over that with eight segments on each axis; "
+                            "with more segments over that with the next fewer, up to the limit; and with the automatic "
+                            "number over that at the limit",
+                .experiments = {"c4"}},
+               {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
+                {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
+                {{"scene", "brownian"}, {"axes", "2"}, {"segments", "auto"}},
+                {{"scene", "brownian"}, {"axes", "3"}, {"segments", "auto"}}}};
     const std::vector<condition>& conditions = m.of("c4");
-    const auto add = [&](const condition& c, int axes, const std::string& segments, const std::string& over,
-                         const std::string& label, const std::string& subject) -> candidate& {
-        candidate one = candidate_of(c, cut_into(axes, segments), cut_into(axes, over), "frame_cpu_ms",
-                                     {{"axes", std::to_string(axes)},
-                                      {"segments", segments == "256" ? "the limit" : segments},
-                                      {"over", label}});
-        return made.candidates.emplace_back(told(std::move(one), subject, "axes"));
+    const auto for_each_cut = [&](auto take) {
+        for (const condition& c : conditions)
+            for (int axes = 1; axes <= 3; ++axes) take(c, axes);
     };
-    for (const condition& c : conditions)
-        for (int axes = 1; axes <= 3; ++axes) {
-            const bool in_clusters = value_of(c.of(), "scene") == "clustered";
-            add(c, axes, "256", "8", "8",
-                in_clusters ? "in clusters"
-                            : "on drifting boxes at the limit of one cut a box, against eight segments an axis")
-                .primary = !in_clusters && axes > 1;
+    /// What stands for a number of segments among its factors is the number, or "the limit".
+    struct segments {
+        std::string number;
+        std::string name;
+    };
+    const segments limit{"256", "the limit"};
+    const auto ratio = [](const condition& c, int axes, const segments& now, const segments& before) {
+        return candidate_of(c, cut_into(axes, now.number), cut_into(axes, before.number), "frame_cpu_ms",
+                            {{"axes", std::to_string(axes)}, {"segments", now.name}, {"over", before.name}});
+    };
+    for_each_cut([&](const condition& c, int axes) {
+        made.add(told(ratio(c, axes, limit, {"8", "8"}),
+                      is_brownian(c) ? "on drifting boxes at the limit of one cut a box, against eight segments an axis"
+                                     : "in clusters",
+                      "axes"));
+    });
+    for_each_cut([&](const condition& c, int axes) {
+        for (std::size_t i = 1; i < segments_wanted().size(); ++i) {
+            const int wanted = segments_wanted()[i];
+            const int before = segments_wanted()[i - 1];
+            const std::string now = std::to_string(wanted);
+            const std::string then = std::to_string(before);
+            if (is_finer(c, axes, wanted, before)) made.add(ratio(c, axes, {now, now}, {then, then}));
         }
-    for (const condition& c : conditions)
-        for (int axes = 1; axes <= 3; ++axes)
-            for (std::size_t i = 1; i < segments_wanted().size(); ++i) {
-                const int wanted = segments_wanted()[i];
-                const int before = segments_wanted()[i - 1];
-                if (!is_finer(c, axes, wanted, before)) continue;
-                candidate one = candidate_of(c, cut_into(axes, std::to_string(wanted)),
-                                             cut_into(axes, std::to_string(before)), "frame_cpu_ms",
-                                             {{"axes", std::to_string(axes)},
-                                              {"segments", std::to_string(wanted)},
-                                              {"over", std::to_string(before)}});
-                made.candidates.push_back(std::move(one));
-            }
+    });
     // Segments need not be tiny: those that the automatic choice makes are as good as all that the limit allows.
-    for (const condition& c : conditions)
-        for (int axes = 1; axes <= 3; ++axes) {
-            const bool in_clusters = value_of(c.of(), "scene") == "clustered";
-            candidate& one = add(c, axes, "auto", "256", "the limit",
-                                 in_clusters ? "in clusters with the automatic number"
-                                             : "with the automatic number of segments, against the limit");
-            one.expected = expectation::not_more;
-            one.primary = !in_clusters && axes > 1;
-        }
+    for_each_cut([&](const condition& c, int axes) {
+        made.add(told(ratio(c, axes, {"auto", "auto"}, limit),
+                      is_brownian(c) ? "with the automatic number of segments, against the limit"
+                                     : "in clusters with the automatic number",
+                      "axes"))
+            .expected = expectation::not_more;
+    });
     if (conditions.empty()) return made;
-    claim.tables.push_back({"c4_auto", "Segments on each axis, and time, with the automatic choice and at the limit.",
-                            automatic(conditions)});
+    made.claim.tables.push_back({"c4_auto",
+                                 "Segments on each axis, and time, with the automatic choice and at the limit.",
+                                 automatic(conditions)});
     for (const condition& c : conditions)
-        claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
+        made.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
     return made;
 }
 

@@ -3,25 +3,16 @@ module;
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.figures;
 import aabblab.numbers;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 
@@ -45,8 +36,7 @@ row_value all_bytes() {
 
 /// A grid of one cell is none.
 bool is_grid(const condition& c, const std::string& size) {
-    const auto made = c.spread(grid(size), measured("subsets"));
-    return !made || made->median > 1;
+    return median_of(c, grid(size), measured("subsets")).value_or(2) > 1;
 }
 
 /// Times of every cell size over that of the axial cut, scene by scene.
@@ -119,30 +109,29 @@ table times(const std::vector<condition>& conditions) {
     for (const condition& c : conditions) {
         std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
         const auto add = [&](const selection& who) {
-            const auto time = c.spread(who, measured("frame_cpu_ms"));
-            cells.push_back(time ? three_digits(time->median) : "-");
+            cells.push_back(digits_cell(median_of(c, who, measured("frame_cpu_ms"))));
         };
         add(cut);
         for (const std::string& size : cell_sizes()) add(grid(size));
-        add({{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=auto"}, {kind::sweep, "one_axis"}});
+        add(grid("auto"));
     }
     return t;
 }
 
 /// How bytes, and times over those of the cut, grow with the world. A world that is sparser has fewer pairs, so that
 /// all times fall: only beside another method's can one be said to grow.
-void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& candidates) {
+void add_growth(const std::vector<condition>& worlds, draft& made) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
     const condition& large = worlds.back();
     const auto add = [&](const std::string& what, const std::string& subject, const cells& above, const cells& below,
                          quantity compared, expectation expected) {
-        candidate c;
-        c.where = {{"scene", "brownian"}, {"comparison", what}};
-        c.log_ratios = {between(above, below)};
-        c.expected = expected;
-        c.source = "c5_world: growth";
-        candidates.push_back(told(std::move(c), subject, "", compared));
+        made.add({.where = {{"scene", "brownian"}, {"comparison", what}},
+                  .log_ratios = {between(above, below)},
+                  .expected = expected,
+                  .compared = compared,
+                  .subject = subject,
+                  .source = "c5_world: growth"});
     };
     const row_value bytes = all_bytes();
     for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
@@ -160,13 +149,11 @@ void add_growth(const std::vector<condition>& worlds, std::vector<candidate>& ca
 
 /// A panel for each number of objects.
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
-    figure f{"c5",
-             "Time of global search against the size of a grid's cells, over that of the axial cut in the same repeat "
-             "(the level 1), scene by scene; 95 % intervals. Grids of one cell are left out.",
-             {"cell size (edges of the smallest box)", true, {}},
-             {"time over that of axial cut", true, {}},
-             {},
-             {}};
+    figure f = log_log(
+        "c5",
+        "Time of global search against the size of a grid's cells, over that of the axial cut in the same repeat "
+        "(the level 1), scene by scene; 95 % intervals. Grids of one cell are left out.",
+        "cell size (edges of the smallest box)", "time over that of axial cut");
     for (const auto& [objects, conditions] : by_objects) {
         figure_panel& panel = f.panels.emplace_back();
         panel.title = grouped(static_cast<std::uint64_t>(objects)) + " objects";
@@ -180,23 +167,19 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
             panel.lines.push_back(s);
         }
     }
-    f.lines.push_back({"axial cut", series_style::level, {{1, 1, 1, 1}}});
+    f.lines.push_back(level_of("axial cut"));
     return f;
 }
 
 /// How something grows with the world, of a grid and of the cut.
 figure world_figure(const std::string& name, const std::string& what, const std::string& axis,
                     const std::vector<condition>& worlds, const row_value& of) {
-    figure f{name,
-             what +
-                 " of global search against the side of the world, for the same 2,000 cubes: a grid of one cell "
-                 "size, one that chooses it anew, and the axial cut; medians and quartiles.",
-             {"side of the world (edges)", true, {}},
-             {axis, true, {}},
-             {},
-             {}};
-    const std::pair<const char*, selection> all[] = {
-        {"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
+    figure f = log_log(name,
+                       what +
+                           " of global search against the side of the world, for the same 2,000 cubes: a grid of "
+                           "one cell size, one that chooses it anew, and the axial cut; medians and quartiles.",
+                       "side of the world (edges)", axis);
+    const method all[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
     for (const auto& [label, who] : all) {
         series s{label, series_style::line, {}};
         for (const condition& c : worlds) {
@@ -210,15 +193,16 @@ figure world_figure(const std::string& name, const std::string& what, const std:
 
 }  // namespace
 
-draft cut_against_grid(const measurements& m) {
-    draft made;
-    claim_result& claim = made.claim;
-    claim.id = "C5";
-    claim.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the space";
-    claim.measured =
-        "the worst slowdown over four scenes of as many objects, each against its best cell size, of axial_cut over "
-        "that of the cell size whose worst is the least; a grid of one cell is none";
-    claim.experiments = {"c5", "c5_world"};
+draft c5_claim(const measurements& m) {
+    const std::string over_safest = "axial_cut over the safest cell size";
+    draft made{
+        {.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
+                  "space",
+         .measured = "the worst slowdown over four scenes of as many objects, each against its best cell size, "
+                     "of axial_cut over that of the cell size whose worst is the least; a grid of one cell is "
+                     "none",
+         .experiments = {"c5", "c5_world"}},
+        {{{"objects", "1000"}, {"comparison", over_safest}}, {{"objects", "10000"}, {"comparison", over_safest}}}};
     std::map<double, std::vector<const condition*>> by_objects;
     for (const condition& c : m.of("c5")) by_objects[number_of(c.of(), "objects")].push_back(&c);
     for (const auto& [number, conditions] : by_objects) {
@@ -227,41 +211,34 @@ draft cut_against_grid(const measurements& m) {
         if (all.sizes().empty()) continue;
         const sample_size size =
             conditions.front()->log_ratios(grid(all.sizes().front()), cut, measured("frame_cpu_ms")).size();
-        const auto add = [&](const std::string& comparison, const std::optional<std::string>& subject, auto log_ratio,
-                             quantity compared, expectation expected) -> candidate& {
-            candidate c;
-            c.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}};
-            c.log_ratios = {bootstrap(size, log_ratio)};
-            c.expected = expected;
-            c.source = "c5: regret";
-            c.compared = compared;
-            c.subject = subject;
-            c.along = "objects";
-            return made.candidates.emplace_back(std::move(c));
+        const auto add = [&](const std::string& comparison, const std::string& subject, auto log_ratio,
+                             quantity compared, expectation expected) {
+            made.add({.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}},
+                      .log_ratios = {bootstrap(size, log_ratio)},
+                      .expected = expected,
+                      .compared = compared,
+                      .subject = subject,
+                      .along = "objects",
+                      .source = "c5: regret"});
         };
         add(
-            "axial_cut over the safest cell size",
-            "with the cut against the safest cell size, in the worst of four scenes",
+            over_safest, "with the cut against the safest cell size, in the worst of four scenes",
             [&](const resample& d) { return all.worst_regret_of_cut(d) - all.least_worst_regret(d); },
-            quantity::slowdown, expectation::less)
-            .primary = objects == "1000" || objects == "10000";
-        const resample as_measured(size.processes, size.seeds, level::none, 0);
-        claim.remark = fmt::format(
-            "With {} objects the safest of the cell sizes takes {:.1f} times the time of the best one in the scene "
-            "that "
-            "suits it least.",
-            number_text(objects), std::exp(all.least_worst_regret(as_measured)));
+            quantity::slowdown, expectation::less);
         add(
             "axial_cut over each scene's best cell size", "with the cut against each scene's best cell size",
             [&](const resample& d) { return all.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
+        const resample as_measured(size.processes, size.seeds, level::none, 0);
+        made.claim.remark = fmt::format(
+            "With {} objects the safest of the cell sizes takes {:.1f} times the time of the best one in the scene "
+            "that suits it least.",
+            number_text(objects), std::exp(all.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.of("c5_world");
-    add_growth(worlds, made.candidates);
-    claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(m.of("c5"))});
-    claim.figures.push_back(cell_figure(by_objects));
-    claim.figures.push_back(world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()));
-    claim.figures.push_back(
-        world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_cpu_ms")));
+    add_growth(worlds, made);
+    made.claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(m.of("c5"))});
+    made.claim.figures = {cell_figure(by_objects), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
+                          world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_cpu_ms"))};
     return made;
 }
 

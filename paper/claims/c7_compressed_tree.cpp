@@ -1,56 +1,19 @@
 module;
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.figures;
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {
 
-struct layout {
-    const char* label;
-    const char* tree;
-};
-constexpr layout layouts[] = {{"canonical", "canonical"},
-                              {"leafless", "leafless:leaf_test=triangle_box"},
-                              {"shared planes", "shared_planes"},
-                              {"compressed", "compressed:leaf_test=triangle_box"}};
-
 selection tree(const std::string& name) {
     return {{kind::tree, name}};
 }
-
-bool is_generated(const condition& c) {
-    return mesh_of(c).starts_with("noise_sphere");
-}
-
-figure size_figure(const std::string& name, const std::string& caption, const std::string& y, const row_value& of,
-                   const std::vector<const condition*>& generated) {
-    figure f{name, caption, {"triangles", true, {}}, {y, true, {}}, {}, {}};
-    for (const layout& one : layouts)
-        f.lines.push_back(series_of(one.label, generated, "triangles", tree(one.tree), of));
-    return f;
-}
-
-}  // namespace
-
-bool is_primary_of_c7(const condition& c) {
-    return mesh_of(c) == "noise_sphere:triangles=100000";
-}
-
-namespace {
 
 std::vector<const condition*> all_sizes(const measurements& m) {
     std::vector<const condition*> all;
@@ -60,11 +23,18 @@ std::vector<const condition*> all_sizes(const measurements& m) {
     return all;
 }
 
-std::vector<const condition*> generated_sizes(const measurements& m) {
-    std::vector<const condition*> generated;
-    std::ranges::copy_if(all_sizes(m), std::back_inserter(generated),
-                         [](const condition* c) { return is_generated(*c); });
-    return generated;
+/// Of generated meshes.
+figure size_figure(const measurements& m, const std::string& name, const std::string& caption, const std::string& y,
+                   const row_value& of) {
+    const method layouts[] = {{"canonical", tree("canonical")},
+                              {"leafless", tree("leafless:leaf_test=triangle_box")},
+                              {"shared planes", tree("shared_planes")},
+                              {"compressed", tree(compressed)}};
+    std::vector<const condition*> generated = all_sizes(m);
+    std::erase_if(generated, [](const condition* c) { return !mesh_of(*c).starts_with("noise_sphere"); });
+    figure f = log_log(name, caption, "triangles", y);
+    f.lines = series_of(layouts, generated, "triangles", of);
+    return f;
 }
 
 candidate compressed_over_canonical(const condition& c, const std::string& metric, const std::string& leaf_test) {
@@ -74,45 +44,36 @@ candidate compressed_over_canonical(const condition& c, const std::string& metri
 
 }  // namespace
 
-draft less_memory(const measurements& m) {
-    draft made;
-    claim_result& claim = made.claim;
-    claim.id = "C7a";
-    claim.claim = "Compressed storage takes less memory";
-    claim.measured = "bytes of the compressed tree over those of the canonical one";
-    claim.experiments = {"figure2", "figure2_million"};
-    for (const condition* c : all_sizes(m)) {
-        made.candidates.push_back(
-            told(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
-        made.candidates.back().primary = is_primary_of_c7(*c);
-    }
-    claim.figures = {size_figure("figure2_bytes", "Bytes of trees for each triangle, as allocated.", "bytes a triangle",
-                                 measured("tree_bytes"), generated_sizes(m))};
-    claim.figures.back().y.logarithmic = false;
+draft c7a_claim(const measurements& m) {
+    draft made{{.claim = "Compressed storage takes less memory",
+                .measured = "bytes of the compressed tree over those of the canonical one",
+                .experiments = {"figure2", "figure2_million"}},
+               {large_spheres}};
+    for (const condition* c : all_sizes(m))
+        made.add(told(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
+    made.claim.figures.push_back(size_figure(m, "figure2_bytes", "Bytes of trees for each triangle, as allocated.",
+                                             "bytes a triangle", measured("tree_bytes")));
+    made.claim.figures.back().y.logarithmic = false;
     return made;
 }
 
-draft less_time(const measurements& m) {
-    draft made;
-    claim_result& claim = made.claim;
-    claim.id = "C7b";
-    claim.claim = "Compressed storage takes less time";
-    claim.measured = "time a query of the compressed tree over that of the canonical one";
-    claim.experiments = {"figure2", "figure2_million"};
+draft c7b_claim(const measurements& m) {
+    draft made{{.claim = "Compressed storage takes less time",
+                .measured = "time a query of the compressed tree over that of the canonical one",
+                .experiments = {"figure2", "figure2_million"}},
+               {{large_spheres.front(), {"leaf_test", "triangle_box"}}}};
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
         {"triangle_aabb", "where a box is made of the leaf's triangle on the fly"},
         {"none", "where the leaf's triangle goes straight to the triangle test"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
-        for (const condition* c : all_sizes(m)) {
-            made.candidates.push_back(told(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
-            made.candidates.back().primary = is_primary_of_c7(*c) && std::string(leaf_test) == "triangle_box";
-        }
-    claim.figures = {
-        size_figure("figure2",
+        for (const condition* c : all_sizes(m))
+            made.add(told(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
+    made.claim.figures.push_back(
+        size_figure(m, "figure2",
                     "Time of local detection against the number of triangles: the canonical tree, the compressed one, "
                     "and the half-steps between. Two noise spheres; medians and quartiles.",
-                    "time a query (ms)", measured("detect_cpu_ms"), generated_sizes(m))};
+                    "time a query (ms)", measured("detect_cpu_ms")));
     return made;
 }
 

@@ -1,4 +1,6 @@
 module;
+#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
@@ -22,7 +24,7 @@ enum class quantity : unsigned char { time, bytes, box_tests, work, slowdown };
 
 /// One ratio of a claim: where it was measured, what it is, and what it says.
 struct endpoint {
-    factors where;
+    factors where{};
     factors observed{};  ///< measured there, so no part of what tells it from others: inversions an element
     double ratio = 0;
     interval range{};  ///< 95 %, of this endpoint alone
@@ -39,24 +41,33 @@ struct endpoint {
 };
 
 struct claim_result {
-    std::string id;        ///< "C1"
-    std::string claim;     ///< what the paper says
-    std::string measured;  ///< which ratio of what
-    std::string remark;    ///< a sentence beside the verdict
-    std::string lead;      ///< what the sentence begins with where "up to twice as fast" says too little
+    std::string id{};        ///< "C1"
+    std::string claim{};     ///< what the paper says
+    std::string measured{};  ///< which ratio of what
+    std::string remark{};    ///< a sentence beside the verdict
+    std::string lead{};      ///< what the sentence begins with where "up to twice as fast" says too little
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
-    std::string sentence;  ///< the verdict in words: which way, how much and where
-    std::string brief;     ///< the same of the lines that primary endpoints are on
-    std::string because;   ///< the figures that decide
+    std::string sentence{};  ///< the verdict in words: which way, how much and where
+    std::string brief{};     ///< the same of the lines that primary endpoints are on
+    std::string because{};   ///< the figures that decide
     bool has_primary = false;
-    endpoint primary;                      ///< the first of those that are
-    std::vector<endpoint> secondary;       ///< all others, further primary ones first
-    std::vector<std::string> experiments;  ///< whose configs made it
-    std::vector<factors> scenes;           ///< of these experiments
-    std::vector<named_table> tables;
-    std::vector<figure> figures;
+    endpoint primary{};                      ///< the first of those that are
+    std::vector<endpoint> secondary{};       ///< all others, further primary ones first
+    std::vector<std::string> experiments{};  ///< whose configs made it
+    std::vector<factors> scenes{};           ///< of these experiments
+    std::vector<named_table> tables{};
+    std::vector<figure> figures{};
 };
+
+/// A line of CMakeLists.txt, which tests/paper/recompute.py reads too.
+struct listed_claim {
+    std::string id;
+    std::size_t primaries;  ///< how many endpoints decide it
+    expectation expected;   ///< of its primary endpoints, but for those that say otherwise themselves
+};
+/// All of them, in the order of their lines.
+[[nodiscard]] std::vector<listed_claim> listed_claims();
 
 /// Something that the paper leaves open: what we chose, and what the claim's primary ratio is under other choices.
 struct open_choice {
@@ -115,7 +126,7 @@ struct reproduction {
 
 }  // namespace aabblab
 
-// What the parts of the module share.
+// What the parts of the module share. They see what is imported above.
 namespace aabblab {
 
 /// A ratio on its way to be judged.
@@ -136,12 +147,26 @@ struct candidate {
     [[nodiscard]] estimate log_ratio() const;
 };
 
+/// Whether all of these factors have these values there; one without a value must be missing.
+[[nodiscard]] bool has(const factors& place, const factors& wanted);
+
 /// A claim before it is judged.
 struct draft {
     claim_result claim;
-    std::vector<candidate> candidates;
+    std::vector<factors> primary;  ///< an endpoint that has all factors of one of these decides the claim
+    std::vector<candidate> candidates{};
     std::vector<candidate> beside{};  ///< told at the end of the sentence, by their own intervals, and not judged
+
+    candidate& add(candidate c);
 };
+
+/// A claim as its line in CMakeLists.txt has it.
+struct claim_source {
+    listed_claim listed;
+    draft (*make)(const measurements& m);
+};
+/// Defined in a generated unit.
+[[nodiscard]] std::vector<claim_source> claim_sources();
 
 /// Endpoint by its own 95 % interval.
 [[nodiscard]] endpoint endpoint_of(const candidate& c, expectation expected, double band = equivalence_band);
@@ -152,6 +177,11 @@ struct draft {
 [[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
 /// By the rule of aabblab.statistics.
 [[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> all);
+
+/// How many are found to be so.
+[[nodiscard]] inline std::size_t count_of(std::span<const endpoint> all, support what) {
+    return static_cast<std::size_t>(std::ranges::count(all, what, &endpoint::found));
+}
 
 /// Whether a sentence tells them together.
 [[nodiscard]] inline bool is_same_line(const endpoint& a, const endpoint& b) {
@@ -186,6 +216,9 @@ private:
     std::vector<std::string> names_;
 };
 
+/// The conditions of an experiment that have these factors.
+[[nodiscard]] std::vector<const condition*> having(const std::vector<condition>& all, const factors& wanted);
+
 /// The ratio of two compositions in one condition.
 /// @param metric by its name
 /// @param more factors beside the condition's own
@@ -198,44 +231,63 @@ private:
 [[nodiscard]] candidate told(candidate c, const std::string& subject, const std::string& along = "",
                              quantity compared = quantity::time);
 
+/// The median over all repeats; empty where it was not measured.
+[[nodiscard]] std::optional<double> median_of(const condition& c, const selection& who, const row_value& of);
+/// Inversions for each element of the list that is sorted.
+[[nodiscard]] std::optional<double> inversions_of(const condition& c);
+
+/// Cells of tables, "-" where nothing was measured.
+[[nodiscard]] std::string digits_cell(const std::optional<double>& value);
+[[nodiscard]] std::string ratio_cell(const candidate& c);
+
+/// A composition as figures and tables call it.
+struct method {
+    std::string label;
+    selection who;
+};
+/// The time a frame of each method but the first, over that of the first.
+[[nodiscard]] std::vector<std::string> ratio_cells(const condition& c, std::span<const method> methods);
+
+/// A figure over two logarithmic axes.
+[[nodiscard]] figure log_log(const std::string& name, const std::string& caption, const std::string& x,
+                             const std::string& y);
 /// A ratio with its 95 % interval as a point of a figure.
 [[nodiscard]] figure_point point_of(double x, const candidate& c);
-
+/// The level of what ratios are formed with.
+[[nodiscard]] series level_of(const std::string& label, double x = 1);
 /// A series of medians over the conditions of an experiment, in the order of x.
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
                                const std::string& x, const selection& who, const row_value& of);
+/// One for each method.
+[[nodiscard]] std::vector<series> series_of(std::span<const method> methods,
+                                            std::span<const condition* const> conditions, const std::string& x,
+                                            const row_value& of);
+/// Ratios against the number of huge boxes, a line for each edge over the side of the world.
+/// @param wanted factors of the ratios that are shown
+[[nodiscard]] std::vector<series> lines_by_span(std::span<const candidate> ratios, const factors& wanted);
 
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);
+[[nodiscard]] bool is_brownian(const condition& c);
 
 /// The condition that claims on global search are decided in first: 10,000 cubes that drift by a tenth of their edge.
-[[nodiscard]] bool is_drifting(const condition& c);
-[[nodiscard]] bool is_brownian(const condition& c);
+inline const factors drifting{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}};
 /// Those of other claims, which what the paper leaves open is held against.
-[[nodiscard]] bool is_primary_of_c7(const condition& c);
-[[nodiscard]] bool is_primary_of_c11(const condition& c);
+inline const factors large_spheres{{"meshes", "noise_sphere:triangles=100000"}};
+inline const factors large_crowd{{"density", "0.3"}, {"objects", "60"}};  ///< of models that touch
 
 inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
 inline const selection improved{
     {kind::sort, "shell"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
+/// Shell sort without the cut.
+inline const selection uncut{{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
+inline constexpr const char* compressed = "compressed:leaf_test=triangle_box";
 
 /// "10,000"; what is no whole number as it is.
 [[nodiscard]] std::string number_text(const std::string& value);
 
-[[nodiscard]] draft improved_search(const measurements& m);
-[[nodiscard]] draft linear_sort(const measurements& m);
-[[nodiscard]] draft shell_sort(const measurements& m);
-[[nodiscard]] draft more_segments(const measurements& m);
-[[nodiscard]] draft cut_against_grid(const measurements& m);
-[[nodiscard]] draft triangle_for_box(const measurements& m);
-[[nodiscard]] draft less_memory(const measurements& m);
-[[nodiscard]] draft less_time(const measurements& m);
-[[nodiscard]] draft balanced_tree(const measurements& m);
-[[nodiscard]] draft large_objects_split(const measurements& m);
-[[nodiscard]] draft one_cut_a_box(const measurements& m);
-[[nodiscard]] draft whole_algorithm(const measurements& m);
-[[nodiscard]] draft fewer_box_tests(const measurements& m);
-[[nodiscard]] draft insensitive_search(const measurements& m);
+/// The growth of each sort's work, which what the paper leaves open is held against.
+[[nodiscard]] draft c2_claim(const measurements& m);
 
 [[nodiscard]] std::vector<open_choice> open_choices(const measurements& m);
 [[nodiscard]] std::vector<named_table> table1(const measurements& m);

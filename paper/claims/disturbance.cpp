@@ -8,10 +8,6 @@ module;
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabblab.metrics;
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {

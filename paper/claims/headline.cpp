@@ -9,9 +9,6 @@ module;
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {

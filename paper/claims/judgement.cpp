@@ -2,17 +2,10 @@ module;
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 module aabblab.claims;
-
-import aabblab.conditions;
-import aabblab.metrics;
-import aabblab.statistics;
 
 namespace aabblab {
 
@@ -68,13 +61,6 @@ bool candidate::known() const {
 
 estimate candidate::log_ratio() const {
     return mean_of(log_ratios);
-}
-
-candidate told(candidate c, const std::string& subject, const std::string& along, quantity compared) {
-    c.subject = subject;
-    c.along = along;
-    c.compared = compared;
-    return c;
 }
 
 endpoint endpoint_of(const candidate& c, expectation expected, double band) {

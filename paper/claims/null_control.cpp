@@ -3,47 +3,33 @@ module;
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 module aabblab.claims;
-
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 
 namespace {
 
-/// A composition, and the same with a default written out.
-struct twins {
-    selection plain;
-    selection written_out;
-};
-const std::vector<twins>& compositions() {
-    static const std::vector<twins> all{
-        {traditional, {{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis:axis=auto"}}},
-        {improved,
-         {{kind::sort, "shell:gaps=ciura"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}}}};
-    return all;
+/// From here on a direction is a difference: alone, it is found in one of twenty by chance.
+bool is_difference(const endpoint& e) {
+    return e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band);
 }
 
 }  // namespace
 
 named_table null_control(const measurements& m) {
+    // A composition, and the same with a default written out.
+    const std::pair<selection, selection> twins[] = {{traditional, traditional.with(kind::sweep, "one_axis:axis=auto")},
+                                                     {improved, improved.with(kind::sort, "shell:gaps=ciura")}};
     std::vector<endpoint> found;
     for (const condition& c : m.of("null_control"))
-        for (const auto& [plain, written_out] : compositions()) {
+        for (const auto& [plain, written_out] : twins) {
             const candidate ratio = candidate_of(c, written_out, plain, "frame_cpu_ms",
                                                  {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.known()) found.push_back(endpoint_of(ratio, expectation::less));
         }
-    // A direction alone is found in one of twenty by chance.
-    const auto is_difference = [](const endpoint& e) {
-        return e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band);
-    };
     const table t = endpoint_table(found, [&](const endpoint& e) {
         return is_difference(e)                    ? std::string("a difference")
                : e.found == support::no_difference ? text_of(e.found)
@@ -60,7 +46,7 @@ named_table null_control(const measurements& m) {
                 found.size(), without_one, std::ranges::count_if(found, is_difference),
                 std::ranges::count(found, support::no_difference, &endpoint::found),
                 std::ranges::count_if(
-                    found, [&](const endpoint& e) { return !is_difference(e) && e.found != support::no_difference; })),
+                    found, [](const endpoint& e) { return !is_difference(e) && e.found != support::no_difference; })),
             t};
 }
 

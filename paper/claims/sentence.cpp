@@ -17,9 +17,7 @@ module;
 
 module aabblab.claims;
 
-import aabblab.conditions;
 import aabblab.numbers;
-import aabblab.statistics;
 
 namespace aabblab {
 

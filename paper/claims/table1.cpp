@@ -1,19 +1,13 @@
 module;
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 module aabblab.claims;
 
-import aabblab.conditions;
-import aabb.registry;
-import aabblab.metrics;
 import aabblab.numbers;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 
@@ -80,8 +74,7 @@ table cost_table(const condition& c) {
             const std::optional<double> bytes = c.value(built(one, build), measured("tree_bytes"));
             if (!bytes) continue;
             const auto ratio = [&](const std::string& metric) {
-                const candidate found = candidate_of(c, built(one, build), built(layouts[0], "median"), metric);
-                return !found.known() ? "-" : ratio_text(endpoint_of(found, expectation::less));
+                return ratio_cell(candidate_of(c, built(one, build), built(layouts[0], "median"), metric));
             };
             t.rows.push_back({one.name, build, fmt::format("{:.2f}", *bytes),
                               three_digits(100 * c.value(built(one, build), measured("box_inflation")).value_or(0)),

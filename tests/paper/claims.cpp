@@ -8,7 +8,6 @@
 #include <random>
 #include <regex>
 #include <set>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,34 +34,53 @@ using aabblab::verdict_kind;
 
 namespace {
 
-std::vector<std::string> ids_of(const aabblab::reproduction& all) {
-    std::vector<std::string> ids;
-    for (const claim_result& c : all.claims) ids.push_back(c.id);
-    return ids;
-}
-
 const claim_result& named(const aabblab::reproduction& all, const std::string& id) {
     return *std::ranges::find(all.claims, id, &claim_result::id);
 }
 
-/// Where the primary endpoints are, in words, by claim.
-std::map<std::string, std::set<std::string>> primaries_of(const aabblab::reproduction& all) {
-    std::map<std::string, std::set<std::string>> found;
-    for (const claim_result& c : all.claims) {
-        std::vector<endpoint> endpoints = c.secondary;
-        if (c.has_primary) endpoints.push_back(c.primary);
-        for (const endpoint& e : endpoints)
-            if (e.is_primary) found[c.id].insert(aabblab::text_of(e.where));
-    }
+/// Where the primary endpoints of a claim are, in words.
+std::set<std::string> places_of(const claim_result& claim) {
+    std::set<std::string> found;
+    for (const endpoint& e : primaries_of(claim)) found.insert(aabblab::text_of(e.where));
     return found;
 }
 
+/// Judged together, each world that of a machine.
+aabblab::reproduction judged_worlds(const std::vector<double>& ratios, double noise,
+                                    aabblab::experiment_size size = aabblab::experiment_size::quick) {
+    std::vector<temporary_folder> folders(ratios.size());
+    std::vector<aabblab::measurements> machines;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+        worlds::write_world(folders[i].path(), ratios[i], noise, size);
+        machines.emplace_back(folders[i].path());
+    }
+    return aabblab::judged(machines);
+}
+
+/// Holds the verdict on every claim against that of its row; where that is empty, nothing is expected.
+template <class Expected>
+void check_verdicts(const aabblab::reproduction& all, Expected expected) {
+    REQUIRE(all.claims.size() == worlds::claim_rows().size());
+    for (std::size_t i = 0; i < all.claims.size(); ++i) {
+        const claim_result& c = all.claims[i];
+        INFO(c.sentence + "\n" + c.because);
+        CHECK(c.id == worlds::claim_rows()[i].id);
+        const std::string verdict = expected(worlds::claim_rows()[i]);
+        if (!verdict.empty()) CHECK(c.id + " " + text_of(c) == c.id + " " + verdict);
+    }
+}
+auto on_all(const std::string& verdict) {
+    return [=](const worlds::claim_row&) { return verdict; };
+}
+
 /// A world in which `tell` changes the rows of one experiment of otherwise equal times.
-aabblab::reproduction reproduction_where(const std::string& experiment,
-                                         const std::function<void(const worlds::played&, aabblab::row&)>& tell) {
+/// @param disturb what is not in the processor time
+aabblab::reproduction reproduction_where(
+    const std::string& experiment, const std::function<void(const worlds::played&, aabblab::row&)>& tell,
+    const std::function<void(aabblab::row&)>& disturb = [](aabblab::row&) {}) {
     const temporary_folder folder;
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick))
-        if (e.name == experiment) worlds::write_experiment(folder.path(), e, tell);
+        if (e.name == experiment) worlds::write_experiment(folder.path(), e, tell, disturb);
     return judged(aabblab::measurements(folder.path()));
 }
 
@@ -77,6 +95,14 @@ std::string paper_text() {
             if (!line.starts_with("%")) text += line + "\n";
     }
     return text;
+}
+
+/// What the pattern's group takes from a text.
+std::vector<std::string> found_in(const std::string& text, const std::string& pattern) {
+    std::vector<std::string> all;
+    const std::regex wanted(pattern);
+    for (std::sregex_iterator i(text.begin(), text.end(), wanted), end; i != end; ++i) all.push_back((*i)[1]);
+    return all;
 }
 
 /// On a line over the number of objects.
@@ -95,84 +121,44 @@ endpoint at(const std::string& objects, double ratio, aabblab::outcome direction
 TEST_CASE("Every claim holds in a world where it is true, and does not where it is false") {
     using aabblab::experiment_size;
     for (const experiment_size size : {experiment_size::quick, experiment_size::full})
-        for (const auto& [ratio, verdict] : {std::pair{0.6, "holds"}, {1.7, "does not hold"}}) {
-            const temporary_folder folder;
-            worlds::write_world(folder.path(), ratio, 0.01, size);
-            const aabblab::reproduction all = judged(aabblab::measurements(folder.path()));
-            CHECK(ids_of(all) == std::vector<std::string>{"C1", "C2", "C3", "C4", "C5", "C6", "C7a", "C7b", "C8", "C9",
-                                                          "C10", "C11", "C12", "C13"});
-            for (const claim_result& c : all.claims) {
-                INFO(c.sentence + "\n" + c.because);
-                CHECK(c.id + " " + text_of(c) == c.id + " " + verdict);
-            }
-        }
+        for (const auto& [ratio, verdict] : {std::pair{0.6, "holds"}, {1.7, "does not hold"}})
+            check_verdicts(judged_worlds({ratio}, 0.01, size), on_all(verdict));
 }
 
-TEST_CASE("A quick run decides claims in the same places as a full one") {
-    const auto primaries = [](aabblab::experiment_size size) {
-        const temporary_folder folder;
-        worlds::write_world(folder.path(), 0.6, 0.01, size);
-        return primaries_of(judged(aabblab::measurements(folder.path())));
-    };
-    const auto full = primaries(aabblab::experiment_size::full);
-    CHECK(primaries(aabblab::experiment_size::quick) == full);
-    // Written down here again, so that none is changed unseen.
-    const auto count = [&](const std::string& id) { return full.at(id).size(); };
-    CHECK(full.at("C1") == std::set<std::string>{"brownian, objects 10,000, displacement 0.1",
-                                                 "brownian, objects 10,000, displacement 0.1, sweep all_axes",
-                                                 "brownian, objects 10,000, displacement 0.001, over incremental"});
-    CHECK(count("C2") == 4);
-    CHECK(full.at("C3") == std::set<std::string>{"brownian, objects 10,000, displacement 0.1, gaps ciura",
-                                                 "line, objects 100,000, displacement 300, gaps ciura"});
-    CHECK(count("C4") == 4);
-    CHECK(count("C5") == 2);
-    CHECK(count("C6") == 3);
-    CHECK(count("C7a") == 1);
-    CHECK(count("C7b") == 1);
-    CHECK(count("C8") == 3);
-    CHECK(count("C9") == 2);
-    CHECK(count("C10") == 2);
-    CHECK(count("C11") == 2);
-    CHECK(full.at("C12") == std::set<std::string>{"brownian, objects 10,000, displacement 0.1",
-                                                  "brownian, objects 10,000, displacement 0.1, sweep all_axes"});
-    CHECK(count("C13") == 3);
+TEST_CASE("A quick run decides claims in the same places as a full one, as many as their lines say") {
+    const aabblab::reproduction quick = judged_worlds({0.6}, 0.01);
+    const aabblab::reproduction full = judged_worlds({0.6}, 0.01, aabblab::experiment_size::full);
+    const std::vector<aabblab::listed_claim> listed = aabblab::listed_claims();
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+        CAPTURE(listed[i].id);
+        const std::set<std::string> places = places_of(full.claims[i]);
+        CHECK(places_of(quick.claims[i]) == places);
+        CHECK(places.size() == listed[i].primaries);
+        // Written down again, so that none is changed unseen.
+        if (const auto& told = worlds::claim_rows()[i].primaries; !told.empty()) CHECK(places == told);
+    }
 }
 
 TEST_CASE("Where nothing differs there is no difference, and what is to be not more holds") {
-    const temporary_folder folder;
-    worlds::write_world(folder.path(), 1, 0.003);
-    for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims) {
-        INFO(c.sentence + "\n" + c.because);
-        const std::string verdict = text_of(c);
-        if (c.id == "C2" || c.id == "C6" || c.id == "C10" || c.id == "C13")
-            CHECK(c.id + " " + verdict == c.id + " holds");
-        else if (c.id == "C4")  // more segments bring nothing, and fewer lose nothing
-            CHECK(c.id + " " + verdict == c.id + " holds in part");
-        else
-            CHECK(c.id + " " + verdict == c.id + " no difference");
-    }
+    check_verdicts(judged_worlds({1}, 0.003), [](const worlds::claim_row& row) { return row.where_equal; });
 }
 
 TEST_CASE("Machines that agree give the verdict of each, and what they differ in is open") {
-    const temporary_folder first, second, third;
-    worlds::write_world(first.path(), 0.6, 0.01);
-    worlds::write_world(second.path(), 0.5, 0.01);
-    worlds::write_world(third.path(), 1.7, 0.01);
-    const auto judged_together = [](const std::vector<std::filesystem::path>& folders) {
-        std::vector<aabblab::measurements> machines;
-        for (const std::filesystem::path& folder : folders) machines.emplace_back(folder);
-        return aabblab::judged(machines);
-    };
-    for (const claim_result& c : judged_together({first.path(), second.path()}).claims) {
-        INFO(c.sentence);
-        CHECK(c.id + " " + text_of(c) == c.id + " holds");
-        // Elementary tests are timed alike on all pairs; the others have the mean of both.
-        if (c.id == "C1") CHECK(std::abs(c.primary.ratio - std::sqrt(0.6 * 0.5)) < 0.02);
-    }
-    for (const claim_result& c : judged_together({first.path(), third.path()}).claims) {
-        INFO(c.sentence);
-        CHECK(c.id + " " + text_of(c) == c.id + " undecided");
-    }
+    const aabblab::reproduction agreed = judged_worlds({0.6, 0.5}, 0.01);
+    check_verdicts(agreed, on_all("holds"));
+    // Elementary tests are timed alike on all pairs; the others have the mean of both.
+    CHECK(std::abs(named(agreed, "C1").primary.ratio - std::sqrt(0.6 * 0.5)) < 0.02);
+    check_verdicts(judged_worlds({0.6, 1.7}, 0.01), on_all("undecided"));
+}
+
+TEST_CASE("Where noise hides everything, what is timed is undecided") {
+    check_verdicts(judged_worlds({0.97}, 1),
+                   [](const worlds::claim_row& row) { return row.is_timed ? "undecided" : ""; });
+}
+
+TEST_CASE("Without measurements every claim is undecided") {
+    const temporary_folder folder;
+    check_verdicts(judged(aabblab::measurements(folder.path())), on_all("undecided"));
 }
 
 TEST_CASE("A sentence tells which way a line goes, how much and from where") {
@@ -208,9 +194,7 @@ TEST_CASE("A sentence tells which way a line goes, how much and from where") {
 }
 
 TEST_CASE("A claim is the same whatever the band where it is far from it, and another where it is near") {
-    const temporary_folder folder;
-    worlds::write_world(folder.path(), 0.93, 0.003);
-    const aabblab::table bands = judged(aabblab::measurements(folder.path())).bands.content;
+    const aabblab::table bands = judged_worlds({0.93}, 0.003).bands.content;
     REQUIRE(bands.columns.size() == 6);
     const auto row_of = [&](const std::string& id) {
         return *std::ranges::find(bands.rows, id, [](const auto& cells) { return cells[0]; });
@@ -223,16 +207,13 @@ TEST_CASE("A claim is the same whatever the band where it is far from it, and an
 
 TEST_CASE("A run that waited for a processor, or whose repeats differ, says so") {
     const auto told = [](double waiting, double difference) {
-        const temporary_folder folder;
-        for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick))
-            if (e.name == "three_lists")
-                worlds::write_experiment(
-                    folder.path(), e,
-                    [&](const worlds::played&, aabblab::row& r) {
-                        r.update_ms = r.repeat % 2 == 0 ? 1 : 1 + difference;
-                    },
-                    [&](aabblab::row& r) { r.update_ms = *r.update_ms + waiting; });
-        return judged(aabblab::measurements(folder.path())).disturbance;
+        return reproduction_where(
+                   "three_lists",
+                   [&](const worlds::played&, aabblab::row& r) {
+                       r.update_ms = r.repeat % 2 == 0 ? 1 : 1 + difference;
+                   },
+                   [&](aabblab::row& r) { r.update_ms = *r.update_ms + waiting; })
+            .disturbance;
     };
     CHECK(told(0, 0).empty());
     CHECK(told(0, 0.1).empty());
@@ -248,10 +229,9 @@ TEST_CASE("What waits for a processor changes no ratio") {
         const temporary_folder folder;
         worlds::write_world(folder.path(), 0.8, 0.05, aabblab::experiment_size::quick, disturb);
         std::vector<std::string> all;
-        for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims) {
-            if (c.has_primary) all.push_back(c.id + " " + ratio_text(c.primary));
-            for (const endpoint& e : c.secondary) all.push_back(c.id + " " + ratio_text(e));
-        }
+        for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims)
+            for (const auto& endpoints : {primaries_of(c), secondaries_of(c)})
+                for (const endpoint& e : endpoints) all.push_back(c.id + " " + ratio_text(e));
         return all;
     };
     // Another share for every composition.
@@ -282,23 +262,6 @@ TEST_CASE("The null control finds nothing where there is nothing, and says so wh
           std::string::npos);
 }
 
-TEST_CASE("Where noise hides everything, what is timed is undecided") {
-    const temporary_folder folder;
-    worlds::write_world(folder.path(), 0.97, 1);
-    for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims) {
-        // Counts, bytes and the times of Google Benchmark have no noise here.
-        if (c.id == "C2" || c.id == "C6" || c.id == "C7a" || c.id == "C12" || c.id == "C13") continue;
-        INFO(c.sentence + "\n" + c.because);
-        CHECK(c.id + " " + text_of(c) == c.id + " undecided");
-    }
-}
-
-TEST_CASE("Without measurements every claim is undecided") {
-    const temporary_folder folder;
-    for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims)
-        CHECK(c.id + " " + text_of(c) == c.id + " undecided");
-}
-
 TEST_CASE("A claim that is true from some size on says from which") {
     const auto all = reproduction_where("figure1", [](const worlds::played& p, aabblab::row& r) {
         const bool improved = p.has("shell") && p.has("axial_cut");
@@ -307,9 +270,10 @@ TEST_CASE("A claim that is true from some size on says from which") {
         r.update_ms = r.search_ms;
         r.detect_ms = 0;
     });
-    INFO(all.claims[0].sentence);
-    CHECK(text_of(all.claims[0]) == "holds");
-    CHECK(all.claims[0].sentence.starts_with(
+    const claim_result& c1 = named(all, "C1");
+    INFO(c1.sentence);
+    CHECK(text_of(c1) == "holds");
+    CHECK(c1.sentence.starts_with(
         "2.0 times the time on drifting boxes at 100 objects, 10 times as fast from 1,000 objects on;"));
 }
 
@@ -317,14 +281,12 @@ TEST_CASE("A composition that was wrong has no rows, and its claim no verdict") 
     const auto all = reproduction_where("c3", [](const worlds::played& p, aabblab::row& r) {
         if (p.has("shell")) r.status = "inexact";
     });
-    CHECK(text_of(all.claims[2]) == "undecided");
-    CHECK(all.claims[2].sentence == "There are no measurements that decide it.");
+    CHECK(text_of(named(all, "C3")) == "undecided");
+    CHECK(named(all, "C3").sentence == "There are no measurements that decide it.");
 }
 
 TEST_CASE("Every cell size and every number of segments of the configs is judged") {
-    const temporary_folder folder;
-    worlds::write_world(folder.path(), 0.6, 0.01);
-    const aabblab::reproduction all = judged(aabblab::measurements(folder.path()));
+    const aabblab::reproduction all = judged_worlds({0.6}, 0.01);
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick)) {
         if (e.name != "c4" && e.name != "c5") continue;
         for (const aabblab::contender& who : aabblab::contenders_for(e, e.scenes.front())) {
@@ -334,8 +296,7 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
             if (at == std::string::npos || partition.ends_with("auto")) continue;
             const std::string number = partition.substr(at + parameter.size());
             CAPTURE(partition);
-            const claim_result& claim = all.claims[e.name == "c4" ? 3 : 4];
-            const aabblab::figure& f = claim.figures.front();
+            const aabblab::figure& f = named(all, e.name == "c4" ? "C4" : "C5").figures.front();
             const aabblab::series& line = f.panels.empty() ? f.lines.front() : f.panels.front().lines.front();
             CHECK(std::ranges::any_of(line.points,
                                       [&](const aabblab::figure_point& p) { return p.x == std::stod(number); }));
@@ -347,7 +308,7 @@ TEST_CASE("A composition that was wrong everywhere leaves what compares it with 
     const auto all = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
         if (p.who[aabb::strategy_kind::partition].ends_with("cell_size=8")) r.status = "inexact";
     });
-    CHECK(primaries_of(all).count("C5") == 0);
+    CHECK(!named(all, "C5").has_primary);
 }
 
 TEST_CASE("A grid of one cell is none") {
@@ -473,32 +434,26 @@ TEST_CASE(
     CHECK(page.find("<script") == std::string::npos);
     CHECK(page.find("<style>\n:root{") != std::string::npos);
     // Figures are long addresses, and std::regex takes stack for each character.
-    const std::regex address(R"((src|href)="([^"]{0,5}))");
-    for (std::sregex_iterator i(page.begin(), page.end(), address), end; i != end; ++i) {
-        const std::string to = (*i)[2];
+    for (const std::string& to : found_in(page, R"((?:src|href)="([^"]{0,5}))"))
         CHECK((to.starts_with("data:") || to.starts_with("#")));
-    }
 
     const std::string macros = bytes_of_file(folder / "macros.tex");
-    std::set<std::string> keys;
-    const std::regex set(R"(\\aabbset\{([^}]*)\})");
-    for (std::sregex_iterator i(macros.begin(), macros.end(), set), end; i != end; ++i) keys.insert((*i)[1]);
+    const std::vector<std::string> set = found_in(macros, R"(\\aabbset\{([^}]*)\})");
+    const std::set<std::string> keys(set.begin(), set.end());
     const std::string paper = paper_text();
-    const std::regex named(R"(\\result\{([^}#]*)\})");
-    std::size_t count = 0;
-    for (std::sregex_iterator i(paper.begin(), paper.end(), named), end; i != end; ++i, ++count) {
-        CAPTURE((*i)[1].str());
-        CHECK(keys.contains((*i)[1]));
+    const std::vector<std::string> asked = found_in(paper, R"(\\result\{([^}#]*)\})");
+    for (const std::string& key : asked) {
+        CAPTURE(key);
+        CHECK(keys.contains(key));
     }
-    CHECK(count > 20);
+    CHECK(asked.size() > 20);
     for (const char* kind : {"claim", "measured", "setup", "condition", "favourable", "ratio", "low", "high", "verdict",
                              "because", "endpoints", "for", "against", "same", "undecided"})
         for (const claim_result& c : all.claims) CHECK(keys.contains(c.id + "." + kind));
 
-    const std::regex tabled(R"(\\aabb(?:long)?table(?:\[[^\]]*\])?\{([^}#]*)\})");
-    for (std::sregex_iterator i(paper.begin(), paper.end(), tabled), end; i != end; ++i) {
-        CAPTURE((*i)[1].str());
-        CHECK(std::filesystem::exists(folder / ("tables/" + (*i)[1].str() + ".tex")));
+    for (const std::string& name : found_in(paper, R"(\\aabb(?:long)?table(?:\[[^\]]*\])?\{([^}#]*)\})")) {
+        CAPTURE(name);
+        CHECK(std::filesystem::exists(folder / ("tables/" + name + ".tex")));
     }
     for (const char* file : {"figures/a_plot.svg", "tables/a_table.md"}) CHECK(std::filesystem::exists(folder / file));
     for (const char* report : {"report.html", "report.md"}) {
@@ -515,11 +470,10 @@ TEST_CASE(
     }
     CHECK(macros.find("\\aabbset{C5.setup}{scene brownian") != std::string::npos);
 
-    const std::regex drawn(R"(\\aabbfigure\{([^}#]*)\})");
-    for (std::sregex_iterator i(paper.begin(), paper.end(), drawn), end; i != end; ++i)
+    for (const std::string& name : found_in(paper, R"(\\aabbfigure\{([^}#]*)\})"))
         for (const char* ending : {".svg", ".pdf", ".csv"}) {
-            CAPTURE((*i)[1].str(), ending);
-            CHECK(std::filesystem::exists(folder / ("figures/" + (*i)[1].str() + ending)));
+            CAPTURE(name, ending);
+            CHECK(std::filesystem::exists(folder / ("figures/" + name + ending)));
         }
     for (const claim_result& c : all.claims)
         for (const aabblab::named_table& t : c.tables)

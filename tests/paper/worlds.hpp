@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -145,23 +146,129 @@ inline double segments_time(const played& p, double ratio) {
     return time;
 }
 
-inline double time_of(const played& p, double ratio) {
-    const std::string& name = p.experiment.name;
-    const bool improved = p.has("shell") && p.has("axial_cut");
-    if (name == "figure1" || name == "three_lists" || name == "choices") return improved ? ratio : 1;
-    if (name == "smb_objects")
-        return static_cast<double>(std::stoul(p.value_of("objects"))) *
-               (p.value_of("objects") == "1000" ? 1 : std::max(1.0, ratio));
-    if (name == "smb_density") return p.value_of("density") == "0.01" ? 1 : std::max(1.0, ratio);
-    if (name == "smb_sizes") return p.value_of("ratio") == "1.01" ? 1 : std::max(1.0, ratio);
-    if (name == "c11") return (improved ? ratio : 1) * (p.has("compressed") ? ratio : 1);
-    if (name == "c3") return p.has("shell") ? ratio : 1;
-    if (name == "c4") return segments_time(p, ratio);
-    if (name == "c5" || name == "c5_world") return partition_time(p, ratio);
-    if (name == "c9" || name == "c9_geometry") return p.who[aabb::strategy_kind::prepare] == "none" ? 1 : ratio;
-    if (name == "c10") return p.has("limit=on") ? ratio : 1;
-    if (name == "table1") return p.who[aabb::strategy_kind::build] == "median" ? ratio : 1;
-    return p.has("compressed") || p.has("leafless") ? ratio : 1;
+/// Who has all of these parts takes `ratio` of the time of others.
+inline auto with(std::vector<std::string> parts) {
+    return [parts = std::move(parts)](const played& p, double ratio) {
+        return std::ranges::all_of(parts, [&](const std::string& part) { return p.has(part); }) ? ratio : 1;
+    };
+}
+/// Where a factor has this value nothing takes longer, elsewhere all does where `ratio` is more than 1.
+inline auto beyond(const std::string& factor, const std::string& value) {
+    return [=](const played& p, double ratio) { return p.value_of(factor) == value ? 1 : std::max(1.0, ratio); };
+}
+
+inline void scale(std::optional<std::uint64_t>& number, double by) {
+    number = static_cast<std::uint64_t>(static_cast<double>(number.value_or(0)) * by);
+}
+
+/// What stands for an experiment's measurements where all that claims say is less takes `ratio`. Where there is no row
+/// nothing differs.
+struct experiment_row {
+    std::string experiment;
+    std::function<double(const played& p, double ratio)> time = with({"no such part"});
+    /// Counts and bytes, where they follow.
+    std::function<void(const played& p, double ratio, aabblab::row& r)> count = [](const played&, double, auto&) {};
+};
+
+inline std::vector<experiment_row> experiment_rows() {
+    const std::vector<std::string> global_parts{"projections", "partition", "sweep"};
+    const auto improved = with({"shell", "axial_cut"});
+    const auto compressed = [](const played& p, double ratio) {
+        return p.has("compressed") || p.has("leafless") ? ratio : 1;
+    };
+    const auto fewer_tests = [](const played& p, double ratio, aabblab::row& r) {
+        if (p.has("axial_cut")) scale(count_in(r, "box_tests"), ratio);
+    };
+    const auto fewer_bytes = [](const played& p, double ratio, aabblab::row& r) {
+        for (const char* part : {"nodes", "indices"})
+            if (p.has("compressed")) scale(bytes_in(r, part), ratio);
+    };
+    const auto growing = [=](const std::string& experiment, const std::string& factor, const std::string& value) {
+        const auto time = [=, grown = beyond(factor, value)](const played& p, double ratio) {
+            return grown(p, ratio) * (factor == "objects" ? std::stod(p.value_of("objects")) : 1);
+        };
+        return experiment_row{experiment, time, [=](const played& p, double ratio, aabblab::row& r) {
+                                  for (const std::string& part : global_parts)
+                                      bytes_in(r, part) = static_cast<std::uint64_t>(1000 * time(p, ratio) + 0.5);
+                              }};
+    };
+    return {{"figure1", improved, fewer_tests},
+            {"three_lists", improved, fewer_tests},
+            {"choices", improved},
+            {"figure2", compressed, fewer_bytes},
+            {"figure2_million", compressed, fewer_bytes},
+            {"table1", with({"median"})},
+            // The work of an element grows with N where the claim is wrong.
+            {"c2", with({"compressed"}),
+             [](const played&, double ratio, aabblab::row& r) {
+                 for (const char* work : {"comparisons", "moves"})
+                     if (ratio > 1) scale(count_in(r, work), std::log10(static_cast<double>(r.objects)));
+             }},
+            {"c3", with({"shell"})},
+            // As many segments as were wanted: the limit is far.
+            {"c4", segments_time,
+             [](const played& p, double, aabblab::row& r) {
+                 const std::string& wanted = p.who[aabb::strategy_kind::partition];
+                 if (const std::size_t at = wanted.rfind('='); at != std::string::npos)
+                     count_in(r, "segments_got") = wanted.ends_with("auto") ? 8 : std::stoul(wanted.substr(at + 1));
+             }},
+            {"c5", partition_time},
+            {"c5_world", partition_time,
+             [=](const played& p, double ratio, aabblab::row& r) {
+                 for (const std::string& part : global_parts)
+                     if (p.value_of("density") != "0.1")
+                         scale(bytes_in(r, part), p.has("axial_cut") ? ratio : 1 / ratio);
+             }},
+            {"c9", with({"split_large"})},
+            {"c9_geometry", with({"split_mesh"})},
+            // The limit acts.
+            {"c10", with({"limit=on"}),
+             [](const played& p, double, aabblab::row& r) {
+                 if (p.has("limit=on")) scale(count_in(r, "segments_got"), 0.5);
+             }},
+            {"c11", [=](const played& p, double ratio) { return improved(p, ratio) * with({"compressed"})(p, ratio); }},
+            growing("smb_objects", "objects", "1000"),
+            growing("smb_density", "density", "0.01"),
+            growing("smb_sizes", "ratio", "1.01")};
+}
+
+/// What is expected of a claim in worlds in which it is neither true nor false.
+struct claim_row {
+    std::string id;
+    std::string where_equal = "no difference";  ///< the verdict where nothing differs
+    bool is_timed = true;                       ///< counts, bytes and the times of Google Benchmark have no noise here
+    std::set<std::string> primaries{};          ///< where they are, in words, of claims that are told by them
+};
+/// A row for each claim.
+inline const std::vector<claim_row>& claim_rows() {
+    static const std::vector<claim_row> all{
+        {"C1",
+         "no difference",
+         true,
+         {"brownian, objects 10,000, displacement 0.1", "brownian, objects 10,000, displacement 0.1, sweep all_axes",
+          "brownian, objects 10,000, displacement 0.001, over incremental"}},
+        {"C2", "holds", false},
+        {"C3",
+         "no difference",
+         true,
+         {"brownian, objects 10,000, displacement 0.1, gaps ciura",
+          "line, objects 100,000, displacement 300, gaps ciura"}},
+        {"C4", "holds in part"},  // more segments bring nothing, and fewer lose nothing
+        {"C5"},
+        {"C6", "holds", false},
+        {"C7a", "no difference", false},
+        {"C7b"},
+        {"C8"},
+        {"C9"},
+        {"C10", "holds"},
+        {"C11"},
+        {"C12",
+         "no difference",
+         false,
+         {"brownian, objects 10,000, displacement 0.1", "brownian, objects 10,000, displacement 0.1, sweep all_axes"}},
+        {"C13", "holds", false},
+    };
+    return all;
 }
 
 /// Everything that a claim says is less takes `ratio` of what it is compared with, and nothing else does; what is timed
@@ -173,45 +280,21 @@ inline void write_world(
     const std::function<void(aabblab::row&)>& disturb = [](aabblab::row&) {}) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
-    const auto scaled = [](std::optional<std::uint64_t>& number, double by) {
-        number = static_cast<std::uint64_t>(static_cast<double>(number.value_or(0)) * by);
-    };
-    for (const aabblab::experiment& e : all_experiments(size))
-        write_experiment(
-            folder, e,
-            [&](const played& p, aabblab::row& r) {
-                const double time = time_of(p, ratio) * std::exp(noise * normal(random));
-                const bool sorting = e.name == "c3";
-                const bool meshes = r.triangles && e.name != "c11" && e.name != "c9_geometry";
-                r.update_ms = meshes ? 50 : time;
-                r.search_ms = sorting || meshes ? 50 : time;
-                r.detect_ms = r.triangles ? time : 0;
-                if ((e.name == "figure1" || e.name == "three_lists") && p.has("axial_cut"))
-                    scaled(count_in(r, "box_tests"), ratio);
-                if (e.name == "figure2" || e.name == "figure2_million")
-                    for (const char* part : {"nodes", "indices"})
-                        if (p.has("compressed")) scaled(bytes_in(r, part), ratio);
-                if (e.name.starts_with("smb_"))
-                    for (const char* part : {"projections", "partition", "sweep"})
-                        bytes_in(r, part) = static_cast<std::uint64_t>(1000 * time_of(p, ratio) + 0.5);
-                if (e.name == "c5_world" && p.value_of("density") != "0.1")
-                    for (const char* part : {"projections", "partition", "sweep"})
-                        scaled(bytes_in(r, part), p.has("axial_cut") ? ratio : 1 / ratio);
-                // As many segments as were wanted: the limit is far.
-                if (const std::size_t at = p.who[aabb::strategy_kind::partition].rfind('=');
-                    e.name == "c4" && at != std::string::npos)
-                    count_in(r, "segments_got") =
-                        p.who[aabb::strategy_kind::partition].ends_with("auto")
-                            ? 8
-                            : std::stoul(p.who[aabb::strategy_kind::partition].substr(at + 1));
-                // The limit acts.
-                if (e.name == "c10" && p.has("limit=on")) scaled(count_in(r, "segments_got"), 0.5);
-                // The work of an element grows with N where the claim is wrong.
-                if (e.name == "c2" && ratio > 1)
-                    for (const char* work : {"comparisons", "moves"})
-                        scaled(count_in(r, work), std::log10(static_cast<double>(r.objects)));
-            },
-            disturb);
+    const std::vector<experiment_row> rows = experiment_rows();
+    for (const aabblab::experiment& e : all_experiments(size)) {
+        const auto row = std::ranges::find(rows, e.name, &experiment_row::experiment);
+        const experiment_row of = row == rows.end() ? experiment_row{e.name} : *row;
+        const auto tell = [&](const played& p, aabblab::row& r) {
+            const double time = of.time(p, ratio) * std::exp(noise * normal(random));
+            const bool sorting = e.name == "c3";
+            const bool meshes = r.triangles && e.name != "c11" && e.name != "c9_geometry";
+            r.update_ms = meshes ? 50 : time;
+            r.search_ms = sorting || meshes ? 50 : time;
+            r.detect_ms = r.triangles ? time : 0;
+            of.count(p, ratio, r);
+        };
+        write_experiment(folder, e, tell, disturb);
+    }
     write_tests(folder, ratio, 1);
 }
 

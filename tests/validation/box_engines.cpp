@@ -2,15 +2,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <random>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "support.hpp"
 
 // Imports, so it comes last.
-#include "left_out.hpp"
+#include "engines.hpp"
 
 import aabb.validation;
 
@@ -18,87 +17,54 @@ using namespace aabb;
 
 namespace {
 
-/// The definition, in the test's own words.
-std::vector<index_pair> expected(const std::vector<box>& boxes, const std::vector<bool>& present) {
-    std::vector<index_pair> pairs;
-    for (std::uint32_t a = 0; a < boxes.size(); ++a)
-        for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-            bool meet = present[a] && present[b];
-            for (int k = 0; k < 3; ++k)
-                meet = meet && boxes[a].min[k] <= boxes[b].max[k] && boxes[b].min[k] <= boxes[a].max[k];
-            if (meet) pairs.push_back({a, b});
-        }
-    return pairs;
-}
-
-std::vector<index_pair> expected(const std::vector<box>& boxes) {
-    return expected(boxes, std::vector<bool>(boxes.size(), true));
-}
-
 void require_found_by_all(const std::vector<box>& boxes) {
-    for (const engine_info& info : engines()) {
-        if (!info.searches_boxes) continue;
-        INFO(info.name);
-        const auto engine = make_box_engine(info.name);
-        for (std::uint32_t id = 0; id < boxes.size(); ++id) engine->insert(id);
-        REQUIRE(pairs_of(*engine, boxes) == expected(boxes));
-    }
+    for_each_box_engine([&](global_stage& engine) {
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) engine.insert(id);
+        REQUIRE(pairs_of(engine, boxes) == overlapping(boxes));
+    });
 }
 
 }  // namespace
 
 TEST_CASE("engines find every pair of overlapping boxes once") {
+    constexpr float most = std::numeric_limits<float>::max();
+    constexpr float least = std::numeric_limits<float>::denorm_min();
     std::mt19937 random(1);
-    SECTION("random boxes") {
-        require_found_by_all(random_boxes(random, 700, 2));
-    }
-    SECTION("random boxes, sparse") {
-        require_found_by_all(random_boxes(random, 700, 0.2F));
-    }
-    SECTION("two that share one cell of a grid only, where cells are counted from zero") {
-        require_found_by_all({{{0.2F, 0.2F, -0.3F}, {0.8F, 0.8F, 0.3F}}, {{0.3F, 0.3F, 0.1F}, {0.7F, 0.7F, 0.65F}}});
-    }
-    SECTION("a lattice with many ties") {
-        require_found_by_all(lattice_boxes(random, 600));
-    }
-    SECTION("equal boxes") {
-        require_found_by_all(std::vector<box>(50, {{1, 2, 3}, {2, 3, 4}}));
-    }
-    SECTION("points") {
-        std::vector<box> boxes = lattice_boxes(random, 300);
-        for (box& b : boxes) b.max = b.min;
+    std::vector<box> points = lattice_boxes(random, 300);
+    for (box& b : points) b.max = b.min;
+    const std::pair<const char*, std::vector<box>> scenes[] = {
+        {"random boxes", random_boxes(random, 700, 2)},
+        {"random boxes, sparse", random_boxes(random, 700, 0.2F)},
+        {"two that share one cell of a grid only, where cells are counted from zero",
+         {{{0.2F, 0.2F, -0.3F}, {0.8F, 0.8F, 0.3F}}, {{0.3F, 0.3F, 0.1F}, {0.7F, 0.7F, 0.65F}}}},
+        {"a lattice with many ties", lattice_boxes(random, 600)},
+        {"equal boxes", std::vector<box>(50, {{1, 2, 3}, {2, 3, 4}})},
+        {"points", points},
+        {"none", {}},
+        {"one", {{{0, 0, 0}, {1, 1, 1}}}},
+        {"two that touch", {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}}},
+        {"two that do not", {{{0, 0, 0}, {1, 1, 1}}, {{1.0000001F, 1, 1}, {2, 2, 2}}}},
+        {"the ends of float",
+         {{{-most, -most, -most}, {most, most, most}},
+          {{most, most, most}, {most, most, most}},
+          {{-most, -most, -most}, {-most, -most, -most}},
+          {{0, 0, 0}, {least, least, least}},
+          {{-0.0F, -0.0F, -0.0F}, {0, 0, 0}},
+          {{least, least, least}, {1, 1, 1}}}}};
+    for (const auto& [name, boxes] : scenes) {
+        INFO(name);
         require_found_by_all(boxes);
     }
-    SECTION("a few that are all one point") {
-        for (std::size_t n = 2; n <= 9; ++n) require_found_by_all(std::vector<box>(n, {{1, 2, 3}, {1, 2, 3}}));
-    }
-    SECTION("none, one and two") {
-        require_found_by_all({});
-        require_found_by_all({{{0, 0, 0}, {1, 1, 1}}});
-        require_found_by_all({{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}});
-        require_found_by_all({{{0, 0, 0}, {1, 1, 1}}, {{1.0000001F, 1, 1}, {2, 2, 2}}});
-    }
-    SECTION("the ends of float") {
-        constexpr float most = std::numeric_limits<float>::max();
-        constexpr float least = std::numeric_limits<float>::denorm_min();
-        require_found_by_all({{{-most, -most, -most}, {most, most, most}},
-                              {{most, most, most}, {most, most, most}},
-                              {{-most, -most, -most}, {-most, -most, -most}},
-                              {{0, 0, 0}, {least, least, least}},
-                              {{-0.0F, -0.0F, -0.0F}, {0, 0, 0}},
-                              {{least, least, least}, {1, 1, 1}}});
-    }
+    // A few that are all one point.
+    for (std::size_t n = 2; n <= 9; ++n) require_found_by_all(std::vector<box>(n, {{1, 2, 3}, {1, 2, 3}}));
 }
 
 TEST_CASE("engines follow boxes that move and objects that come and go") {
     constexpr std::uint32_t count = 300;
-    for (const engine_info& info : engines()) {
-        if (!info.searches_boxes) continue;
-        INFO(info.name);
+    for_each_box_engine([&](global_stage& engine) {
         std::mt19937 random(2);
         std::vector<box> boxes = random_boxes(random, count, 2);
         std::vector<bool> present(count, false);
-        const auto engine = make_box_engine(info.name);
         for (int frame = 0; frame < 8; ++frame) {
             for (box& b : boxes) {
                 const float step = uniform(random, -0.3F, 0.3F);
@@ -110,54 +76,48 @@ TEST_CASE("engines follow boxes that move and objects that come and go") {
             for (std::uint32_t id = 0; id < count; ++id) {
                 if (random() % 3 != 0) continue;
                 if (present[id])
-                    engine->remove(id);
+                    engine.remove(id);
                 else
-                    engine->insert(id);
+                    engine.insert(id);
                 present[id] = !present[id];
             }
             INFO("frame " << frame);
-            REQUIRE(pairs_of(*engine, boxes) == expected(boxes, present));
+            REQUIRE(pairs_of(engine, boxes) == overlapping(boxes, present));
         }
         for (std::uint32_t id = 0; id < count; ++id)
-            if (present[id]) engine->remove(id);
-        REQUIRE(pairs_of(*engine, boxes).empty());
-    }
+            if (present[id]) engine.remove(id);
+        REQUIRE(pairs_of(engine, boxes).empty());
+    });
 }
 
 TEST_CASE("an object that goes and comes back between frames is there once") {
     const std::vector<box> boxes(3, {{0, 0, 0}, {1, 1, 1}});
-    for (const engine_info& info : engines()) {
-        if (!info.searches_boxes) continue;
-        INFO(info.name);
-        const auto engine = make_box_engine(info.name);
-        for (std::uint32_t id = 0; id < 3; ++id) engine->insert(id);
-        REQUIRE(pairs_of(*engine, boxes) == expected(boxes));
-        engine->remove(1);
-        engine->insert(1);
-        REQUIRE(pairs_of(*engine, boxes) == expected(boxes));
-    }
+    for_each_box_engine([&](global_stage& engine) {
+        for (std::uint32_t id = 0; id < 3; ++id) engine.insert(id);
+        REQUIRE(pairs_of(engine, boxes) == overlapping(boxes));
+        engine.remove(1);
+        engine.insert(1);
+        REQUIRE(pairs_of(engine, boxes) == overlapping(boxes));
+    });
 }
 
 TEST_CASE("engines refuse bad boxes and bad ids") {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    for (const engine_info& info : engines()) {
-        if (!info.searches_boxes) continue;
-        INFO(info.name);
-        const auto engine = make_box_engine(info.name);
+    for_each_box_engine([&](global_stage& engine) {
         const std::vector<box> one(1, {{0, 0, 0}, {1, 1, 1}});
-        REQUIRE(refusal_in([&] { engine->update(one); }) ==
+        REQUIRE(refusal_in([&] { engine.update(one); }) ==
                 "no object was inserted; call insert(id) for each box first");
-        engine->insert(0);
-        engine->insert(1);
-        REQUIRE(refusal_in([&] { engine->insert(1); }) == "object 1 is inserted twice");
-        REQUIRE(refusal_in([&] { engine->remove(7); }) == "object 7 is removed but was never inserted");
-        REQUIRE(refusal_in([&] { engine->update(one); }) == "object 1 is present, but the frame has only 1 boxes");
+        engine.insert(0);
+        engine.insert(1);
+        REQUIRE(refusal_in([&] { engine.insert(1); }) == "object 1 is inserted twice");
+        REQUIRE(refusal_in([&] { engine.remove(7); }) == "object 7 is removed but was never inserted");
+        REQUIRE(refusal_in([&] { engine.update(one); }) == "object 1 is present, but the frame has only 1 boxes");
         std::vector<box> bad(2, {{0, 0, 0}, {1, 1, 1}});
         bad[1].min[2] = nan;
-        REQUIRE(refusal_in([&] { engine->update(bad); }) == "box 1 has a coordinate that is not finite");
+        REQUIRE(refusal_in([&] { engine.update(bad); }) == "box 1 has a coordinate that is not finite");
         bad[1] = {{0, 0, 2}, {1, 1, 1}};
-        REQUIRE(refusal_in([&] { engine->update(bad); }) == "box 1 is inverted: its minimum is above its maximum");
-    }
+        REQUIRE(refusal_in([&] { engine.update(bad); }) == "box 1 is inverted: its minimum is above its maximum");
+    });
 }
 
 TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
@@ -174,15 +134,12 @@ TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
 TEST_CASE("engines say what they hold") {
     std::mt19937 random(3);
     const std::vector<box> boxes = random_boxes(random, 100, 1);
-    for (const engine_info& info : engines()) {
-        if (!info.searches_boxes) continue;
-        INFO(info.name);
-        const auto engine = make_box_engine(info.name);
-        for (std::uint32_t id = 0; id < boxes.size(); ++id) engine->insert(id);
-        engine->update(boxes);
-        const std::vector<part_bytes> bytes = engine->bytes();
+    for_each_box_engine([&](global_stage& engine) {
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) engine.insert(id);
+        engine.update(boxes);
+        const std::vector<part_bytes> bytes = engine.bytes();
         REQUIRE(bytes.size() == 1);
         REQUIRE(bytes[0].part == "engine");
         REQUIRE(bytes[0].bytes >= boxes.size() * sizeof(box));
-    }
+    });
 }

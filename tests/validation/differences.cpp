@@ -1,11 +1,8 @@
-#include <array>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <set>
-#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "support.hpp"
@@ -73,12 +70,14 @@ TEST_CASE("every pair of one set alone is counted, wherever it stands") {
 }
 
 TEST_CASE("class names are in the order of the classes, each once") {
-    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::degenerate)] == "degenerate");
-    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::pose_rounding)] == "pose_rounding");
-    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::coplanar)] == "coplanar");
-    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::touching)] == "touching");
-    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::near)] == "near");
-    REQUIRE(difference_class_names[static_cast<std::size_t>(difference_class::other)] == "other");
+    using enum difference_class;
+    const std::pair<difference_class, std::string_view> named[] = {{degenerate, "degenerate"},
+                                                                   {pose_rounding, "pose_rounding"},
+                                                                   {coplanar, "coplanar"},
+                                                                   {touching, "touching"},
+                                                                   {near, "near"},
+                                                                   {other, "other"}};
+    for (const auto& [of, name] : named) REQUIRE(difference_class_names[static_cast<std::size_t>(of)] == name);
 }
 
 TEST_CASE("degenerate: a triangle without area") {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "../triangle_pairs.hpp"
+#include "pairs.hpp"
 
 import aabb;
 import aabb.triangle.intersection;
@@ -25,13 +25,6 @@ const triangle3d face{{{0, 0, 0}, {6, 0, 0}, {3, 6, 0}}};
 const triangle3d star{{{0, 4, 0}, {6, 4, 0}, {3, -2, 0}}};
 /// Through the face along a segment whose ends are not doubles.
 const triangle3d through{{{2, 1, -1}, {2, 1, 2}, {4, 1, 2}}};
-
-triangle3d as_triangle(const triangle_pairs::triangle& t) {
-    triangle3d made{};
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) made[i][k] = t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
-    return made;
-}
 
 }  // namespace
 
@@ -91,31 +84,20 @@ TEST_CASE(
     "the exact intersection rounded is off by less than the distance of two doubles, and ours is within its bound") {
     triangle_pairs::generator g{11};
     std::size_t hits = 0;
-    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
-        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement) {
-            CAPTURE(triangle_pairs::patterns[pattern], triangle_pairs::placements[placement]);
-            int wrong = 0;
-            for (int i = 0; i < 100; ++i) {
-                const triangle_pairs::pair pair =
-                    triangle_pairs::placed<double>(g, triangle_pairs::patterned(g, pattern), placement);
-                const triangle3d s = as_triangle(pair[0]);
-                const triangle3d t = as_triangle(pair[1]);
-                const aabb::exact_intersection exact(s, t);
-                const triangle_intersection rounded = exact.rounded();
-                hits += static_cast<std::size_t>(rounded.size > 0);
-                wrong += static_cast<int>((rounded.size > 0) != aabb::exactly_intersect(s, t));
-                wrong += static_cast<int>(!exact.errors_of(rounded).within);
-                wrong += static_cast<int>(!exact.errors_of(aabb::intersection_of(s, t)).within);
-                for (std::size_t c = 0; c < rounded.size; ++c)
-                    for (int k = 0; k < 3; ++k) {
-                        double largest = 0;
-                        for (std::size_t other = 0; other < rounded.size; ++other)
-                            largest = std::max(largest, std::abs(rounded.corners[other][k]));
-                        wrong += static_cast<int>(rounded.error[k] > largest * 0x1p-51 + 0x1p-1073);
-                    }
-            }
-            CHECK(wrong == 0);
+    triangle_pairs::check_each_pair<double>(g, 100, [&](const aabb::triangle_pair<double>& pair) {
+        const aabb::exact_intersection exact(pair.a, pair.b);
+        const triangle_intersection rounded = exact.rounded();
+        hits += static_cast<std::size_t>(rounded.size > 0);
+        bool is_right = (rounded.size > 0) == aabb::exactly_intersect(pair.a, pair.b) &&
+                        exact.errors_of(rounded).within &&
+                        exact.errors_of(aabb::intersection_of(pair.a, pair.b)).within;
+        for (int k = 0; k < 3; ++k) {
+            double largest = 0;
+            for (std::size_t c = 0; c < rounded.size; ++c) largest = std::max(largest, std::abs(rounded.corners[c][k]));
+            is_right &= rounded.size == 0 || rounded.error[k] <= largest * 0x1p-51 + 0x1p-1073;
         }
+        return is_right;
+    });
     CHECK(hits > 1000);
     const triangle_intersection doubles = aabb::exact_intersection(face, {{{1, 1, 0}, {2, 1, 0}, {2, 2, 0}}}).rounded();
     CHECK(doubles.size == 3);

@@ -1,8 +1,5 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cstddef>
-#include <memory>
-#include <set>
-#include <string>
 #include <vector>
 
 #include "../compositions.hpp"

@@ -8,6 +8,9 @@
 #include "../compositions.hpp"
 #include "support.hpp"
 
+// Imports, so it comes last.
+#include "engines.hpp"
+
 import aabb.registry;
 import aabb.validation;
 
@@ -33,14 +36,7 @@ frame any_frame(std::mt19937& random, std::uint32_t objects, const std::vector<f
             if (b.min[k] > b.max[k]) std::swap(b.min[k], b.max[k]);
         }
     }
-    for (std::uint32_t a = 0; a < objects; ++a)
-        for (std::uint32_t b = a + 1; b < objects; ++b) {
-            bool meet = true;
-            for (int k = 0; k < 3; ++k)
-                meet = meet && made.boxes[a].min[k] <= made.boxes[b].max[k] &&
-                       made.boxes[b].min[k] <= made.boxes[a].max[k];
-            if (meet) made.pairs.push_back({a, b});
-        }
+    made.pairs = overlapping(made.boxes);
     return made;
 }
 
@@ -65,11 +61,8 @@ TEST_CASE("engines find every pair of boxes that reach to the greatest floats") 
     for (std::uint32_t seed = 0; seed < 100; ++seed)
         for (const std::uint32_t objects : {20U, 300U}) {
             const std::vector<frame> frames = frames_of(objects, seed);
-            for (const engine_info& info : engines()) {
-                if (!info.searches_boxes) continue;
-                INFO(info.name << ", " << objects << " objects, seed " << seed);
-                require_all_found(*make_box_engine(info.name), frames);
-            }
+            INFO(objects << " objects, seed " << seed);
+            for_each_box_engine([&](global_stage& engine) { require_all_found(engine, frames); });
         }
 }
 

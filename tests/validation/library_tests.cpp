@@ -3,10 +3,9 @@
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "../triangle_pairs.hpp"
+#include "pairs.hpp"
 
 import aabb;
 import aabb.triangle.exact;
@@ -21,20 +20,8 @@ template <class Real>
 std::vector<triangle_pair<Real>> all_pairs(int count) {
     std::vector<triangle_pair<Real>> pairs;
     triangle_pairs::generator random(9);
-    for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
-        for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement)
-            for (int n = 0; n < count; ++n) {
-                const auto made =
-                    triangle_pairs::placed<Real>(random, triangle_pairs::patterned(random, pattern), placement);
-                triangle_pair<Real>& p = pairs.emplace_back();
-                for (int i = 0; i < 3; ++i)
-                    for (int k = 0; k < 3; ++k) {
-                        const auto corner = static_cast<std::size_t>(i);
-                        const auto axis = static_cast<std::size_t>(k);
-                        p.a[i][k] = static_cast<Real>(made[0][corner][axis]);
-                        p.b[i][k] = static_cast<Real>(made[1][corner][axis]);
-                    }
-            }
+    triangle_pairs::for_each_pair<Real>(
+        random, count, [&](const auto& pair) { pairs.push_back(pair); }, [](std::size_t) {});
     return pairs;
 }
 

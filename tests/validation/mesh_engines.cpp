@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,7 +11,7 @@
 #include "support.hpp"
 
 // Imports, so it comes last.
-#include "left_out.hpp"
+#include "engines.hpp"
 
 import aabb.validation;
 
@@ -41,13 +39,6 @@ std::string text(const differences& all) {
         lines += std::string(difference_class_names[c]) + ": " + std::to_string(all.missing[c]) + " missing, " +
                  std::to_string(all.invented[c]) + " invented\n";
     return lines;
-}
-
-/// Those of this build that collide meshes.
-std::vector<engine_info> mesh_engines() {
-    std::vector<engine_info> all(engines().begin(), engines().end());
-    std::erase_if(all, [](const engine_info& info) { return !info.collides_meshes; });
-    return all;
 }
 
 constexpr auto other = static_cast<std::size_t>(difference_class::other);
@@ -101,18 +92,18 @@ TEST_CASE("FCL, called with its own layout of classes, knows a plain answer") {
 }
 
 TEST_CASE("the first pair is one of the pairs, or nothing") {
-    for (const engine_info& info : mesh_engines())
-        for (const mesh_case& c : mesh_cases()) {
-            INFO(info.name << ", " << c.name);
-            const auto engine = make_mesh_engine(info.name);
-            const std::uint32_t a = engine->add_model(c.a);
-            const std::uint32_t b = engine->add_model(c.b);
+    for (const mesh_case& c : mesh_cases()) {
+        INFO(c.name);
+        for_each_mesh_engine([&](local_stage& engine, const engine_info&) {
+            const std::uint32_t a = engine.add_model(c.a);
+            const std::uint32_t b = engine.add_model(c.b);
             std::vector<index_pair> all;
-            engine->all_pairs(a, c.pose_a, b, c.pose_b, all);
-            const std::optional<index_pair> first = engine->first_pair(a, c.pose_a, b, c.pose_b);
+            engine.all_pairs(a, c.pose_a, b, c.pose_b, all);
+            const std::optional<index_pair> first = engine.first_pair(a, c.pose_a, b, c.pose_b);
             REQUIRE(first.has_value() == !all.empty());
             if (first) REQUIRE(std::ranges::find(all, *first) != all.end());
-        }
+        });
+    }
 }
 
 TEST_CASE("models are numbered from 0 and asked for in any order") {
@@ -120,22 +111,20 @@ TEST_CASE("models are numbered from 0 and asked for in any order") {
     const mesh floor = grid(4);
     const mesh corner = tetrahedron();
     const pose still;
-    for (const engine_info& info : mesh_engines()) {
-        INFO(info.name);
-        const auto engine = make_mesh_engine(info.name);
-        REQUIRE(engine->add_model(ball) == 0);
-        REQUIRE(engine->add_model(floor) == 1);
-        REQUIRE(engine->add_model(corner) == 2);
+    for_each_mesh_engine([&](local_stage& engine, const engine_info& info) {
+        REQUIRE(engine.add_model(ball) == 0);
+        REQUIRE(engine.add_model(floor) == 1);
+        REQUIRE(engine.add_model(corner) == 2);
         const pose moved = turned({1, 1, 0}, 0.3, {0.1, 0.2, -0.3});
         std::vector<index_pair> pairs = {{7, 7}};
-        engine->all_pairs(2, moved, 0, still, pairs);
+        engine.all_pairs(2, moved, 0, still, pairs);
         REQUIRE(pairs.front() == index_pair{7, 7});  // found pairs are appended
         pairs.erase(pairs.begin());
         REQUIRE(sorted(pairs) == pairs_of(*make_mesh_engine(info.name), corner, moved, ball, still));
-        const std::vector<part_bytes> bytes = engine->bytes();
+        const std::vector<part_bytes> bytes = engine.bytes();
         REQUIRE(bytes.size() == 1);
         REQUIRE(bytes[0].bytes > 0);
-    }
+    });
 }
 
 TEST_CASE("mesh engines answer at any later pose as at the first, and when both meshes have deformed") {
@@ -144,54 +133,48 @@ TEST_CASE("mesh engines answer at any later pose as at the first, and when both 
         for (vec3f& v : m.vertices) v = {v[0] - 4, v[1] - 4, height * std::sin(2 * v[0] + v[1])};
         return m;
     };
-    for (const engine_info& info : mesh_engines()) {
-        INFO(info.name);
+    for_each_mesh_engine([&](local_stage& engine, const engine_info& info) {
         mesh a = waves(0);
         mesh b = waves(0.5F);
-        const auto engine = make_mesh_engine(info.name);
-        engine->add_model(a);
-        engine->add_model(b);
+        engine.add_model(a);
+        engine.add_model(b);
         for (int step = 0; step < 6; ++step) {
             if (step == 3)
                 for (std::uint32_t model = 0; model < 2; ++model) {
                     (model == 0 ? a : b).vertices = waves(model == 0 ? 0.3F : -1).vertices;
-                    engine->refit(model);
+                    engine.refit(model);
                 }
             const int place = step / 2;  // each twice, the second one before and after
             const pose moved = turned({1, 2, 3}, 0.3 + 0.7 * place, {0.2 * place, 0.3, 0.05});
             for (const auto& [model_b, mesh_b] : {std::pair{1U, &b}, std::pair{0U, &a}}) {
                 std::vector<index_pair> pairs;
-                engine->all_pairs(0, {}, model_b, moved, pairs);
+                engine.all_pairs(0, {}, model_b, moved, pairs);
                 const std::vector<index_pair> afresh = pairs_of(*make_mesh_engine(info.name), a, {}, *mesh_b, moved);
                 REQUIRE(afresh.size() > 10);
                 REQUIRE(sorted(pairs) == afresh);
             }
         }
-    }
+    });
 }
 
 TEST_CASE("mesh engines refuse meshes that cannot be searched") {
     const mesh none{{{0, 0, 0}}, {}};
     const mesh wild{{{0, 0, 0}}, {{0, 0, 1}}};
-    for (const engine_info& info : mesh_engines()) {
-        INFO(info.name);
-        const auto engine = make_mesh_engine(info.name);
-        REQUIRE(refusal_in([&] { engine->add_model(none); }) == "the mesh has no triangles");
-        REQUIRE(refusal_in([&] { engine->add_model(wild); }) ==
+    for_each_mesh_engine([&](local_stage& engine, const engine_info&) {
+        REQUIRE(refusal_in([&] { engine.add_model(none); }) == "the mesh has no triangles");
+        REQUIRE(refusal_in([&] { engine.add_model(wild); }) ==
                 "triangle 0 uses vertex 1, but there are only 1 vertices");
-    }
+    });
 }
 
 TEST_CASE("mesh engines follow vertices that were numbered anew, and refuse other triangles") {
-    for (const engine_info& info : mesh_engines()) {
-        INFO(info.name);
+    for_each_mesh_engine([&](local_stage& engine, const engine_info&) {
         mesh_case c = mesh_cases().front();
-        const auto engine = make_mesh_engine(info.name);
-        const std::uint32_t a = engine->add_model(c.a);
-        const std::uint32_t b = engine->add_model(c.b);
+        const std::uint32_t a = engine.add_model(c.a);
+        const std::uint32_t b = engine.add_model(c.b);
         const auto pairs = [&] {
             std::vector<index_pair> all;
-            engine->all_pairs(a, c.pose_a, b, c.pose_b, all);
+            engine.all_pairs(a, c.pose_a, b, c.pose_b, all);
             std::ranges::sort(all);
             return all;
         };
@@ -201,11 +184,11 @@ TEST_CASE("mesh engines follow vertices that were numbered anew, and refuse othe
         for (auto& t : c.b.triangles)
             for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(c.b.vertices.size()) - 1 - v;
         c.b.vertices.push_back(c.b.vertices.back());
-        engine->refit(b);
+        engine.refit(b);
         CHECK(pairs() == before);
         c.b.triangles.pop_back();
-        CHECK_THROWS_AS(engine->refit(b), input_error);
-    }
+        CHECK_THROWS_AS(engine.refit(b), input_error);
+    });
 }
 
 TEST_CASE("engines take meshes of one triangle, with area and without") {
@@ -216,11 +199,10 @@ TEST_CASE("engines take meshes of one triangle, with area and without") {
     const mesh dot_off = one_triangle({{{5, 5, 0}, {5, 5, 0}, {5, 5, 0}}});
     // Of so few, all in one point, Embree cannot make a scene of low quality.
     const mesh dots{dot_in.vertices, {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}};
-    for (const engine_info& info : mesh_engines()) {
-        INFO(info.name);
-        const std::size_t found = pairs_of(*make_mesh_engine(info.name), flat, still, dots, still).size();
+    for_each_mesh_engine([&](local_stage& engine, const engine_info& info) {
+        const std::size_t found = pairs_of(engine, flat, still, dots, still).size();
         REQUIRE((found == 3 || !info.exact));
-    }
+    });
     for (const char* engine : {"brute_force", "cgal", "cgal_tree"}) {
         INFO(engine);
         REQUIRE(pairs_of(*make_mesh_engine(engine), flat, still, needle, still).size() == 1);

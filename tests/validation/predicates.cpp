@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <limits>
 #include <random>
-#include <string>
 
 import aabb;
 

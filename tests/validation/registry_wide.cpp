@@ -10,6 +10,9 @@
 #include "../compositions.hpp"
 #include "support.hpp"
 
+// Imports, so it comes last.
+#include "engines.hpp"
+
 import aabb.registry;
 import aabb.validation;
 
@@ -141,17 +144,14 @@ TEST_CASE("every composition and engine holds a mesh against itself alike, and a
 }
 
 TEST_CASE("an inexact engine follows a mesh that deforms") {
-    for (const engine_info& engine : engines()) {
-        if (!engine.collides_meshes) continue;
-        INFO(engine.name);
+    for_each_mesh_engine([&](local_stage& stage, const engine_info&) {
         mesh m = one_triangle({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}});
         const mesh needle = one_triangle({{{0.5F, 0.5F, 9}, {0.6F, 0.5F, 11}, {0.5F, 0.7F, 11}}});
-        const auto stage = make_mesh_engine(engine.name);
-        stage->add_model(m);
-        stage->add_model(needle);
-        REQUIRE(stage->count_pairs(0, {}, 1, {}) == 0);
+        stage.add_model(m);
+        stage.add_model(needle);
+        REQUIRE(stage.count_pairs(0, {}, 1, {}) == 0);
         for (vec3f& v : m.vertices) v[2] = 10;
-        stage->refit(0);
-        REQUIRE(stage->count_pairs(0, {}, 1, {}) == 1);
-    }
+        stage.refit(0);
+        REQUIRE(stage.count_pairs(0, {}, 1, {}) == 1);
+    });
 }

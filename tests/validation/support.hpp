@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -53,6 +52,21 @@ inline std::vector<index_pair> pairs_of(local_stage& stage, const mesh& a, const
     std::vector<index_pair> pairs;
     stage.all_pairs(model_a, pose_a, model_b, pose_b, pairs);
     return sorted(pairs);
+}
+
+/// The pairs of boxes that overlap, by the definition, in the tests' own words.
+/// @param present by number; empty where all are there
+inline std::vector<index_pair> overlapping(std::span<const box> boxes, const std::vector<bool>& present = {}) {
+    const auto is_there = [&](std::uint32_t id) { return present.empty() || present[id]; };
+    std::vector<index_pair> pairs;
+    for (std::uint32_t a = 0; a < boxes.size(); ++a)
+        for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+            bool meet = is_there(a) && is_there(b);
+            for (int k = 0; k < 3; ++k)
+                meet = meet && boxes[a].min[k] <= boxes[b].max[k] && boxes[b].min[k] <= boxes[a].max[k];
+            if (meet) pairs.push_back({a, b});
+        }
+    return pairs;
 }
 
 /// Boxes of sizes up to `size` in a cube of side 10.

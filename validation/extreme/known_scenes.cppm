@@ -17,19 +17,15 @@ enum class extreme_size : std::uint8_t { small, quick, full };
 
 }  // namespace aabb
 
-// What the list is made of, a file each.
+// What the list is made of.
 namespace aabb {
 
-[[nodiscard]] std::vector<extreme_scene> box_shape_scenes();
-[[nodiscard]] std::vector<extreme_scene> box_place_scenes();
-[[nodiscard]] std::vector<extreme_scene> box_change_scenes();
-[[nodiscard]] std::vector<extreme_scene> touching_mesh_scenes();
-[[nodiscard]] std::vector<extreme_scene> coincident_triangle_scenes(extreme_size size);
-[[nodiscard]] std::vector<extreme_scene> thin_triangle_scenes();
-[[nodiscard]] std::vector<extreme_scene> mesh_scale_scenes();
-[[nodiscard]] std::vector<extreme_scene> pose_limit_scenes();
+[[nodiscard]] std::vector<extreme_scene> box_scenes();
 [[nodiscard]] std::vector<extreme_scene> bad_box_scenes();
+[[nodiscard]] std::vector<extreme_scene> mesh_scenes(extreme_size size);
+/// Poses at the limit of what is refused, too.
 [[nodiscard]] std::vector<extreme_scene> bad_mesh_scenes();
+/// Those in which denormals are flushed are left out where that cannot be done.
 [[nodiscard]] std::vector<extreme_scene> other_arithmetic_scenes();
 
 }  // namespace aabb

@@ -1,6 +1,10 @@
 module;
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +53,90 @@ using pose_frames = std::vector<std::vector<pose>>;
 
 [[nodiscard]] inline pose shifted(double x, double y, double z) {
     return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}};
+}
+
+/// Random numbers that are the same in every standard library, which fixes the engine but not its distributions.
+class draws {
+public:
+    explicit draws(std::uint32_t seed) : engine_(seed) {}
+
+    /// In [low, high).
+    [[nodiscard]] float between(float low, float high) {
+        return low + (high - low) * (static_cast<float>(engine_() >> 8U) * 0x1p-24F);
+    }
+    /// In [0, count).
+    [[nodiscard]] std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(engine_() % count); }
+    /// Each coordinate in [low, high).
+    [[nodiscard]] vec3f point(float low, float high) {
+        // Braces are evaluated from left to right.
+        return vec3f{between(low, high), between(low, high), between(low, high)};
+    }
+
+private:
+    std::mt19937 engine_;
+};
+
+// Small meshes.
+
+/// Each triangle with corners of its own.
+[[nodiscard]] inline mesh soup_of(const std::vector<triangle3f>& triangles) {
+    mesh m;
+    for (const triangle3f& t : triangles) {
+        const auto first = static_cast<std::uint32_t>(m.vertices.size());
+        for (const vec3f& corner : t.corner) m.vertices.push_back(corner);
+        m.triangles.push_back({first, first + 1, first + 2});
+    }
+    return m;
+}
+
+/// The cube from 0 to 2, each face cut into 8 triangles; corners are whole numbers.
+[[nodiscard]] inline mesh cube() {
+    mesh m;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side)
+            for (int u = 0; u < 2; ++u)
+                for (int v = 0; v < 2; ++v) {
+                    const auto first = static_cast<std::uint32_t>(m.vertices.size());
+                    for (int corner = 0; corner < 4; ++corner) {
+                        vec3f p{};
+                        p[axis] = static_cast<float>(2 * side);
+                        p[(axis + 1) % 3] = static_cast<float>(u + corner % 2);
+                        p[(axis + 2) % 3] = static_cast<float>(v + (corner > 1 ? 1 : 0));
+                        m.vertices.push_back(p);
+                    }
+                    m.triangles.push_back({first, first + 1, first + 2});
+                    m.triangles.push_back({first + 1, first + 3, first + 2});
+                }
+    return m;
+}
+
+/// About the origin, of `rings` rings; of the squares at the poles one half has no area.
+[[nodiscard]] inline mesh ball(std::uint32_t rings, double radius) {
+    mesh m;
+    const std::uint32_t around = 2 * rings;
+    for (std::uint32_t i = 0; i <= rings; ++i)
+        for (std::uint32_t j = 0; j < around; ++j) {
+            const double down = std::numbers::pi * i / rings;
+            const double turn = 2 * std::numbers::pi * j / around;
+            const double out = i == 0 || i == rings ? 0 : radius * std::sin(down);
+            m.vertices.push_back({static_cast<float>(out * std::cos(turn)), static_cast<float>(out * std::sin(turn)),
+                                  static_cast<float>(radius * std::cos(down))});
+        }
+    for (std::uint32_t i = 0; i < rings; ++i)
+        for (std::uint32_t j = 0; j < around; ++j) {
+            const std::uint32_t p = i * around + j;
+            const std::uint32_t q = i * around + (j + 1) % around;
+            m.triangles.push_back({p, p + around, q});
+            m.triangles.push_back({q, p + around, q + around});
+        }
+    return m;
+}
+
+/// A turn about z by an angle, in double, then a shift.
+[[nodiscard]] inline pose turned(double angle, const vec3d& shift) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    return {{c, -s, 0, s, c, 0, 0, 0, 1}, shift};
 }
 
 }  // namespace aabb

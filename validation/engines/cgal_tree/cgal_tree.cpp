@@ -60,88 +60,57 @@ struct tree_traits : CGAL::AABB_traits<kernel, primitive> {
     [[nodiscard]] Do_intersect do_intersect_object() const { return {}; }
 };
 
-/// A tree of A's triangles is asked for each of B's. It knows no poses: B's vertices are moved.
-class cgal_tree final : public mesh_engine {
-public:
-    std::uint32_t add_model(const mesh& m) override {
-        models_.push_back(model_of(m));
-        return static_cast<std::uint32_t>(models_.size() - 1);
-    }
+struct tree_model : engine_model {
+    kernel_triangles triangles{};
+    CGAL::AABB_tree<tree_traits> tree{};  // goes first: it points to the triangles
 
-    void refit(std::uint32_t number) override {
-        model& changed = models_[number];
-        changed.fit.renew([&] {
-            require_still_valid(*changed.source, changed.triangles.size());
-            changed = model_of(*changed.source);
-        });
+    [[nodiscard]] std::uint32_t number_of(kernel_triangles::const_iterator t) const {
+        return static_cast<std::uint32_t>(t - triangles.begin());
     }
-
-    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                                       const pose& pose_b) override {
-        require_fit(model_a, model_b);
-        const model& a = models_[model_a];
-        const mesh& b = *models_[model_b].source;
-        const relative_pose to_a(pose_a, pose_b, models_[model_b].bounds);
-        for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
-            if (const auto hit = a.tree.any_intersected_primitive(asked_triangle(to_a(b.triangle(t)))))
-                return index_pair{a.number_of(*hit), t};
-        return std::nullopt;
-    }
-
-    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+    [[nodiscard]] std::size_t bytes() const {
         using node = CGAL::AABB_node<tree_traits>;
-        std::size_t all = 0;
-        for (const model& m : models_)
-            all += bytes_of(m.triangles) + m.tree.size() * sizeof(primitive) + (m.tree.size() - 1) * sizeof(node);
-        return {{"engine", all}};
+        return bytes_of(triangles) + tree.size() * sizeof(primitive) + (tree.size() - 1) * sizeof(node);
     }
+};
 
-private:
-    struct model {
-        const mesh* source;
-        box bounds;
-        kernel_triangles triangles;
-        CGAL::AABB_tree<tree_traits> tree;  // goes first: it points to the triangles
-        mesh_fit fit;
-
-        [[nodiscard]] std::uint32_t number_of(kernel_triangles::const_iterator t) const {
-            return static_cast<std::uint32_t>(t - triangles.begin());
-        }
-    };
-
-    [[nodiscard]] static model model_of(const mesh& m) {
-        require_ieee_arithmetic();
-        require_valid(m);
-        model made{&m, bounds_of(m), {}, {}, {}};
-        made.triangles.reserve(m.triangles.size());
-        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) made.triangles.push_back(in_kernel(m.triangle(t)));
-        made.tree.rebuild(made.triangles.cbegin(), made.triangles.cend());
+/// A tree of A's triangles is asked for each of B's. It knows no poses: B's vertices are moved.
+class cgal_tree final : public model_engine<tree_model> {
+    [[nodiscard]] tree_model model_of(const engine_model& base) override {
+        tree_model made{base};
+        follow(made);
         return made;
     }
 
-    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-              std::vector<index_pair>& pairs) override {
-        require_fit(model_a, model_b);
-        const model& a = models_[model_a];
-        const mesh& b = *models_[model_b].source;
+    void follow(tree_model& changed) override {
+        changed.triangles.clear();
+        changed.triangles.reserve(changed.count);
+        for (std::uint32_t t = 0; t < changed.count; ++t)
+            changed.triangles.push_back(in_kernel(changed.source->triangle(t)));
+        changed.tree.rebuild(changed.triangles.cbegin(), changed.triangles.cend());
+    }
+
+    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
+        const mesh& b = *q.b.source;
+        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
+        for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
+            if (const auto hit = q.a.tree.any_intersected_primitive(asked_triangle(to_a(b.triangle(t)))))
+                return index_pair{q.a.number_of(*hit), t};
+        return std::nullopt;
+    }
+
+    void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
+        const mesh& b = *q.b.source;
         // Each vertex once, since triangles share them.
-        const std::vector<vec3f> moved = moved_vertices(pose_a, pose_b, b, models_[model_b].bounds);
+        const std::vector<vec3f> moved = moved_vertices(q.pose_a, q.pose_b, b, q.b.bounds);
         std::vector<kernel_triangles::const_iterator> hits;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
             const auto& [i, j, k] = b.triangles[t];
             hits.clear();
-            a.tree.all_intersected_primitives(asked_triangle({moved[i], moved[j], moved[k]}), std::back_inserter(hits));
-            for (const auto hit : hits) pairs.push_back({a.number_of(hit), t});
+            q.a.tree.all_intersected_primitives(asked_triangle({moved[i], moved[j], moved[k]}),
+                                                std::back_inserter(hits));
+            for (const auto hit : hits) pairs.push_back({q.a.number_of(hit), t});
         }
     }
-
-    void require_fit(std::uint32_t model_a, std::uint32_t model_b) const {
-        require_ieee_arithmetic();
-        models_[model_a].fit.require();
-        models_[model_b].fit.require();
-    }
-
-    std::vector<model> models_;
 };
 
 }  // namespace

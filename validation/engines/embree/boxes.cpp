@@ -15,6 +15,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
 import :box_engine;
+import :engine;
 
 namespace aabb {
 
@@ -113,10 +114,25 @@ private:
     scene_pointer scene_;
 };
 
+template <RTCBuildQuality Quality>
+std::unique_ptr<global_stage> make_boxes() {
+    return std::make_unique<embree_boxes>(Quality);
+}
+
 }  // namespace
 
-std::unique_ptr<global_stage> make_embree_boxes(bool refit) {
-    return std::make_unique<embree_boxes>(refit ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_LOW);
+engine embree_engine() {
+    return {.name = "embree",
+            .summary = "Embree's collision of a scene with itself, on a tree of low quality built anew in each frame",
+            .exact = true,
+            .boxes = make_boxes<RTC_BUILD_QUALITY_LOW>};
+}
+
+engine embree_refit_engine() {
+    return {.name = "embree_refit",
+            .summary = "the same on a good tree that is refitted while the number of boxes stays; for little motion",
+            .exact = true,
+            .boxes = make_boxes<RTC_BUILD_QUALITY_REFIT>};
 }
 
 }  // namespace aabb

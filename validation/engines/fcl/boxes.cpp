@@ -14,6 +14,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
 import :box_engine;
+import :engine;
 
 namespace aabb {
 
@@ -80,8 +81,15 @@ private:
 
 }  // namespace
 
-std::unique_ptr<global_stage> make_fcl_boxes() {
-    return std::make_unique<fcl_boxes>();
+// Defined in meshes.cpp.
+std::unique_ptr<local_stage> make_fcl_meshes();
+
+engine fcl_engine() {
+    return {.name = "fcl",
+            .summary = "FCL's dynamic AABB tree for boxes, and its trees of oriented boxes in double for meshes",
+            .exact = false,
+            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<fcl_boxes>(); },
+            .meshes = make_fcl_meshes};
 }
 
 }  // namespace aabb

@@ -13,7 +13,6 @@ module;
 #include <new>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,6 +22,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
+import :engine;
 import :mesh_engine;
 
 namespace aabb {
@@ -87,96 +87,67 @@ private:
     std::unique_ptr<tree> tree_;  // none after a build that broke off
 };
 
+template <class Volume>
+struct fcl_model : engine_model {
+    fcl_tree<Volume> still{};
+    fcl_tree<Volume> moved{};                    ///< in the frame of another model, where FCL takes no poses
+    std::optional<std::array<pose, 2>> poses{};  ///< of that model and this one there; none where nothing is built
+
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(still) + bytes_of(moved); }
+};
+
 /// What the engines do alike.
 template <class Volume>
-class fcl_meshes : public mesh_engine {
-public:
-    std::uint32_t add_model(const mesh& m) final {
-        require_ieee_arithmetic();
-        require_valid(m);
-        model made{&m, m.triangles.size(), {}, {}, {}, {}, {}};
-        fit(made);
-        models_.push_back(std::move(made));
-        return static_cast<std::uint32_t>(models_.size() - 1);
+class fcl_meshes : public model_engine<fcl_model<Volume>> {
+protected:
+    using model = fcl_model<Volume>;
+    using asked = typename model_engine<model>::asked;
+
+    /// Adds what intersects to the result.
+    virtual void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) = 0;
+
+private:
+    [[nodiscard]] model model_of(const engine_model& base) final {
+        model made{base};
+        follow(made);
+        return made;
     }
 
-    void refit(std::uint32_t number) final {
-        model& changed = models_[number];
+    void follow(model& changed) final {
         changed.poses.reset();
-        changed.fit.renew([&] {
-            require_ieee_arithmetic();
-            require_still_valid(*changed.triangles, changed.count);
-            fit(changed);
-        });
+        changed.still.build(*changed.source, changed.source->vertices);
     }
 
-    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                                       const pose& pose_b) final {
-        const fcl::CollisionResultd result = collision(model_a, pose_a, model_b, pose_b, 1);
+    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) final {
+        const fcl::CollisionResultd result = collision(q, 1);
         if (!result.isCollision()) return std::nullopt;
         return pair_of(result.getContact(0));
     }
 
-    [[nodiscard]] std::vector<part_bytes> bytes() const final {
-        std::size_t all = 0;
-        for (const model& m : models_) all += bytes_of(m.still) + bytes_of(m.moved);
-        return {{"engine", all}};
-    }
-
-protected:
-    struct model {
-        const mesh* triangles;
-        std::size_t count;  // of triangles
-        box bounds;
-        fcl_tree<Volume> still;
-        mesh_fit fit;
-        fcl_tree<Volume> moved;                    // in the frame of another model, where FCL takes no poses
-        std::optional<std::array<pose, 2>> poses;  // of that model and this one there; none where nothing is built
-    };
-
-    /// Adds what intersects to the result.
-    virtual void collide(const model& a, const pose& pose_a, model& b, const pose& pose_b,
-                         const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) = 0;
-
-private:
-    static void fit(model& m) {
-        m.bounds = bounds_of(*m.triangles);
-        m.still.build(*m.triangles, m.triangles->vertices);
+    void append_pairs(const asked& q, std::vector<index_pair>& pairs) final {
+        const fcl::CollisionResultd result = collision(q, std::numeric_limits<std::size_t>::max());
+        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
     }
 
     [[nodiscard]] static index_pair pair_of(const fcl::Contactd& contact) {
         return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
     }
 
-    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-              std::vector<index_pair>& pairs) final {
-        const fcl::CollisionResultd result =
-            collision(model_a, pose_a, model_b, pose_b, std::numeric_limits<std::size_t>::max());
-        for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
-    }
-
     /// Without contact points each pair of triangles is reported once.
-    [[nodiscard]] fcl::CollisionResultd collision(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                                  const pose& pose_b, std::size_t most) {
-        require_ieee_arithmetic();
-        models_[model_a].fit.require();
-        models_[model_b].fit.require();
+    [[nodiscard]] fcl::CollisionResultd collision(const asked& q, std::size_t most) {
         fcl::CollisionRequestd request;
         request.num_max_contacts = most;
         request.enable_contact = false;
         fcl::CollisionResultd result;
-        collide(models_[model_a], pose_a, models_[model_b], pose_b, request, result);
+        collide(q, request, result);
         return result;
     }
-
-    std::vector<model> models_;
 };
 
 /// Oriented boxes. FCL takes the raw poses, so that no vertex is rounded to float.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
-    void collide(const model& a, const pose& pose_a, model& b, const pose& pose_b,
-                 const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
-        fcl::collide(&a.still.get(), transform(pose_a), &b.still.get(), transform(pose_b), request, result);
+    void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
+        fcl::collide(&q.a.still.get(), transform(q.pose_a), &q.b.still.get(), transform(q.pose_b), request, result);
     }
 
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
@@ -192,16 +163,15 @@ class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
 /// Axis-aligned boxes, which want both trees in one frame. For these FCL's own call copies and builds them anew in
 /// every query, so its parts are called one by one: B's tree is refitted for each new pose, and kept while that stays.
 class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
-    void collide(const model& a, const pose& pose_a, model& b, const pose& pose_b,
-                 const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
-        if (const std::array poses{pose_a, pose_b}; b.poses != poses) {
-            b.poses.reset();
-            b.moved.build(*b.triangles, moved_vertices(pose_a, pose_b, *b.triangles, b.bounds));
-            b.poses = poses;
+    void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
+        if (const std::array poses{q.pose_a, q.pose_b}; q.b.poses != poses) {
+            q.b.poses.reset();
+            q.b.moved.build(*q.b.source, moved_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
+            q.b.poses = poses;
         }
         fcl::Transform3d still = fcl::Transform3d::Identity();
         fcl::detail::MeshCollisionTraversalNode<fcl::AABBd> node;
-        fcl::detail::initialize(node, a.still.get(), still, b.moved.get(), still, request, result);
+        fcl::detail::initialize(node, q.a.still.get(), still, q.b.moved.get(), still, request, result);
         fcl::detail::collide(&node);
     }
 };
@@ -212,8 +182,13 @@ std::unique_ptr<local_stage> make_fcl_meshes() {
     return std::make_unique<fcl_oriented>();
 }
 
-std::unique_ptr<local_stage> make_fcl_aabb_meshes() {
-    return std::make_unique<fcl_axis_aligned>();
+engine fcl_aabb_engine() {
+    return {.name = "fcl_aabb",
+            .summary =
+                "FCL's trees of axis-aligned boxes, the second mesh's refitted for each new pose, with vertices "
+                "rounded to float in the first one's frame",
+            .exact = false,
+            .meshes = []() -> std::unique_ptr<local_stage> { return std::make_unique<fcl_axis_aligned>(); }};
 }
 
 }  // namespace aabb

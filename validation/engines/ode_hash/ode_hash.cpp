@@ -1,22 +1,234 @@
 module;
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <vector>
 
 module aabb.engines;
 
+import aabb.base;
+import aabb.geometry;
 import aabb.pipeline;
+import :box_engine;
 import :engine;
 
 namespace aabb {
 
-// Defined in boxes.cpp.
-std::unique_ptr<global_stage> make_ode_hash();
+namespace {
+
+/// A box as ODE has boxes: the lower and the upper end on each axis in turn.
+struct numbered {
+    std::array<dReal, 6> ends;
+    std::uint32_t id;
+};
+
+numbered& data_of(dGeomID geom) {
+    return *static_cast<numbered*>(dGeomGetClassData(geom));
+}
+
+/// A class of objects whose boxes are ours to the bit: of its own, ODE would compute boxes with rounding. ODE has room
+/// for few classes, and keeps them while the process lives.
+int class_of_boxes() {
+    static const int made = [] {
+        if (!dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll)) throw std::bad_alloc();
+        dGeomClass boxes{};
+        boxes.bytes = sizeof(numbered);
+        boxes.collider = [](int) -> dColliderFn* { return nullptr; };
+        boxes.aabb = [](dGeomID geom, dReal* ends) { std::ranges::copy(data_of(geom).ends, ends); };
+        return dCreateGeomClass(&boxes);
+    }();
+    return made;
+}
+
+struct release {
+    void operator()(dGeomID geom) const { dGeomDestroy(geom); }
+    void operator()(dSpaceID space) const { dSpaceDestroy(space); }
+};
+using space_handle = std::unique_ptr<dxSpace, release>;
+
+/// Boxes in a space of ODE's, which compares them as they are, in double.
+class ode_boxes : public box_engine {
+public:
+    /// @param unit of the coordinates that ODE sees, a power of two, so that nothing is rounded.
+    explicit ode_boxes(dReal unit) : unit_(unit) {}
+
+    /// Without what ODE's classes hold beside position, rotation, box and our data, which it does not say.
+    [[nodiscard]] std::vector<part_bytes> bytes() const final {
+        constexpr std::size_t one = sizeof(dVector3) + sizeof(dMatrix3) + 6 * sizeof(dReal) + sizeof(numbered);
+        const std::size_t all = space_ ? static_cast<std::size_t>(dSpaceGetNumGeoms(space_.get())) : 0;
+        return {{"engine", bytes_of(boxes_) + bytes_of(geoms_) + all * one}};
+    }
+
+protected:
+    /// Makes an empty space for boxes like these.
+    [[nodiscard]] virtual space_handle make_space(std::span<const numbered> boxes) const = 0;
+    /// Before each search.
+    virtual void prepare(dSpaceID space, std::span<const numbered> boxes) const = 0;
+
+private:
+    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) final {
+        boxes_.clear();
+        for (const std::uint32_t id : ids) {
+            const box& b = boxes[id];
+            boxes_.push_back({{unit_ * b.min[0], unit_ * b.max[0], unit_ * b.min[1], unit_ * b.max[1], unit_ * b.min[2],
+                               unit_ * b.max[2]},
+                              id});
+        }
+        for (std::uint32_t id = 0; id < geoms_.size(); ++id)
+            if (geoms_[id] && !is_present(id)) geoms_[id].reset();
+        fill();
+    }
+
+    /// Brings the space up to the boxes.
+    void fill() {
+        if (boxes_.empty()) return;
+        if (!space_) {
+            space_ = make_space(boxes_);
+            dSpaceSetCleanup(space_.get(), 0);
+        }
+        if (geoms_.size() <= boxes_.back().id) geoms_.resize(std::size_t{boxes_.back().id} + 1);
+        for (const numbered& one : boxes_) {
+            auto& geom = geoms_[one.id];
+            if (!geom) {
+                geom.reset(dCreateGeom(class_of_boxes()));
+                dSpaceAdd(space_.get(), geom.get());
+            }
+            data_of(geom.get()) = one;
+            // Tells ODE to ask for the box again.
+            dGeomSetPosition(geom.get(), 0, 0, 0);
+        }
+        prepare(space_.get(), boxes_);
+    }
+
+    /// What a search has found so far. No exception may pass through ODE, which would stay locked.
+    struct finding {
+        std::vector<index_pair>& pairs;
+        bool out_of_memory = false;
+    };
+
+    void find(std::vector<index_pair>& pairs) final {
+        if (!space_) fill();
+        if (boxes_.size() < 2) return;
+        finding found{pairs};
+        try {
+            dSpaceCollide(space_.get(), &found, collect);
+        } catch (...) {
+            abandon();
+            throw;
+        }
+        if (found.out_of_memory) throw std::bad_alloc();
+    }
+
+    static void collect(void* to, dGeomID a, dGeomID b) {
+        finding& found = *static_cast<finding*>(to);
+        try {
+            found.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id));
+        } catch (const std::bad_alloc&) {
+            found.out_of_memory = true;
+        }
+    }
+
+    /// A space that ran out of memory while it searched stays locked, and ODE ends the process of who touches it or its
+    /// objects again. So they are left as they are, and the next search begins with others.
+    void abandon() {
+        // NOLINTBEGIN(bugprone-unused-return-value)
+        for (auto& geom : geoms_) (void)geom.release();
+        (void)space_.release();
+        // NOLINTEND(bugprone-unused-return-value)
+    }
+
+    dReal unit_;
+    std::vector<numbered> boxes_;
+    space_handle space_;
+    std::vector<std::unique_ptr<dxGeom, release>> geoms_;  // by id; null where absent. Go first: they leave the space
+};
+
+/// In a unit in which every cell is smaller than 1. Where they are not, ODE may store a box in one place and look for
+/// it in another: it computes the place of the first cell of a column, and that of the next by adding 1, which is not
+/// the same where the first number is below zero and without a sign.
+class ode_hash final : public ode_boxes {
+public:
+    ode_hash() : ode_boxes(dReal{0x1p-160}) {}
+
+private:
+    [[nodiscard]] space_handle make_space(std::span<const numbered>) const override {
+        return space_handle(dHashSpaceCreate(nullptr));
+    }
+
+    /// Cells as large as objects, from the smallest to the largest, and large enough to be counted by an int.
+    void prepare(dSpaceID space, std::span<const numbered> boxes) const override {
+        constexpr std::size_t most = (std::size_t{1} << 17) - 1;
+        if (boxes.size() > most)
+            throw input_error("ode_hash takes at most " + std::to_string(most) + " objects, and here are " +
+                              std::to_string(boxes.size()) + ": ODE counts the bytes for their pairs in an int");
+        int least = 0;
+        int greatest = std::numeric_limits<int>::min();
+        dReal farthest = std::numeric_limits<dReal>::min();
+        for (const auto& [ends, id] : boxes) {
+            for (const dReal end : ends) farthest = std::max(farthest, std::abs(end));
+            const dReal extent = std::max({ends[1] - ends[0], ends[3] - ends[2], ends[5] - ends[4]});
+            // Points have no size; ODE compares each with all.
+            if (extent == 0) continue;
+            least = std::min(least, level_of(extent));
+            greatest = std::max(greatest, level_of(extent));
+        }
+        least = std::max(least, level_of(farthest) - 30);
+        dHashSpaceSetLevels(space, least, std::max(least, greatest));
+    }
+
+    /// Of cells of 2^level: the least that is greater than this.
+    static int level_of(dReal extent) { return std::ilogb(extent) + 1; }
+};
+
+class ode_sap final : public ode_boxes {
+public:
+    ode_sap() : ode_boxes(1) {}
+
+private:
+    /// Sweeps along the axis on which most is to be told apart.
+    [[nodiscard]] space_handle make_space(std::span<const numbered> boxes) const override {
+        std::array<dReal, 3> extents{};
+        std::array<int, 3> axes{};
+        for (int k = 0; k < 3; ++k) {
+            const std::size_t low = 2 * static_cast<std::size_t>(k);
+            const auto lower_end = [&](const numbered& one) { return one.ends[low]; };
+            const auto [first, last] = std::ranges::minmax_element(boxes, {}, lower_end);
+            extents[static_cast<std::size_t>(k)] = lower_end(*last) - lower_end(*first);
+            axes[static_cast<std::size_t>(k)] = k;
+        }
+        const auto extent_of = [&](int axis) { return extents[static_cast<std::size_t>(axis)]; };
+        std::ranges::stable_sort(axes, std::greater(), extent_of);
+        return space_handle(dSweepAndPruneSpaceCreate(nullptr, axes[0] | axes[1] << 2 | axes[2] << 4));
+    }
+
+    void prepare(dSpaceID, std::span<const numbered>) const override {}
+};
+
+}  // namespace
 
 engine ode_hash_engine() {
     return {
         .name = "ode_hash",
         .summary = "ODE's hashed grid with cells of several sizes; with a bit for each pair, for 131,071 boxes at most",
         .exact = true,
-        .boxes = make_ode_hash};
+        .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<ode_hash>(); }};
+}
+
+engine ode_sap_engine() {
+    return {.name = "ode_sap",
+            .summary = "ODE's sweep along one axis, sorted by radix in each frame",
+            .exact = true,
+            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<ode_sap>(); }};
 }
 
 }  // namespace aabb

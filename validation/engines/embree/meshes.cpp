@@ -10,7 +10,7 @@ module;
 #include <utility>
 #include <vector>
 
-#include "../embree/device.hpp"
+#include "device.hpp"
 
 module aabb.engines;
 
@@ -19,6 +19,7 @@ import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
 import aabb.triangle.devillers_guigue;
+import :engine;
 import :mesh_engine;
 
 namespace aabb {
@@ -30,13 +31,14 @@ using namespace embree;
 /// Triangles, and their boxes in a scene.
 class triangle_scene {
 public:
-    /// @param held where what Embree allocates is added up; must outlive this
-    explicit triangle_scene(std::ptrdiff_t& held) : held_(&held) {}
+    /// @param held where what Embree allocates is added up
+    explicit triangle_scene(std::shared_ptr<std::ptrdiff_t> held) : held_(std::move(held)) {}
     triangle_scene(triangle_scene&&) = default;
     triangle_scene& operator=(triangle_scene&&) = delete;
     triangle_scene(const triangle_scene&) = delete;
     triangle_scene& operator=(const triangle_scene&) = delete;
     ~triangle_scene() {
+        if (!held_) return;  // moved away
         const charge_to here(*held_);
         scene_.reset();
         geometry_.reset();
@@ -85,89 +87,76 @@ private:
         rtcAttachGeometry(scene_.get(), geometry_.get());
     }
 
-    std::ptrdiff_t* held_;
+    std::shared_ptr<std::ptrdiff_t> held_;
     std::optional<RTCBuildQuality> built_;
     std::vector<triangle3f> triangles_;
     geometry_pointer geometry_;
     scene_pointer scene_;
 };
 
+struct embree_model : engine_model {
+    triangle_scene still;
+    triangle_scene moved;                        ///< in the frame of another model
+    std::optional<std::array<pose, 2>> poses{};  ///< of that model and this one there; none where nothing is built
+
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(still) + bytes_of(moved); }
+};
+
 /// Embree knows no poses: the second mesh is moved, and its scene built or refitted, for every new one, and kept while
 /// that stays.
-class embree_meshes final : public mesh_engine {
+class embree_meshes final : public model_engine<embree_model> {
 public:
     explicit embree_meshes(RTCBuildQuality quality) : quality_(quality) {}
 
-    std::uint32_t add_model(const mesh& m) override {
-        require_ieee_arithmetic();
-        require_valid(m);
-        model made{&m, bounds_of(m), triangle_scene(*held_), {}, triangle_scene(*held_), {}};
-        // Most meshes never deform, so only what is moved begins as one that refits.
-        const bool refits = quality_ == RTC_BUILD_QUALITY_REFIT;
-        made.still.build(refits ? RTC_BUILD_QUALITY_MEDIUM : quality_, m, m.vertices);
-        models_.push_back(std::move(made));
-        return static_cast<std::uint32_t>(models_.size() - 1);
-    }
-
-    void refit(std::uint32_t number) override {
-        model& changed = models_[number];
-        changed.poses.reset();
-        changed.fit.renew([&] {
-            require_ieee_arithmetic();
-            require_still_valid(*changed.source, changed.still.triangles().size());
-            changed.bounds = bounds_of(*changed.source);
-            changed.still.build(quality_, *changed.source, changed.source->vertices);
-        });
-    }
-
-    [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                                       const pose& pose_b) override {
-        std::vector<index_pair> pairs;
-        find(model_a, pose_a, model_b, pose_b, pairs);
-        if (pairs.empty()) return std::nullopt;
-        return pairs.front();
-    }
-
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t all = static_cast<std::size_t>(*held_);
-        for (const model& m : models_) all += bytes_of(m.still) + bytes_of(m.moved);
-        return {{"engine", all}};
+        std::vector<part_bytes> all = model_engine::bytes();
+        all[0].bytes += static_cast<std::size_t>(*held_);
+        return all;
     }
 
 private:
-    struct model {
-        const mesh* source;
-        box bounds;
-        triangle_scene still;
-        mesh_fit fit;
-        triangle_scene moved;                      // in the frame of another model
-        std::optional<std::array<pose, 2>> poses;  // of that model and this one there; none where nothing is built
-    };
+    /// What a search has found so far.
     struct finding {
         std::vector<index_pair>& pairs;
         bool out_of_memory = false;
     };
 
-    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-              std::vector<index_pair>& pairs) override {
-        require_ieee_arithmetic();
-        const triangle_scene& a = models_[model_a].still;
-        model& b = models_[model_b];
-        models_[model_a].fit.require();
-        b.fit.require();
-        if (const std::array poses{pose_a, pose_b}; b.poses != poses) {
-            b.poses.reset();
-            b.moved.build(quality_, *b.source, moved_vertices(pose_a, pose_b, *b.source, b.bounds));
-            b.poses = poses;
+    [[nodiscard]] embree_model model_of(const engine_model& base) override {
+        embree_model made{base, triangle_scene(held_), triangle_scene(held_)};
+        // Most meshes never deform, so only what is moved begins as one that refits.
+        const bool refits = quality_ == RTC_BUILD_QUALITY_REFIT;
+        made.still.build(refits ? RTC_BUILD_QUALITY_MEDIUM : quality_, *base.source, base.source->vertices);
+        return made;
+    }
+
+    void follow(embree_model& changed) override {
+        changed.poses.reset();
+        changed.still.build(quality_, *changed.source, changed.source->vertices);
+    }
+
+    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
+        std::vector<index_pair> pairs;
+        append_pairs(q, pairs);
+        if (pairs.empty()) return std::nullopt;
+        return pairs.front();
+    }
+
+    void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
+        if (const std::array poses{q.pose_a, q.pose_b}; q.b.poses != poses) {
+            q.b.poses.reset();
+            q.b.moved.build(quality_, *q.b.source, moved_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
+            q.b.poses = poses;
         }
         const auto known = static_cast<std::ptrdiff_t>(pairs.size());
         finding found{pairs};
-        rtcCollide(a.get(), b.moved.get(), collect, &found);
+        rtcCollide(q.a.still.get(), q.b.moved.get(), collect, &found);
         require_success(the_device());
         if (found.out_of_memory) throw std::bad_alloc();
         // Only now: while it searches, Embree may take denormals for zero.
         const devillers_guigue_triangle test;
-        const auto apart = [&](index_pair p) { return !test.intersects(a.triangles()[p.a], b.moved.triangles()[p.b]); };
+        const std::span<const triangle3f> of_a = q.a.still.triangles();
+        const std::span<const triangle3f> of_b = q.b.moved.triangles();
+        const auto apart = [&](index_pair p) { return !test.intersects(of_a[p.a], of_b[p.b]); };
         pairs.erase(std::remove_if(pairs.begin() + known, pairs.end(), apart), pairs.end());
     }
 
@@ -182,22 +171,34 @@ private:
     }
 
     RTCBuildQuality quality_;
-    std::unique_ptr<std::ptrdiff_t> held_ = std::make_unique<std::ptrdiff_t>(0);  // bytes that Embree holds
-    std::vector<model> models_;
+    std::shared_ptr<std::ptrdiff_t> held_ = std::make_shared<std::ptrdiff_t>(0);  // bytes that Embree holds
 };
+
+template <RTCBuildQuality Quality>
+std::unique_ptr<local_stage> make_meshes() {
+    return std::make_unique<embree_meshes>(Quality);
+}
 
 }  // namespace
 
-std::unique_ptr<local_stage> make_embree_meshes() {
-    return std::make_unique<embree_meshes>(RTC_BUILD_QUALITY_MEDIUM);
+engine embree_meshes_engine() {
+    return {.name = "embree_meshes",
+            .summary =
+                "Embree's collision of two scenes of medium quality, built anew for each new pose, with "
+                "Devillers and Guigue's test in double",
+            .meshes = make_meshes<RTC_BUILD_QUALITY_MEDIUM>};
 }
 
-std::unique_ptr<local_stage> make_embree_meshes_low() {
-    return std::make_unique<embree_meshes>(RTC_BUILD_QUALITY_LOW);
+engine embree_meshes_low_engine() {
+    return {.name = "embree_meshes_low",
+            .summary = "as embree_meshes, with scenes of low quality, which are built faster",
+            .meshes = make_meshes<RTC_BUILD_QUALITY_LOW>};
 }
 
-std::unique_ptr<local_stage> make_embree_meshes_refit() {
-    return std::make_unique<embree_meshes>(RTC_BUILD_QUALITY_REFIT);
+engine embree_meshes_refit_engine() {
+    return {.name = "embree_meshes_refit",
+            .summary = "as embree_meshes, with scenes that are refitted for each new pose and when vertices move",
+            .meshes = make_meshes<RTC_BUILD_QUALITY_REFIT>};
 }
 
 }  // namespace aabb

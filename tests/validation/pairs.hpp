@@ -1,0 +1,50 @@
+#pragma once
+
+#include <catch2/catch_test_macros.hpp>
+#include <cstddef>
+
+#include "../triangle_pairs.hpp"
+
+import aabb;
+
+// Imports modules, so it is included after every other header.
+
+namespace triangle_pairs {
+
+/// As the library has it.
+template <class Real>
+aabb::triangle_pair<Real> of_type(const pair& made) {
+    aabb::triangle_pair<Real> p;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            p.a[i][k] = static_cast<Real>(made[0][static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+            p.b[i][k] = static_cast<Real>(made[1][static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+        }
+    return p;
+}
+
+/// Takes `count` pairs of every pattern in every placement.
+/// @param after is called behind each of them with the number of the pattern
+template <class Real, class Take, class After>
+void for_each_pair(generator& g, int count, Take take, After after) {
+    for (std::size_t pattern = 0; pattern < patterns.size(); ++pattern)
+        for (std::size_t placement = 0; placement < placements.size(); ++placement) {
+            CAPTURE(patterns[pattern], placements[placement]);
+            for (int i = 0; i < count; ++i) take(of_type<Real>(placed<Real>(g, patterned(g, pattern), placement)));
+            after(pattern);
+        }
+}
+
+/// Requires that `is_right` is true of every such pair.
+template <class Real, class IsRight>
+void check_each_pair(generator& g, int count, IsRight is_right) {
+    int wrong = 0;
+    for_each_pair<Real>(
+        g, count, [&](const aabb::triangle_pair<Real>& pair) { wrong += is_right(pair) ? 0 : 1; },
+        [&](std::size_t) {
+            CHECK(wrong == 0);
+            wrong = 0;
+        });
+}
+
+}  // namespace triangle_pairs

@@ -1,0 +1,202 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabb.extreme;
+
+import aabb.geometry;
+import aabb.pipeline;
+import :known_scenes;
+import :making;
+import :scene;
+
+namespace aabb {
+
+namespace {
+
+// Meshes that touch.
+
+/// A quarter turn about z, which rounds nothing.
+constexpr pose quarter_turn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {0, 0, 0}};
+
+/// Two cubes of edge 2; in the second frame both stand elsewhere, and the second is turned so that it fills the same
+/// space.
+std::unique_ptr<mesh_scene> two_cubes(const vec3d& between) {
+    const pose turned_second{quarter_turn.rotation, {between[0] + 2 + 7, between[1] + 5, between[2] - 3}};
+    return std::make_unique<known_poses>(
+        cube(), pose_frames{{{}, shifted(between[0], between[1], between[2])}, {shifted(7, 5, -3), turned_second}});
+}
+
+std::unique_ptr<mesh_scene> same_place() {
+    const pose anywhere = turned(0.7, {0.3, -0.2, 0.1});
+    return std::make_unique<known_poses>(ball(4, 1), pose_frames{{{}, {}}, {anywhere, anywhere}});
+}
+
+/// A corner of one stands on a face of the other, then on an edge.
+std::unique_ptr<mesh_scene> corner_on_face() {
+    const mesh corner = soup_of({{{{0, 0, 0}, {1, 1, 1}, {2, 1, 1}}}, {{{0, 0, 0}, {1, 1, 1}, {1, 2, 1}}}});
+    return std::make_unique<known_poses>(
+        std::vector{cube(), corner},
+        pose_frames{{{}, shifted(0.5, 0.75, 2)}, {{}, shifted(0.5, 2, 2)}, {{}, shifted(1, 1, 2)}});
+}
+
+// Triangles in one place.
+
+constexpr triangle3f one{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
+constexpr triangle3f across{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 1}, {0.25F, 3, 0}}};
+
+/// No build can part them.
+std::unique_ptr<mesh_scene> same_centroid() {
+    draws random(41);
+    std::vector<triangle3f> triangles;
+    const auto whole = [&] { return static_cast<float>(random.below(17)) - 8; };
+    for (int i = 0; i < 40; ++i) {
+        const vec3f p{whole(), whole(), whole()};
+        const vec3f q{whole(), whole(), whole()};
+        triangles.push_back({{p, q, {-p[0] - q[0], -p[1] - q[1], -p[2] - q[2]}}});
+    }
+    return std::make_unique<known_poses>(soup_of(triangles),
+                                         pose_frames{{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
+}
+
+/// Each four times, one after the other, and once more with its corners in another order.
+std::unique_ptr<mesh_scene> duplicates() {
+    mesh m = cube();
+    // Those of one face and a half.
+    m.triangles.resize(12);
+    const auto once = m.triangles;
+    for (int i = 0; i < 3; ++i) m.triangles.insert(m.triangles.end(), once.begin(), once.end());
+    for (const auto& t : once) m.triangles.push_back({t[2], t[0], t[1]});
+    return std::make_unique<known_poses>(std::move(m),
+                                         pose_frames{{{}, shifted(1, 1, 1)}, {{}, turned(0.5, {1, 0, 1})}});
+}
+
+std::unique_ptr<mesh_scene> one_triangle_each() {
+    return std::make_unique<known_poses>(
+        std::vector{soup_of({one}), soup_of({across})},
+        pose_frames{{{}, {}}, {{}, shifted(0, 0, 1)}, {{}, shifted(0, 0, 1.5)}, {shifted(3, 3, 3), shifted(3, 3, 3)}});
+}
+
+mesh coincident(std::uint32_t count) {
+    mesh m = soup_of({one});
+    m.triangles.resize(count, m.triangles[0]);
+    return m;
+}
+
+std::uint32_t many_at(extreme_size size) {
+    switch (size) {
+        case extreme_size::small: return 300;
+        case extreme_size::quick: return 20'000;
+        case extreme_size::full: break;
+    }
+    return 1'000'000;
+}
+
+// Triangles that are hardly any.
+
+/// @param height of a triangle over its length
+std::unique_ptr<mesh_scene> needles(float height) {
+    draws random(51);
+    std::vector<triangle3f> triangles;
+    for (int i = 0; i < 60; ++i) {
+        const vec3f from = random.point(-1, 1);
+        const vec3f to = random.point(-1, 1);
+        vec3f beside = to;
+        for (int k = 0; k < 3; ++k) beside[k] = (from[k] + to[k]) / 2 + height * random.between(-1, 1);
+        triangles.push_back({{from, to, beside}});
+    }
+    return std::make_unique<known_poses>(
+        soup_of(triangles), pose_frames{{{}, {}}, {{}, shifted(1e-7, 0, 0)}, {{}, turned(1e-6, {0, 0, 0})}});
+}
+
+/// Segments and points among triangles of whole numbers, so that they meet.
+std::unique_ptr<mesh_scene> zero_areas() {
+    draws random(52);
+    std::vector<triangle3f> triangles;
+    const auto whole = [&] { return static_cast<float>(random.below(5)); };
+    for (std::uint32_t i = 0; i < 60; ++i) {
+        triangle3f t{{{whole(), whole(), whole()}, {whole(), whole(), whole()}, {whole(), whole(), whole()}}};
+        if (i % 3 > 0) t[2] = t[1];
+        if (i % 3 > 1) t[1] = t[0];
+        if (i % 6 > 3) t[2] = t[0];
+        triangles.push_back(t);
+    }
+    return std::make_unique<known_poses>(soup_of(triangles), pose_frames{{{}, {}}, {{}, shifted(1, 0, 0)}});
+}
+
+// Balls of every size, and far out.
+
+/// Two balls of that radius that pass through each other.
+std::unique_ptr<mesh_scene> balls_of(double radius) {
+    return std::make_unique<known_poses>(
+        ball(5, radius), pose_frames{{{}, turned(0.4, {0.8 * radius, 0.5 * radius, 0.1 * radius})},
+                                     {turned(-1, {radius, 0, 0}), turned(2, {0.5 * radius, 0, radius})}});
+}
+
+/// One of radius 1, the other of that radius, on the first one's surface.
+std::unique_ptr<mesh_scene> ball_on_ball(double radius) {
+    return std::make_unique<known_poses>(std::vector{ball(5, 1), ball(5, radius)},
+                                         pose_frames{{{}, shifted(0, 0, 1 + radius / 2)}, {{}, shifted(0, 1, 0)}});
+}
+
+/// Both moved that far, and as much apart as ever.
+std::unique_ptr<mesh_scene> balls_moved(double far) {
+    return std::make_unique<known_poses>(ball(5, 1),
+                                         pose_frames{{shifted(far, -far, far), turned(0.4, {far + 1, -far, far + 0.5})},
+                                                     {shifted(-far, far, 0), shifted(-far, far, 0)}});
+}
+
+}  // namespace
+
+std::vector<extreme_scene> mesh_scenes(extreme_size size) {
+    const std::uint32_t many = many_at(size);
+    extreme_scene against_one =
+        scene_of_meshes("many_against_one", std::to_string(many) + " times the same triangle, against one", [many] {
+            return std::make_unique<known_poses>(std::vector{coincident(many), soup_of({across})},
+                                                 pose_frames{{{}, {}}});
+        });
+    against_one.asked = extreme_query::count_pairs;
+    extreme_scene against_itself = scene_of_meshes(
+        "many_against_many", "the same against itself: any one pair",
+        [many] { return std::make_unique<known_poses>(coincident(many), pose_frames{{{}, shifted(0.5, 0.5, 0)}}); });
+    against_itself.asked = extreme_query::first_pair;
+    // The largest layout has an internal node of 32 bytes and a leaf of 28 for each triangle; the rest is for stacks.
+    for (extreme_scene* scene : {&against_one, &against_itself}) scene->most_bytes = std::size_t{many} * 64 + 65'536;
+    std::vector<extreme_scene> all{
+        scene_of_meshes("same_place", "a mesh in the place of its twin", same_place),
+        scene_of_meshes("touch_at_vertices", "two cubes that share a corner", [] { return two_cubes({2, 2, 2}); }),
+        scene_of_meshes("touch_along_edges", "two cubes that share an edge", [] { return two_cubes({2, 2, 0}); }),
+        scene_of_meshes("touch_at_faces", "two cubes that share a face", [] { return two_cubes({2, 0, 0}); }),
+        scene_of_meshes("corner_on_face", "a corner on a face, an edge, a vertex", corner_on_face),
+        scene_of_meshes("same_centroid", "all triangles about one point", same_centroid),
+        scene_of_meshes("duplicates", "each triangle five times", duplicates),
+        scene_of_meshes("one_triangle", "meshes of a triangle each", one_triangle_each),
+        against_one,
+        against_itself,
+        scene_of_meshes("slivers", "a millionth as high as long", [] { return needles(1e-6F); }),
+        scene_of_meshes("thinnest", "as high as a step of the last place", [] { return needles(1e-8F); }),
+        scene_of_meshes("zero_areas", "triangles, segments and points", zero_areas),
+    };
+    for (const auto& [name, radius] : {std::pair{"scale_1e-44", 1e-44},
+                                       {"scale_1e-39", 1e-39},
+                                       {"scale_1e-30", 1e-30},
+                                       {"scale_1e-10", 1e-10},
+                                       {"scale_1e10", 1e10},
+                                       {"scale_1e30", 1e30},
+                                       {"scale_1e37", 1e37}})
+        all.push_back(scene_of_meshes(name, "two balls of that radius through each other",
+                                      [size = radius] { return balls_of(size); }));
+    for (const auto& [name, radius] : {std::pair{"beside_1e-6", 1e-6}, {"beside_1e6", 1e6}, {"beside_1e-38", 1e-38}})
+        all.push_back(scene_of_meshes(name, "a ball of that radius on one of radius 1",
+                                      [size = radius] { return ball_on_ball(size); }));
+    for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
+        all.push_back(scene_of_meshes(name, "both moved that far, as near to each other as ever",
+                                      [way = far] { return balls_moved(way); }));
+    return all;
+}
+
+}  // namespace aabb

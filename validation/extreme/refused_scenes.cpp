@@ -1,0 +1,147 @@
+module;
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+module aabb.extreme;
+
+import aabb.geometry;
+import aabb.pipeline;
+import :arithmetic;
+import :known_scenes;
+import :making;
+import :scene;
+
+namespace aabb {
+
+namespace {
+
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// A good frame, then one in which box 7 is bad.
+extreme_scene with_box(const char* name, const char* summary, const box& bad, const char* refusal) {
+    const auto make = [bad] {
+        std::vector<box> boxes(20, {{0, 0, 0}, {1, 1, 1}});
+        box_frames all{boxes, boxes};
+        all[1][7] = bad;
+        return all;
+    };
+    return refused(scene_of_boxes(name, summary, make), refusal);
+}
+
+/// A good mesh, and a bad one.
+template <class Spoil>
+extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, const char* refusal) {
+    const auto make = [spoil] {
+        mesh bad = cube();
+        spoil(bad);
+        return std::make_unique<known_poses>(std::vector{cube(), bad}, pose_frames{{{}, {}}});
+    };
+    return refused(scene_of_meshes(name, summary, make), refusal);
+}
+
+/// @param refusal empty where the pose is good
+extreme_scene with_pose(const char* name, const char* summary, const pose& second, const std::string& refusal = {}) {
+    const auto make = [second] { return std::make_unique<known_poses>(ball(4, 1), pose_frames{{{}, second}}); };
+    return refused(scene_of_meshes(name, summary, make), refusal);
+}
+
+/// A pose whose rotation has this entry in place of that of the identity.
+pose with_entry(std::size_t entry, double value) {
+    pose p = shifted(0, 0, 0);
+    p.rotation[entry] = value;
+    return p;
+}
+
+/// Off a rotation by that much in the product of its first two rows.
+pose skewed(double error) {
+    pose p = shifted(0.7, 0.2, 0.1);
+    p.rotation[1] = error;
+    return p;
+}
+
+/// Longer by half of the error, so that the square of a row is off by it.
+pose stretched(double error) {
+    pose p = shifted(0.7, 0.2, 0.1);
+    for (const std::size_t i : {0, 4, 8}) p.rotation[i] = 1 + error / 2;
+    return p;
+}
+
+extreme_scene computed_in(arithmetic kind, extreme_scene scene, std::string refusal) {
+    scene.computed_in = kind;
+    return refused(std::move(scene), std::move(refusal));
+}
+
+/// Scenes of boxes and of meshes in which nothing is wrong but the arithmetic.
+std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name, const std::string& summary,
+                                       const std::string& refusal) {
+    const auto boxes = [] {
+        return box_frames{{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{3, 0, 0}, {4, 1, 1}}}};
+    };
+    const auto meshes = [] { return std::make_unique<known_poses>(cube(), pose_frames{{{}, shifted(1, 1, 1)}}); };
+    return {computed_in(kind, scene_of_boxes(name + "_boxes", summary, boxes), refusal),
+            computed_in(kind, scene_of_meshes(name + "_meshes", summary, meshes), refusal)};
+}
+
+}  // namespace
+
+std::vector<extreme_scene> bad_box_scenes() {
+    return {
+        with_box("box_nan", "a coordinate that is no number", {{0, not_a_number, 0}, {1, 1, 1}},
+                 "box 7 has a coordinate that is not finite"),
+        with_box("box_infinite", "a box without end", {{0, 0, 0}, {1, 1, infinity}},
+                 "box 7 has a coordinate that is not finite"),
+        with_box("box_inverted", "a minimum above its maximum", {{0, 2, 0}, {1, 1, 1}}, "box 7 is inverted"),
+    };
+}
+
+std::vector<extreme_scene> bad_mesh_scenes() {
+    const std::string not_rigid = "object 1: the pose is not rigid: its rotation ";
+    const std::string not_orthonormal = not_rigid + "is not orthonormal within 1e-6";
+    extreme_scene beyond_float = with_pose("beyond_float", "seen from the other mesh, 1e39 away", shifted(1e39, 0, 0),
+                                           "seen from one mesh, the other lies beyond the range of float");
+    beyond_float.answered_in_double = true;
+    return {
+        with_pose("skewed_within", "a rotation skewed by a little less than 1e-6", skewed(0.999e-6)),
+        with_pose("stretched_within", "stretched by a little less than the limit", stretched(0.999e-6)),
+        with_pose("skewed_beyond", "a rotation skewed by a little more", skewed(1.001e-6), not_orthonormal),
+        with_pose("stretched_beyond", "stretched by a little more", stretched(1.001e-6), not_orthonormal),
+        with_pose("reflection", "a rotation that mirrors", with_entry(8, -1), not_rigid + "is a reflection"),
+        with_pose("rotation_infinite", "a rotation with an infinite entry", with_entry(4, double{infinity}),
+                  not_rigid + "has an entry that is not finite"),
+        with_pose("translation_nan", "a translation that is no number", shifted(0, double{not_a_number}, 0),
+                  "object 1: the pose has a translation that is not finite"),
+        beyond_float,
+        with_mesh(
+            "vertex_nan", "a coordinate that is no number", [](mesh& m) { m.vertices[5][1] = not_a_number; },
+            "vertex 5 has a coordinate that is not finite"),
+        with_mesh(
+            "vertex_infinite", "an infinite coordinate", [](mesh& m) { m.vertices[6][2] = -infinity; },
+            "vertex 6 has a coordinate that is not finite"),
+        with_mesh(
+            "no_such_vertex", "a triangle of a vertex that is not there",
+            [](mesh& m) { m.triangles[3][1] = static_cast<std::uint32_t>(m.vertices.size()); },
+            "triangle 3 uses vertex"),
+        with_mesh(
+            "no_triangles", "a mesh of vertices only", [](mesh& m) { m.triangles.clear(); },
+            "the mesh has no triangles"),
+    };
+}
+
+std::vector<extreme_scene> other_arithmetic_scenes() {
+    std::vector<extreme_scene> all = computed_in(arithmetic::rounded_upward, "upward", "a thread that rounds upward",
+                                                 "this thread does not round to nearest");
+    if (!can_flush_denormals()) return all;
+    const std::vector<extreme_scene> flushed =
+        computed_in(arithmetic::denormals_flushed, "flushed", "a thread that takes denormal numbers for zero",
+                    "this thread flushes denormal numbers to zero");
+    all.insert(all.begin(), flushed.begin(), flushed.end());
+    return all;
+}
+
+}  // namespace aabb
