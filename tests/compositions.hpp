@@ -1,21 +1,17 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <initializer_list>
-#include <memory>
-#include <string>
-#include <utility>
 #include <variant>
-#include <vector>
+
+#include "testing.hpp"
 
 import aabb;
 import aabb.registry;
 
 /// The values that tests give a parameter: every name of several, every one of a few whole numbers, and auto where it
-/// may be; of more than three the ends and the default; else the default and 3.
+/// may be; of more than three the ends and the default; else the default and 3. Of threads not the most, 256, which
+/// make much memory and many allocations of little work: columns.cpp and trees.cpp have them.
 inline std::vector<std::string> values_of(const aabb::parameter_info& parameter) {
+    if (parameter.name == "threads") return {parameter.fallback, "3"};
     if (const auto* names = std::get_if<aabb::name_values>(&parameter.values)) return names->names;
     if (const auto* number = std::get_if<aabb::number_values>(&parameter.values))
         if (!number->or_equal && !number->or_auto) return {"1.5"};

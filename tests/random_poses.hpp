@@ -2,14 +2,18 @@
 
 #include <rapidcheck.h>
 
-#include <array>
-#include <cmath>
+#include "testing.hpp"
 
 import aabb;
 
 /// Evenly in [low, high), from RapidCheck's source.
 inline double uniform(double low, double high) {
     return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
+}
+
+/// Each coordinate evenly in [-reach, reach).
+inline aabb::vec3d any_vector(double reach) {
+    return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)};
 }
 
 /// A rotation by a quaternion w, x, y, z of any length but 0, then a translation.
@@ -22,4 +26,13 @@ inline aabb::pose turned_by(std::array<double, 4> q, const aabb::vec3d& translat
              1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
              1 - 2 * (x * x + y * y)},
             translation};
+}
+
+inline aabb::pose any_turned(const aabb::vec3d& translation) {
+    return turned_by({1.01 + uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, translation);
+}
+
+/// About any axis, by a quaternion of 1 and numbers up to `turn`.
+inline aabb::pose turned_up_to(double turn, const aabb::vec3d& translation) {
+    return turned_by({1, uniform(-turn, turn), uniform(-turn, turn), uniform(-turn, turn)}, translation);
 }

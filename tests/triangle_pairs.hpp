@@ -1,18 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <random>
-#include <string_view>
-#include <utility>
+#include <type_traits>
+
+#include "testing.hpp"
 
 /// Generated pairs of triangles for tests: a pattern says how the two lie to each other, a placement where and how
-/// large the pair is and what rounding does to the pattern. Includes and imports do not mix in a header, so points are
-/// arrays.
+/// large the pair is and what rounding does to the pattern.
 namespace triangle_pairs {
 
 using point = std::array<double, 3>;
@@ -25,6 +19,17 @@ inline constexpr std::array<std::string_view, 9> patterns = {
     "edge on edge", "coplanar",      "one of zero area", "both of zero area"};
 inline constexpr std::array<std::string_view, 7> placements = {"as is",   "tenths", "far away",        "denormal",
                                                                "largest", "turned", "nudged by an ulp"};
+
+/// The same as a triangle3, rounded to its numbers.
+template <class Triangle>
+Triangle as(const triangle& t) {
+    Triangle made{};
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            made[i][k] = static_cast<std::remove_cvref_t<decltype(made[i][k])>>(
+                t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+    return made;
+}
 
 inline int integer(generator& g, int low, int high) {
     return std::uniform_int_distribution<int>(low, high)(g);

@@ -21,19 +21,50 @@ namespace aabblab {
 
 namespace {
 
-/// One that is not there where the config says nothing.
-std::vector<std::optional<aabb::strategy_choice>> strategies_of(const document& doc, aabb::strategy_kind kind,
-                                                                const node* value) {
-    if (!value) return {std::nullopt};
-    const std::vector<aabb::strategy_choice> choices =
-        choices_of(doc, *value, aabb::strategies(kind)[0].name, [kind](const aabb::strategy_choice& choice) {
-            if (choice.name == "auto")
-                throw aabb::input_error("auto is no " + std::string(name_of(kind)) + ": leave " +
-                                        std::string(name_of(kind)) +
-                                        " out, and write auto = true beside what is named");
-            aabb::require_known(kind, choice);
-        });
-    return {choices.begin(), choices.end()};
+/// What a config says of a kind.
+struct listed_strategies {
+    std::vector<std::optional<aabb::strategy_choice>> choices;  ///< one that is not there where it says nothing
+    std::vector<std::string> others;                            ///< names of those that it plays without naming them
+};
+
+/// Adds those of a kind that { others_but = […] } in its list stands for: whatever is named neither there nor in the
+/// list.
+void add_others(const document& doc, aabb::strategy_kind kind, const node& but, listed_strategies& listed) {
+    std::set<std::string> named;
+    for (const located_text& name : doc.texts_of(but.key, but)) {
+        doc.at(name.line, [&] { aabb::require_known(kind, {name.text, {}}); });
+        named.insert(name.text);
+    }
+    for (const auto& choice : listed.choices) named.insert(choice->name);
+    for (const aabb::strategy_info& info : aabb::strategies(kind))
+        if (named.insert(info.name).second) {
+            listed.choices.emplace_back(aabb::strategy_choice{info.name, {}});
+            listed.others.push_back(info.name);
+        }
+}
+
+listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
+    if (!value) return {{std::nullopt}, {}};
+    node named = *value;
+    const auto stands_for_others = [](const node& item) { return item.find("others_but") != nullptr; };
+    const auto others = std::ranges::find_if(value->items, stands_for_others);
+    const bool has_others = value->kind == node_kind::list && others != value->items.end();
+    if (has_others) named.items.erase(named.items.begin() + (others - value->items.begin()));
+    const auto require = [kind](const aabb::strategy_choice& choice) {
+        if (choice.name == "auto")
+            throw aabb::input_error("auto is no " + std::string(name_of(kind)) + ": leave " +
+                                    std::string(name_of(kind)) + " out, and write auto = true beside what is named");
+        aabb::require_known(kind, choice);
+    };
+    listed_strategies listed;
+    if (!has_others || !named.items.empty())
+        for (const aabb::strategy_choice& choice : choices_of(doc, named, aabb::strategies(kind)[0].name, require))
+            listed.choices.emplace_back(choice);
+    if (has_others) {
+        doc.require_keys(*others, " beside others_but", {"others_but"});
+        add_others(doc, kind, *others->find("others_but"), listed);
+    }
+    return listed;
 }
 
 /// A key that nobody knows; the name of a strategy says of which kind it is.
@@ -60,6 +91,10 @@ std::string text_of(const aabb::composition& c) {
     return to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection);
 }
 
+bool is_refused(const aabb::composition& c) {
+    return !refusal_of(c, aabb::stage::global_search).empty() || !refusal_of(c, aabb::stage::local_detection).empty();
+}
+
 void add_composition(const document& doc, int line, const aabb::composition& c, each_once<aabb::composition>& list) {
     for (const aabb::stage stage : {aabb::stage::global_search, aabb::stage::local_detection})
         if (const std::string_view reason = aabb::refusal_of(c, stage); !reason.empty())
@@ -69,22 +104,29 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
 
 }  // namespace
 
-/// What the kinds name, every combination; the last kind varies fastest.
+/// What the kinds name, every combination; the last kind varies fastest. Those with strategies that are not named are
+/// left out where they are refused.
 std::vector<aabb::named_strategies> named_by(const document& doc, const node& compose, std::size_t listed) {
-    aabb::by_kind<std::vector<std::optional<aabb::strategy_choice>>> choices;
+    aabb::by_kind<listed_strategies> of;
     std::vector<std::size_t> factors;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        choices[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
-        factors.push_back(choices[kind].size());
+        of[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
+        factors.push_back(of[kind].choices.size());
     }
     doc.require_few(compose.line, "compositions", factors, listed);
     std::vector<aabb::named_strategies> products(1);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         std::vector<aabb::named_strategies> longer;
         for (const aabb::named_strategies& product : products)
-            for (const auto& choice : choices[kind]) longer.emplace_back(product)[kind] = choice;
+            for (const auto& choice : of[kind].choices) longer.emplace_back(product)[kind] = choice;
         products = std::move(longer);
     }
+    std::erase_if(products, [&](const aabb::named_strategies& product) {
+        const bool is_named = std::ranges::none_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
+            return product[kind] && std::ranges::count(of[kind].others, product[kind]->name) > 0;
+        });
+        return !is_named && is_refused(aabb::composition(product));
+    });
     return products;
 }
 

@@ -1,17 +1,10 @@
 // Counts every allocation of the process but those of large arrays (`large_vector`), which no scene here has: once the
 // buffers have grown to the scene, neither stage may make one.
 
-#include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "../compositions.hpp"
-#include "../sheets.hpp"
+#include "../meshes.hpp"
 #include "counted_new.hpp"
 
 using namespace aabb;
@@ -28,12 +21,6 @@ std::vector<box> orbiting(int frame) {
         boxes.push_back({at, at + vec3f{4, 4, 4}});
     }
     return boxes;
-}
-
-mesh ripples(std::uint32_t n) {
-    return sheet_of(n, [](std::uint32_t i, std::uint32_t j) -> vec3f {
-        return {static_cast<float>(i), static_cast<float>(j), std::sin(static_cast<float>(i + 2 * j))};
-    });
 }
 
 }  // namespace

@@ -1,20 +1,10 @@
 // Memory that runs out at any allocation, in every stage there is: afterwards a stage is exact or refuses.
 
-#include <algorithm>
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <memory>
 #include <new>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../compositions.hpp"
-#include "../sheets.hpp"
+#include "../meshes.hpp"
+#include "../strategies/overlapping.hpp"
 #include "counted_new.hpp"
 
 import aabb;
@@ -108,10 +98,8 @@ std::vector<frame> frames() {
             made.boxes.push_back({at, at + vec3f{edge, 3, 3}});
             made.present.push_back(f == 0 || (i + f) % 4 != 0);
         }
-        for (std::uint32_t a = 0; a < n; ++a)
-            for (std::uint32_t b = a + 1; b < n; ++b)
-                if (made.present[a] && made.present[b] && overlaps(made.boxes[a], made.boxes[b]))
-                    made.pairs.push_back({a, b});
+        const std::vector<index_pair> pairs = overlapping(made.boxes, made.present);
+        made.pairs.insert(made.pairs.end(), pairs.begin(), pairs.end());
         all.push_back(made);
     }
     return all;
@@ -159,36 +147,40 @@ std::size_t next_to_fail(std::size_t k, bool each = true) {
 }
 
 /// Lets each allocation of a stage's life fail in turn.
-void require_exact_or_refusing(const std::function<std::unique_ptr<global_stage>()>& make, bool frees_all) {
-    const std::vector<frame> all = frames();
-    // What a library keeps for the whole process, as TBB does its threads, is there afterwards.
-    exhausted_run whole(0);
-    REQUIRE(fault_of(*make(), all, whole) == "");
-    for (std::size_t k = 1;; k = next_to_fail(k)) {
+/// @param life is made, played and ended, and says what is wrong then, nothing when all is well
+/// @param each every allocation fails in turn, else ever fewer of the later ones
+template <class Life>
+void require_exact_or_refusing(Life life, bool frees_all, bool each = true) {
+    for (std::size_t k = 1;; k = next_to_fail(k, each)) {
         exhausted_run run(k);
         const std::size_t before = allocations.alive;
-        std::string fault;
-        {
-            const std::unique_ptr<global_stage> stage = make();
-            fault = fault_of(*stage, all, run);
-        }
+        std::string fault = life(run);
         if (fault.empty() && frees_all && allocations.alive != before) fault = "memory that is not given back";
         INFO("allocation " << k);
         REQUIRE(fault == "");
-        if (!run.failed()) {
-            REQUIRE(k > 5);
-            REQUIRE_FALSE(run.refused());
-            return;
-        }
+        if (run.failed()) continue;
+        REQUIRE(k > 3);
+        REQUIRE_FALSE(run.refused());
+        return;
     }
+}
+
+template <class Make>
+void require_of_search(Make make, bool frees_all) {
+    const std::vector<frame> all = frames();
+    const auto life = [&](exhausted_run& run) { return fault_of(*make(), all, run); };
+    // What a library keeps for the whole process, as TBB does its threads, is there afterwards.
+    exhausted_run whole(0);
+    REQUIRE(life(whole) == "");
+    require_exact_or_refusing(life, frees_all);
 }
 
 }  // namespace
 
-TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses") {
+TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses", "[long]") {
     for (const aabb::composition& composition : all_global_compositions()) {
         INFO(text_of_global(composition));
-        require_exact_or_refusing([&] { return global_of(composition, instrumentation::counters); }, true);
+        require_of_search([&] { return global_of(composition, instrumentation::counters); }, true);
     }
 }
 
@@ -196,7 +188,7 @@ TEST_CASE("an engine for boxes that runs out of memory is exact afterwards, or r
     for (const engine_info& engine : engines()) {
         if (!engine.searches_boxes || breaks_for_good(engine.name)) continue;
         INFO(engine.name);
-        require_exact_or_refusing([&] { return make_box_engine(engine.name); }, !loses_memory(engine.name));
+        require_of_search([&] { return make_box_engine(engine.name); }, !loses_memory(engine.name));
     }
 }
 
@@ -257,14 +249,6 @@ std::optional<answers> ask(local_stage& stage, exhausted_run& run, std::string& 
     return given;
 }
 
-/// The same triangles, whose vertices were numbered anew.
-mesh numbered_backwards(mesh m) {
-    std::ranges::reverse(m.vertices);
-    for (auto& t : m.triangles)
-        for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(m.vertices.size()) - 1 - v;
-    return m;
-}
-
 std::string fault_of(local_stage& stage, mesh& m, std::uint32_t squares, const std::vector<answers>& expected,
                      exhausted_run& run) {
     std::string fault;
@@ -282,47 +266,34 @@ std::string fault_of(local_stage& stage, mesh& m, std::uint32_t squares, const s
     return fault;
 }
 
-/// @param each every allocation fails in turn, else ever fewer of the later ones
-void require_exact_or_refusing(const std::function<std::unique_ptr<local_stage>()>& make, bool frees_all,
-                               std::uint32_t squares = few_squares, bool each = true) {
+template <class Make>
+void require_of_detection(Make make, bool frees_all, std::uint32_t squares = few_squares, bool each = true) {
     std::vector<answers> expected;
     for (const float height : {0.1F, 3.0F}) {
         const mesh m = sheet(height, squares);
-        const auto stage = make();
+        const std::unique_ptr<local_stage> stage = make();
         stage->add_model(m);
         expected.push_back(ask(*stage));
         REQUIRE(expected.back().all.size() > 10);
     }
     REQUIRE(expected[0] != expected[1]);
-    for (std::size_t k = 1;; k = next_to_fail(k, each)) {
-        exhausted_run run(k);
+    const auto life = [&](exhausted_run& run) {
         mesh m = sheet(3, squares);
-        const std::size_t before = allocations.alive;
-        std::string fault;
-        {
-            const std::unique_ptr<local_stage> stage = make();
-            fault = fault_of(*stage, m, squares, expected, run);
-        }
-        if (fault.empty() && frees_all && allocations.alive != before) fault = "memory that is not given back";
-        INFO("allocation " << k);
-        REQUIRE(fault == "");
-        if (!run.failed()) {
-            REQUIRE(k > 3);
-            return;
-        }
-    }
+        return fault_of(*make(), m, squares, expected, run);
+    };
+    require_exact_or_refusing(life, frees_all, each);
 }
 
 }  // namespace
 
-TEST_CASE("a composed local detection that runs out of memory is exact afterwards, or refuses") {
+TEST_CASE("a composed local detection that runs out of memory is exact afterwards, or refuses", "[long]") {
     for (const aabb::composition& composition : all_local_compositions()) {
         const std::string text = text_of_local(composition);
         INFO(text);
         // A triangle test takes no memory, so one is tried with every allocation.
-        require_exact_or_refusing([&] { return local_of(composition, instrumentation::none); }, true,
-                                  text.find("front=kept") == std::string::npos ? few_squares : squares_for_fronts,
-                                  composition[strategy_kind::triangle].name == "exact");
+        require_of_detection([&] { return local_of(composition, instrumentation::none); }, true,
+                             text.find("front=kept") == std::string::npos ? few_squares : squares_for_fronts,
+                             composition[strategy_kind::triangle].name == "exact");
     }
 }
 
@@ -330,7 +301,7 @@ TEST_CASE("an engine for meshes that runs out of memory is exact afterwards, or 
     for (const engine_info& engine : engines()) {
         if (!engine.collides_meshes || breaks_for_good(engine.name)) continue;
         INFO(engine.name);
-        require_exact_or_refusing([&] { return make_mesh_engine(engine.name); }, engine.name != "fcl");
+        require_of_detection([&] { return make_mesh_engine(engine.name); }, engine.name != "fcl");
     }
 }
 

@@ -1,10 +1,4 @@
-#include <algorithm>
-#include <catch2/catch_test_macros.hpp>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
+#include "../testing.hpp"
 
 #include "fakes.hpp"
 

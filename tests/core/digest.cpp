@@ -1,8 +1,4 @@
-#include <array>
-#include <catch2/catch_test_macros.hpp>
-#include <cstdint>
-#include <span>
-#include <vector>
+#include "../testing.hpp"
 
 import aabb;
 

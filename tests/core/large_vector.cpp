@@ -1,8 +1,6 @@
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <new>
+
+#include "../testing.hpp"
 
 import aabb;
 

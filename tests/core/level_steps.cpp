@@ -1,8 +1,6 @@
 #include <rapidcheck.h>
-#include <algorithm>
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
+
+#include "../testing.hpp"
 
 import aabb.wide_tree.level_steps;
 

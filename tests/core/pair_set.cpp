@@ -1,9 +1,7 @@
 #include <rapidcheck.h>
-#include <algorithm>
-#include <catch2/catch_test_macros.hpp>
-#include <cstdint>
 #include <set>
-#include <vector>
+
+#include "../testing.hpp"
 
 import aabb;
 

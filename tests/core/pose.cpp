@@ -1,10 +1,5 @@
 #include <rapidcheck.h>
-#include <array>
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_exception.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cmath>
-#include <limits>
 
 #include "../random_poses.hpp"
 
@@ -17,16 +12,7 @@ using Catch::Matchers::MessageMatches;
 namespace {
 
 pose any_pose(double reach) {
-    std::array<double, 4> q{};
-    double square = 0;
-    do {
-        square = 0;
-        for (double& x : q) {
-            x = uniform(-1, 1);
-            square += x * x;
-        }
-    } while (square < 0.01);
-    return turned_by(q, {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)});
+    return any_turned(any_vector(reach));
 }
 
 vec3f any_point(const box& b) {

@@ -1,10 +1,6 @@
 #include <rapidcheck.h>
-#include <algorithm>
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
+
+#include "../testing.hpp"
 
 #include "fakes.hpp"
 

@@ -1,11 +1,4 @@
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <vector>
+#include "../testing.hpp"
 
 import aabb.columns.kernels;
 import aabb.simd;

@@ -1,10 +1,4 @@
-#include <array>
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
+#include "../testing.hpp"
 
 import aabb;
 

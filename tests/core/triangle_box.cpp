@@ -1,9 +1,4 @@
 #include <rapidcheck.h>
-#include <array>
-#include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 
 #include "../random_poses.hpp"
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
@@ -48,6 +49,23 @@ TEST_CASE("A config that says little has the default composition, nine repeats a
     REQUIRE(e.scenes[0].seed == 1);
     REQUIRE(e.recorded.size() == aabblab::metric_groups.size());
     REQUIRE(e.shown.empty());
+}
+
+TEST_CASE("Strategies that a config does not name are played where it says so, but none that is refused") {
+    const auto played = [](const std::string& compose) {
+        return parsed(minimal + "[compose]\n" + compose).compositions;
+    };
+    const std::string rest = "partition = \"none\"\nsweep = [\"one_axis\", \"incremental\"]\n";
+    // incremental goes with insertion alone.
+    std::vector<std::string> sorts;
+    for (const aabb::composition& c : played("sort = [\"insertion\", { others_but = [\"shell\"] }]\n" + rest))
+        sorts.push_back(to_text(c, aabb::stage::global_search));
+    REQUIRE(sorts.front() == "insertion + none + one_axis");
+    REQUIRE(std::set(sorts.begin(), sorts.end()).size() == aabb::strategies(aabb::strategy_kind::sort).size());
+    REQUIRE(std::ranges::count(sorts, "insertion + none + incremental") == 1);
+    REQUIRE(std::ranges::count(sorts, "shell + none + one_axis") == 0);
+    REQUIRE(refusal_of(minimal + "[compose]\nsort = [\"std\", { others_but = [\"shall\"] }]\n") ==
+            "test.toml:6: unknown sort 'shall'; did you mean 'shell'?");
 }
 
 TEST_CASE("Every list multiplies") {

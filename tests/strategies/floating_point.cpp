@@ -1,15 +1,9 @@
 #include <xmmintrin.h>
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-
 #include <cfenv>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "../compositions.hpp"
+#include "../meshes.hpp"
 
 using aabb::input_error;
 
@@ -49,24 +43,10 @@ std::string sentence(unsigned control_bits, int rounding, const std::function<vo
     return {};
 }
 
-struct one_mesh : aabb::mesh_scene {
-    explicit one_mesh(const aabb::mesh& m) {
-        meshes = {m};
-        mesh_of = {0};
-    }
-    [[nodiscard]] std::size_t frames() const override { return 1; }
-    bool next(std::vector<aabb::pose>&) override { return false; }
-};
-
-struct entry {
-    std::string name;
-    std::function<void()> query;
-};
-
 }  // namespace
 
 TEST_CASE("every query refuses arithmetic in which answers cannot be exact") {
-    const aabb::mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    const aabb::mesh mesh = tetrahedron(1);
     const std::vector<aabb::box> boxes{{{0, 0, 0}, {1, 1, 1}}};
     using enum aabb::strategy_kind;
     const auto listed = global_of(composed({{sort, "std"}}));
@@ -81,11 +61,11 @@ TEST_CASE("every query refuses arithmetic in which answers cannot be exact") {
     const auto triangles = aabb::make_triangle_test({"exact", {}});
     const auto in_pipeline = aabb::compose_local_detection(aabb::composition{}, aabb::instrumentation::none);
     const auto pieces = aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
-    const one_mesh scene(mesh);
+    const told_scene scene({mesh}, {0});
     aabb::pipeline both(scene, *pieces, *in_pipeline);
     const std::vector<aabb::pose> poses(1);
     std::vector<aabb::index_pair> pairs;
-    const std::vector<entry> entries{
+    const std::vector<std::pair<std::string, std::function<void()>>> entries{
         {"update", [&] { listed->update(boxes); }},
         {"search", [&] { listed->search(pairs); }},
         {"update of a coherent sweep", [&] { kept->update(boxes); }},

@@ -1,19 +1,8 @@
 #include <rapidcheck.h>
 
-#include <algorithm>
-#include <array>
-#include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "../compositions.hpp"
+#include "../meshes.hpp"
 #include "../random_poses.hpp"
-#include "../sheets.hpp"
 
 import aabb;
 import aabb.build.median;
@@ -58,10 +47,7 @@ TEST_CASE("images of a vertex under two poses are no further apart than is said,
     REQUIRE(rc::check([] {
         const float size = *rc::gen::element(1e-30F, 1e-3F, 1.0F, 1e30F);
         const box reach{{-size, 0, size / 2}, {size, size, size}};
-        const auto any = [&](double turn) {
-            return turned_by({1, uniform(-turn, turn), uniform(-turn, turn), uniform(-turn, turn)},
-                             {uniform(-2, 2) * size, uniform(-2, 2) * size, uniform(-2, 2) * size});
-        };
+        const auto any = [&](double turn) { return turned_up_to(turn, any_vector(2 * size)); };
         const double turn = *rc::gen::element(0.0, 1e-9, 1e-3, 1.0);
         const pose a = any(1);
         const pose b = any(turn);
@@ -91,8 +77,7 @@ TEST_CASE("children within a margin of each other are found, however one node is
     REQUIRE(rc::check([] {
         const double margin = uniform(0.01, 0.5);
         const double turn = *rc::gen::element(0.0, 0.01, 1.0);
-        const pose pose_b = turned_by({1, uniform(-turn, turn), uniform(-turn, turn), uniform(-turn, turn)},
-                                      {uniform(-2, 2), uniform(-2, 2), uniform(-2, 2)});
+        const pose pose_b = turned_up_to(turn, any_vector(2));
         // A leaf is one point, eight times.
         std::array<mesh, 2> meshes;
         for (std::uint32_t point = 0; point < 8; ++point) {

@@ -1,17 +1,7 @@
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../compositions.hpp"
+#include "../meshes.hpp"
 
 import aabb;
 import aabb.build.median;
@@ -77,9 +67,7 @@ mesh spiral(std::uint32_t n) {
         const float radius = 1 + static_cast<float>(i % 17);
         const vec3f at{radius * std::cos(angle), radius * std::sin(angle), static_cast<float>(i) * 0.05F};
         const float size = i % 5 == 0 ? 2.0F : 0.1F;
-        for (const vec3f& corner : {vec3f{0, 0, 0}, vec3f{size, size / 2, 0}, vec3f{0, size, size}})
-            m.vertices.push_back(at + corner);
-        m.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        add_triangle(m, at, at + vec3f{size, size / 2, 0}, at + vec3f{0, size, size});
     }
     return m;
 }

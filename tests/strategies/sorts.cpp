@@ -1,15 +1,6 @@
 #include <rapidcheck.h>
-#include <algorithm>
-#include <array>
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
+
+#include "../testing.hpp"
 
 import aabb;
 import aabb.sort.insertion;

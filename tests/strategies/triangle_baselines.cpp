@@ -1,8 +1,3 @@
-#include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <memory>
-#include <string>
-
 #include "../compositions.hpp"
 #include "../triangle_pairs.hpp"
 
@@ -28,13 +23,6 @@ triangle3f any_triangle(triangle_pairs::generator& random) {
     return t;
 }
 
-triangle3d in_double(const triangle_pairs::triangle& t) {
-    triangle3d made{};
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) made[i][k] = t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
-    return made;
-}
-
 const triangle3f face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 
 }  // namespace
@@ -57,16 +45,24 @@ TEST_CASE("every triangle test decides generic pairs, whichever way round they a
     }
 }
 
-TEST_CASE("every triangle test decides clear coplanar pairs") {
-    for (const strategy_choice& choice : all_choices(strategy_kind::triangle)) {
-        INFO(to_text(choice));
-        const auto test = make_triangle_test(choice);
-        CHECK(test->intersects(face, {{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}));
-        CHECK(test->intersects({{{1, 1, 0}, {1, 2, 0}, {2, 1, 0}}}, face));
-        CHECK(test->intersects(face, {{{3, 3, 0}, {1, 1, 0}, {4, 4, 0}}}));
-        CHECK_FALSE(test->intersects(face, {{{2, 3, 0}, {3, 2, 0}, {4, 4, 0}}}));
-        CHECK_FALSE(test->intersects({{{2, 3, 0}, {4, 4, 0}, {3, 2, 0}}}, face));
-    }
+TEST_CASE("every triangle test decides clear pairs") {
+    const std::vector<std::pair<triangle3f, bool>> others{{{{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}, true},
+                                                          {{{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}, false},
+                                                          {{{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}, false},
+                                                          {{{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}}, true},
+                                                          // In one plane.
+                                                          {{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, true},
+                                                          {{{{1, 1, 0}, {1, 2, 0}, {2, 1, 0}}}, true},
+                                                          {{{{3, 3, 0}, {1, 1, 0}, {4, 4, 0}}}, true},
+                                                          {{{{2, 3, 0}, {3, 2, 0}, {4, 4, 0}}}, false},
+                                                          {{{{2, 3, 0}, {4, 4, 0}, {3, 2, 0}}}, false}};
+    for (const strategy_choice& choice : all_choices(strategy_kind::triangle))
+        for (std::size_t i = 0; i < others.size(); ++i) {
+            INFO(to_text(choice) << ", triangle " << i);
+            const auto test = make_triangle_test(choice);
+            CHECK(test->intersects(face, others[i].first) == others[i].second);
+            CHECK(test->intersects(others[i].first, face) == others[i].second);
+        }
 }
 
 TEST_CASE("the epsilon of Möller's test is absolute, absent, or of the pair's own size") {
@@ -127,9 +123,10 @@ TEST_CASE("plain double errs where exact does not") {
     int wrong = 0;
     for (int i = 0; i < 3000; ++i) {
         // A corner in the plane of a face, at tenths that double cannot hold.
-        const auto [s, t] = triangle_pairs::placed<double>(random, triangle_pairs::patterned(random, 3), 1);
-        wrong += devillers_guigue_triangle{}.intersects(in_double(s), in_double(t)) !=
-                 exact_triangle::intersects(in_double(s), in_double(t));
+        const auto pair = triangle_pairs::placed<double>(random, triangle_pairs::patterned(random, 3), 1);
+        const auto s = triangle_pairs::as<triangle3d>(pair[0]);
+        const auto t = triangle_pairs::as<triangle3d>(pair[1]);
+        wrong += devillers_guigue_triangle{}.intersects(s, t) != exact_triangle::intersects(s, t);
     }
     CHECK(wrong > 0);
     CHECK(wrong < 1500);
@@ -142,16 +139,7 @@ template <class Real, class Check>
 void for_all_pairs(int count, Check check) {
     triangle_pairs::generator random(7);
     const auto take = [&](const triangle_pairs::pair& made) {
-        triangle3<Real> s{};
-        triangle3<Real> t{};
-        for (int i = 0; i < 3; ++i)
-            for (int k = 0; k < 3; ++k) {
-                const auto corner = static_cast<std::size_t>(i);
-                const auto axis = static_cast<std::size_t>(k);
-                s[i][k] = static_cast<Real>(made[0][corner][axis]);
-                t[i][k] = static_cast<Real>(made[1][corner][axis]);
-            }
-        check(s, t);
+        check(triangle_pairs::as<triangle3<Real>>(made[0]), triangle_pairs::as<triangle3<Real>>(made[1]));
     };
     for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
         for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement)
@@ -197,8 +185,8 @@ TEST_CASE("tests that may err do so where they must tell apart what touches, les
     for (int i = 0; i < 3000; ++i) {
         // A corner in the plane of a face, turned to where floats only come near it.
         const auto [a, b] = triangle_pairs::placed<float>(random, triangle_pairs::patterned(random, 3), 5);
-        const triangle3f s = in_float(in_double(a));
-        const triangle3f t = in_float(in_double(b));
+        const triangle3f s = triangle_pairs::as<triangle3f>(a);
+        const triangle3f t = triangle_pairs::as<triangle3f>(b);
         const bool truth = exact_triangle::intersects(s, t);
         by_guigue += guigue_float.intersects(s, t) != truth;
         by_axes += axes_float.intersects(s, t) != truth;
@@ -224,4 +212,36 @@ TEST_CASE("without divisions Möller's test leaves the range of float sooner") {
     CHECK_FALSE(free.intersects(s, t));
     CHECK_FALSE(divided.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
     CHECK(free.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
+}
+
+// The baseline must err as the original does.
+
+TEST_CASE("Möller's epsilon is absolute and applies to distances times the normal's length") {
+    // The normal is (0, 0, 1), so the distance is the height itself; both triangles seem to lie in one plane.
+    const triangle3f unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    const auto hovering = [](float height) {
+        return triangle3f{{{0.25F, 0.25F, height}, {0.5F, 0.25F, height}, {0.25F, 0.5F, height}}};
+    };
+    CHECK(moller_triangle{}.intersects(unit, hovering(9e-7F)));
+    // The float next to 1e-6 lies below it.
+    CHECK(moller_triangle{}.intersects(unit, hovering(1e-6F)));
+    CHECK_FALSE(moller_triangle{}.intersects(unit, hovering(1.1e-6F)));
+}
+
+TEST_CASE("Möller's test loses a corner inside a triangle whose products underflow") {
+    const triangle3f outer{{{0, 0, 0}, {4e-12F, 0, 0}, {0, 4e-12F, 0}}};
+    const triangle3f inner{{{1e-12F, 1e-12F, 0}, {2e-12F, 1e-12F, 0}, {1e-12F, 2e-12F, 0}}};
+    CHECK_FALSE(moller_triangle{}.intersects(outer, inner));
+}
+
+TEST_CASE("Möller's test says yes when it has overflowed") {
+    const triangle3f s{{{-1e38F, -1e38F, 1e37F}, {1e38F, -1e38F, 2e37F}, {0, 1e38F, 3e37F}}};
+    const triangle3f t{{{9e37F, 9e37F, -1e38F}, {9e37F, 9e37F, 1e38F}, {8e37F, 9e37F, 1e38F}}};
+    CHECK(moller_triangle{}.intersects(s, t));
+}
+
+TEST_CASE("Möller's test looks along y at a triangle without a normal") {
+    const triangle3f segment{{{0, 0, -1}, {0, 0, 1}, {0, 0, 1}}};
+    CHECK_FALSE(moller_triangle{}.intersects(segment, {{{1, -1, 0}, {2, 1, 0}, {1, 1, 0}}}));  // along x they cross
+    CHECK(moller_triangle{}.intersects(segment, {{{-1, 1, 0}, {1, 1, 0}, {1, 2, 0}}}));        // along y they cross
 }

@@ -1,17 +1,7 @@
 #include <rapidcheck.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
 
+#include "../meshes.hpp"
 #include "../random_poses.hpp"
 #include "../triangle_pairs.hpp"
 
@@ -44,23 +34,38 @@ mesh shell(triangle_pairs::generator& g, std::uint32_t triangles, double radius)
     for (std::uint32_t t = 0; t < triangles; ++t) {
         const std::array<double, 3> at{normal(g), normal(g), normal(g)};
         const double length = std::hypot(at[0], at[1], at[2]);
-        for (std::uint32_t c = 0; c < 3; ++c) {
-            vec3f v;
+        triangle3f around;
+        for (vec3f& v : around.corner)
             for (int k = 0; k < 3; ++k)
                 v[k] = static_cast<float>(radius * at[static_cast<std::size_t>(k)] / length + 0.02 * normal(g));
-            m.vertices.push_back(v);
-        }
-        m.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+        add_triangle(m, around[0], around[1], around[2]);
     }
     return m;
 }
 
-triangle3f as_triangle(const triangle_pairs::triangle& t) {
-    triangle3f made;
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k)
-            made[i][k] = static_cast<float>(t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
-    return made;
+/// Two meshes and their trees.
+struct two_models {
+    two_models(mesh of_a, mesh of_b) : meshes{std::move(of_a), std::move(of_b)} {}
+
+    std::array<mesh, 2> meshes;
+    model<implicit_tree> a{meshes[0], median_build()};
+    model<implicit_tree> b{meshes[1], median_build()};
+};
+
+/// What this test of triangles finds of two models, and what that took.
+template <class Triangle, class Counters = work_counters>
+struct asked : local_detection<implicit_tree, Triangle, Counters> {
+    std::vector<index_pair> pairs(const two_models& of, const pose& pose_b = {}) {
+        std::vector<index_pair> found;
+        this->all_pairs(of.a, {}, of.b, pose_b, found);
+        return found;
+    }
+};
+
+/// Into a lane of a block.
+void set(triangle_block& block, std::size_t lane, const triangle3f& t) {
+    for (std::size_t row = 0; row < 9; ++row)
+        block.corner[row / 3][row % 3][lane] = t[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
 }
 
 /// As many pairs as a vector has lanes, coordinate by coordinate.
@@ -261,12 +266,7 @@ TEST_CASE("triangles much smaller than their meshes are held apart by their boxe
     constexpr std::uint32_t crossing = 800;
     std::array<mesh, 2> meshes;
     for (std::size_t side = 0; side < 2; ++side) {
-        mesh& m = meshes[side];
-        const auto add = [&](vec3f p, vec3f q, vec3f r) {
-            const auto first = static_cast<std::uint32_t>(m.vertices.size());
-            for (const vec3f& v : {p, q, r}) m.vertices.push_back(v);
-            m.triangles.push_back({first, first + 1, first + 2});
-        };
+        const auto add = [&](vec3f p, vec3f q, vec3f r) { add_triangle(meshes[side], p, q, r); };
         for (std::uint32_t i = 0; i < crossing; ++i) {
             const float x = 0.003F * static_cast<float>(i);
             if (side == 0)
@@ -278,28 +278,18 @@ TEST_CASE("triangles much smaller than their meshes are held apart by their boxe
         add({at, at, at}, {at, at, at + 1}, {at, at + 1, at});
         add({-at, -at, -at}, {-at, -at, -at - 1}, {-at, -at - 1, -at});
     }
-    const model<implicit_tree> a(meshes[0], median_build());
-    const model<implicit_tree> b(meshes[1], median_build());
-    local_detection<implicit_tree, exact_triangle, work_counters> detection;
-    std::vector<index_pair> pairs;
-    detection.all_pairs(a, {}, b, {}, pairs);
-    CHECK(pairs.size() == crossing);
+    asked<exact_triangle> detection;
+    CHECK(detection.pairs({meshes[0], meshes[1]}).size() == crossing);
     // Those, and some of the leaves in which the far ones are.
     CHECK(detection.counters()[work::triangle_tests] < 2 * crossing);
 }
 
 TEST_CASE("an inexact test is not asked about triangles whose boxes lie apart, however little") {
     // By less than a step of 16 bits, across planes that cross; the last ones make the meshes large.
-    std::array<mesh, 2> meshes;
-    const auto build = [&](float gap) {
+    const auto tests_made = [&]<class Triangle>(float gap, const Triangle&) {
+        std::array<mesh, 2> meshes;
         for (std::size_t side = 0; side < 2; ++side) {
-            mesh& m = meshes[side];
-            m = {};
-            const auto add = [&](vec3f p, vec3f q, vec3f r) {
-                const auto first = static_cast<std::uint32_t>(m.vertices.size());
-                m.vertices.insert(m.vertices.end(), {p, q, r});
-                m.triangles.push_back({first, first + 1, first + 2});
-            };
+            const auto add = [&](vec3f p, vec3f q, vec3f r) { add_triangle(meshes[side], p, q, r); };
             for (std::uint32_t i = 0; i < 64; ++i) {
                 const float y = 3 * static_cast<float>(i);
                 if (side == 0)
@@ -310,20 +300,13 @@ TEST_CASE("an inexact test is not asked about triangles whose boxes lie apart, h
             const float at = side == 0 ? 1000.0F : 900.0F;
             for (const float far : {at, -at}) add({far, far, far}, {far, far, far + 1}, {far, far + 1, far});
         }
-    };
-    const auto tests_made = [&]<class Triangle>(const Triangle&) {
-        const model<implicit_tree> a(meshes[0], median_build());
-        const model<implicit_tree> b(meshes[1], median_build());
-        local_detection<implicit_tree, Triangle, work_counters> detection;
-        std::vector<index_pair> pairs;
-        detection.all_pairs(a, {}, b, {}, pairs);
+        asked<Triangle> detection;
+        detection.pairs({meshes[0], meshes[1]});
         return detection.counters()[work::triangle_tests];
     };
-    build(0);
-    CHECK(tests_made(moller_triangle()) >= 64);
-    build(0.001F);
-    CHECK(tests_made(moller_triangle()) == 0);
-    CHECK(tests_made(exact_triangle()) > 0);
+    CHECK(tests_made(0, moller_triangle()) >= 64);
+    CHECK(tests_made(0.001F, moller_triangle()) == 0);
+    CHECK(tests_made(0.001F, exact_triangle()) > 0);
 }
 
 TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shape and size") {
@@ -342,11 +325,9 @@ TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shap
                     for (std::size_t side = 0; side < 2; ++side) {
                         for (auto& corner : pair[side])
                             for (double& x : corner) x *= size;
-                        sides[side][i] = as_triangle(pair[side]);
+                        sides[side][i] = triangle_pairs::as<triangle3f>(pair[side]);
                         bounds[side] = merged(bounds[side], bounds_of(sides[side][i]));
-                        for (std::size_t row = 0; row < 9; ++row)
-                            blocks[side].corner[row / 3][row % 3][i] =
-                                sides[side][i][static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+                        set(blocks[side], i, sides[side][i]);
                     }
                 }
                 if (!overlaps(bounds[0], bounds[1]) || !is_valid(bounds[0]) || !is_valid(bounds[1])) continue;
@@ -449,8 +430,8 @@ TEST_CASE("the filter decides as the exact test does, and leaves what rounding p
                 for (std::size_t lane = 0; lane < simd::width; ++lane) {
                     const auto pair =
                         triangle_pairs::placed<float>(g, triangle_pairs::patterned(g, pattern), placement);
-                    const triangle3f s = as_triangle(pair[0]);
-                    const triangle3f t = as_triangle(pair[1]);
+                    const triangle3f s = triangle_pairs::as<triangle3f>(pair[0]);
+                    const triangle3f t = triangle_pairs::as<triangle3f>(pair[1]);
                     pairs.set(lane, s, t);
                     truth |= static_cast<std::uint32_t>(exact_triangle::intersects(s, t)) << lane;
                 }
@@ -530,12 +511,8 @@ TEST_CASE("children that meet are found, however one node is turned against the 
     REQUIRE(rc::check([&] {
         const std::vector<box> b = any_boxes();
         const double far = *rc::gen::element(0.0, 1.0, 1e3);
-        std::array<double, 4> q{1, 0, 0, 0};
-        if (*rc::gen::arbitrary<bool>()) {
-            for (double& x : q) x = uniform(-1, 1);
-            q[0] += 1.01;
-        }
-        const pose pose_b = turned_by(q, {far * uniform(-1, 1), far * uniform(-1, 1), far * uniform(-1, 1)});
+        const pose pose_b =
+            *rc::gen::arbitrary<bool>() ? any_turned(any_vector(far)) : turned_up_to(0, any_vector(far));
         const auto reachable = [&]() -> bool {
             try {
                 static_cast<void>(relative_pose({}, pose_b, all_of(b)));
@@ -650,11 +627,8 @@ TEST_CASE("two pairs are found where boxes are of any size, as far apart as floa
 TEST_CASE("the first pair is found where there are hardly any") {
     // Brought together until they barely touch.
     triangle_pairs::generator g{10};
-    const std::array meshes{shell(g, 3000, 1), shell(g, GENERATE(3000U, 300U), 1)};
-    const model<implicit_tree> a(meshes[0], median_build());
-    const model<implicit_tree> b(meshes[1], median_build());
-    local_detection<implicit_tree, exact_triangle, no_counters> detection;
-    std::vector<index_pair> pairs;
+    const two_models of(shell(g, 3000, 1), shell(g, GENERATE(3000U, 300U), 1));
+    asked<exact_triangle, no_counters> detection;
     std::size_t few = 0;
     std::size_t wrong = 0;
     for (int turn = 0; turn < 40; ++turn) {
@@ -663,9 +637,8 @@ TEST_CASE("the first pair is found where there are hardly any") {
         for (int step = 0; step < 16; ++step) {
             const double middle = (meets + apart) / 2;
             const pose pose_b = turned_by({1, 0.3 * turn, 0.1, 0.7}, {middle, 0.01 * turn, 0});
-            pairs.clear();
-            detection.all_pairs(a, {}, b, pose_b, pairs);
-            const auto first = detection.first_pair(a, {}, b, pose_b);
+            const std::vector<index_pair> pairs = detection.pairs(of, pose_b);
+            const auto first = detection.first_pair(of.a, {}, of.b, pose_b);
             wrong += first ? std::ranges::count(pairs, *first) != 1 : !pairs.empty();
             few += !pairs.empty() && pairs.size() < 4;
             (pairs.empty() ? apart : meets) = middle;
@@ -677,13 +650,11 @@ TEST_CASE("the first pair is found where there are hardly any") {
 
 TEST_CASE("few nodes are opened for the first pair: the nearest first, elsewhere after leaves that did not meet") {
     triangle_pairs::generator g{12};
-    const std::array meshes{shell(g, 20000, 1), shell(g, 20000, 1)};
-    const model<implicit_tree> a(meshes[0], median_build());
-    const model<implicit_tree> b(meshes[1], median_build());
-    local_detection<implicit_tree, exact_triangle, work_counters> detection;
+    const two_models of(shell(g, 20000, 1), shell(g, 20000, 1));
+    asked<exact_triangle> detection;
     constexpr int turns = 100;
     for (int turn = 0; turn < turns; ++turn)
-        REQUIRE(detection.first_pair(a, {}, b, turned_by({1, 0.3 * turn, 0.1, 0.7}, {0.02 * turn, 0.1, 0})));
+        REQUIRE(detection.first_pair(of.a, {}, of.b, turned_by({1, 0.3 * turn, 0.1, 0.7}, {0.02 * turn, 0.1, 0})));
     const double visits = static_cast<double>(detection.counters()[work::node_visits]) / turns;
     CHECK(visits < 8);
 }
@@ -693,37 +664,31 @@ TEST_CASE("where no triangles meet, the first pair is looked for wherever all pa
     for (const std::uint32_t of_a : {9U, 300U, 3000U})
         for (const std::uint32_t of_b : {9U, 300U, 3000U}) {
             CAPTURE(of_a, of_b);
-            const std::array meshes{shell(g, of_a, 1), shell(g, of_b, 1.2)};
-            const model<implicit_tree> a(meshes[0], median_build());
-            const model<implicit_tree> b(meshes[1], median_build());
-            local_detection<implicit_tree, exact_triangle, work_counters> first;
-            local_detection<implicit_tree, exact_triangle, work_counters> all;
-            CHECK_FALSE(first.first_pair(a, {}, b, {}));
-            std::vector<index_pair> pairs;
-            all.all_pairs(a, {}, b, {}, pairs);
-            CHECK(pairs.empty());
+            const two_models of(shell(g, of_a, 1), shell(g, of_b, 1.2));
+            asked<exact_triangle> first;
+            asked<exact_triangle> all;
+            CHECK_FALSE(first.first_pair(of.a, {}, of.b, {}));
+            CHECK(all.pairs(of).empty());
             CHECK(first.counters()[work::node_visits] == all.counters()[work::node_visits]);
         }
 }
 
 TEST_CASE("pairs of leaves within a margin are given up at the first one too many") {
     triangle_pairs::generator g{12};
-    const std::array meshes{shell(g, 3000, 1), shell(g, 3000, 1)};
-    const model<implicit_tree> a(meshes[0], median_build());
-    const model<implicit_tree> b(meshes[1], median_build());
-    const relative_pose to_a({}, {}, b.bounds());
+    const two_models of(shell(g, 3000, 1), shell(g, 3000, 1));
+    const relative_pose to_a({}, {}, of.b.bounds());
     batched_walk<implicit_tree, exact_triangle, no_counters> walk;
     std::vector<kept_pair> all;
-    REQUIRE(walk.near(a, b, to_a, 0.1, std::numeric_limits<std::size_t>::max(), all));
+    REQUIRE(walk.near(of.a, of.b, to_a, 0.1, std::numeric_limits<std::size_t>::max(), all));
     REQUIRE(all.size() > 1000);
     for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{64}, all.size() - 1}) {
         CAPTURE(most);
         std::vector<kept_pair> pairs;
-        CHECK_FALSE(walk.near(a, b, to_a, 0.1, most, pairs));
+        CHECK_FALSE(walk.near(of.a, of.b, to_a, 0.1, most, pairs));
         CHECK(pairs.size() == most + 1);
     }
     std::vector<kept_pair> again;
-    CHECK(walk.near(a, b, to_a, 0.1, all.size(), again));
+    CHECK(walk.near(of.a, of.b, to_a, 0.1, all.size(), again));
     CHECK(again.size() == all.size());
 }
 
@@ -765,11 +730,8 @@ TEST_CASE("a box of A that holds no more than the image of a vertex holds the ve
 
 TEST_CASE("triangles of a leaf are read and moved as they are one by one, and held in boxes") {
     REQUIRE(rc::check([] {
-        std::array<double, 4> q{};
-        for (double& x : q) x = uniform(-1, 1);
-        q[0] += 1.01;
         const auto any_of_both = [&] {
-            pose p = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+            pose p = any_turned(any_vector(1));
             if (*rc::gen::arbitrary<bool>()) p.rotation = pose{}.rotation;
             if (*rc::gen::arbitrary<bool>()) p.translation = pose{}.translation;
             return p;
@@ -817,15 +779,12 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
 TEST_CASE("pairs of nodes asked for together have the children that meet of each alone, in order") {
     std::size_t turned = 0;
     REQUIRE(rc::check([&] {
-        std::array<double, 4> q{};
-        for (double& x : q) x = uniform(-1, 1);
-        q[0] += 1.01;
-        const pose pose_b = turned_by(q, {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+        const pose pose_b = any_turned(any_vector(1));
         // More nodes than their images have places.
         const std::uint32_t triangles = *rc::gen::element<std::uint32_t>(9, 700, 3000);
         const mesh m = any_mesh(triangles, 300, 300, 1);
-        const model<implicit_tree> a(m, median_build());
-        const model<implicit_tree> b(m, median_build());
+        const two_models of(m, m);
+        const auto& [meshes, a, b] = of;
         const relative_pose to_a({}, pose_b, b.bounds());
         turned += to_a.growth() > 1.2;
         const auto nodes = [](const model<implicit_tree>& of) { return (of.triangles().triangle_count() + 63) / 64; };

@@ -118,17 +118,25 @@ endfunction()
 
 # ---- instructions ----------------------------------------------------------------------------------------------------
 
-# counted(WAY OBJECTS): sets instructions and branches, conditional ones, that its eight measured frames execute.
+# counted(WAY OBJECTS): sets instructions and branches, conditional ones, that its eight measured frames execute. They are
+# counted once.
 function(counted way objects)
-    execute_process(
-        COMMAND ${valgrind} --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect=*measured_frames* --branch-sim=yes
-                ${COSTS}/stage_costs ${way} ${objects}
-        OUTPUT_QUIET ERROR_VARIABLE output RESULT_VARIABLE status)
-    if(NOT status EQUAL 0 OR NOT output MATCHES "Collected : ([1-9][0-9]*) ([1-9][0-9]*)")
-        message(FATAL_ERROR "callgrind counts nothing of stage_costs ${way} ${objects}:\n${output}")
+    get_property(counts GLOBAL PROPERTY counts_of_${way}_${objects})
+    if(NOT counts)
+        execute_process(
+            COMMAND ${valgrind} --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect=*measured_frames* --branch-sim=yes
+                    ${COSTS}/stage_costs ${way} ${objects}
+            OUTPUT_QUIET ERROR_VARIABLE output RESULT_VARIABLE status)
+        if(NOT status EQUAL 0 OR NOT output MATCHES "Collected : ([1-9][0-9]*) ([1-9][0-9]*)")
+            message(FATAL_ERROR "callgrind counts nothing of stage_costs ${way} ${objects}:\n${output}")
+        endif()
+        set(counts ${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
+        set_property(GLOBAL PROPERTY counts_of_${way}_${objects} ${counts})
     endif()
-    set(instructions ${CMAKE_MATCH_1} PARENT_SCOPE)
-    set(branches ${CMAKE_MATCH_2} PARENT_SCOPE)
+    list(GET counts 0 instructions)
+    list(GET counts 1 branches)
+    set(instructions ${instructions} PARENT_SCOPE)
+    set(branches ${branches} PARENT_SCOPE)
 endfunction()
 
 # more_than(HAND WAY): sets what eight frames of a way take more than by hand, with 2000 boxes, and how much more again with

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <random>
+
+#include "../compositions.hpp"
+#include "overlapping.hpp"
+
+/// Objects 0 to n - 1 come.
+template <class Search>
+void insert_all(Search& search, std::size_t n) {
+    for (std::uint32_t id = 0; id < n; ++id) search.insert(id);
+}
+
+inline std::unique_ptr<aabb::global_stage> search_of(const aabb::composition& c, std::size_t objects) {
+    auto search = global_of(c, aabb::instrumentation::counters);
+    insert_all(*search, objects);
+    return search;
+}
+
+/// The pairs of a frame, in ascending order.
+template <class Search>
+std::vector<aabb::index_pair> found_by(Search& search, std::span<const aabb::box> boxes) {
+    std::vector<aabb::index_pair> pairs;
+    search.update(boxes);
+    search.search(pairs);
+    std::ranges::sort(pairs);
+    return pairs;
+}
+
+/// Does it say that it does without this?
+template <class Search>
+bool leaves_out(const Search& search, std::string_view what) {
+    const std::vector<aabb::omission> all = search.left_out();
+    return std::ranges::find(all, what, &aabb::omission::what) != all.end();
+}
+
+inline aabb::box cube(float at, float edge) {
+    return {{at, at, at}, {at + edge, at + edge, at + edge}};
+}
+
+/// Everywhere in a world of about 100, alike in every run.
+inline std::vector<aabb::box> scattered(std::uint32_t n, float edge) {
+    std::vector<aabb::box> boxes;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const aabb::vec3f at{static_cast<float>(i * 37 % 101), static_cast<float>(i * 53 % 97),
+                             static_cast<float>(i * 29 % 89)};
+        boxes.push_back({at, at + aabb::vec3f{edge, edge, edge}});
+    }
+    return boxes;
+}
+
+/// Unit cubes that begin anywhere in a box of these widths.
+inline std::vector<aabb::box> cubes(std::size_t n, const aabb::vec3f& widths, std::uint32_t seed = 1) {
+    std::mt19937 random(seed);
+    std::vector<aabb::box> boxes(n);
+    for (aabb::box& b : boxes)
+        for (int k = 0; k < 3; ++k) {
+            b.min[k] = widths[k] * static_cast<float>(random() % 65536) / 65536;
+            b.max[k] = b.min[k] + 1;
+        }
+    return boxes;
+}
+
+/// With whole numbers, so that many touch.
+inline aabb::box lattice_box(std::mt19937& random, std::uint32_t side, std::uint32_t extent) {
+    aabb::box b{};
+    for (int k = 0; k < 3; ++k) {
+        b.min[k] = static_cast<float>(random() % side);
+        b.max[k] = b.min[k] + static_cast<float>(random() % extent);
+    }
+    return b;
+}
