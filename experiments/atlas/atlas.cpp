@@ -15,11 +15,7 @@ module aabblab.atlas;
 
 import aabb.policy;
 import aabb.registry;
-import aabblab.measures;
 import aabblab.metrics;
-import aabblab.results;
-import aabblab.scenes;
-import aabblab.statistics;
 
 namespace aabblab {
 

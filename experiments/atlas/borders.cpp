@@ -20,9 +20,6 @@ import :labels;
 import :noise;
 import aabb.policy;
 import aabblab.numbers;
-import aabblab.scenes;
-import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -12,8 +12,6 @@ module;
 module aabblab.atlas;
 
 import :labels;
-import aabblab.figures;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -12,8 +12,6 @@ module aabblab.atlas;
 import :noise;
 import :statement;
 import aabblab.numbers;
-import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 

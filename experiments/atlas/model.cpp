@@ -13,13 +13,8 @@ module;
 module aabblab.atlas;
 
 import :labels;
-import aabblab.calibrate;
-import aabblab.measures;
 import aabblab.numbers;
 import aabblab.progress;
-import aabblab.scenes;
-import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,8 +10,6 @@ module aabblab.atlas;
 
 import :labels;
 import aabblab.numbers;
-import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 

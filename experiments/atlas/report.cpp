@@ -10,12 +10,9 @@ module;
 
 module aabblab.atlas;
 
-import aabblab.figures;
 import aabblab.files;
 import aabblab.numbers;
 import aabblab.page;
-import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -12,7 +12,6 @@ module aabblab.atlas;
 
 import :statement;
 import aabblab.numbers;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -11,9 +11,6 @@ module aabblab.atlas;
 
 import :labels;
 import aabblab.numbers;
-import aabblab.scenes;
-import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 

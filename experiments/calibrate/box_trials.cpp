@@ -13,7 +13,6 @@ module;
 module aabblab.calibrate;
 
 import :trial;
-import aabb.costs;
 import aabb.counters;
 import aabb.geometry;
 import aabb.pipeline;

@@ -12,9 +12,7 @@ module;
 module aabblab.calibrate;
 
 import :trial;
-import aabb.costs;
 import aabblab.progress;
-import aabblab.statistics;
 
 namespace aabblab {
 

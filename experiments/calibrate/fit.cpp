@@ -11,8 +11,6 @@ module;
 
 module aabblab.calibrate;
 
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {

@@ -8,7 +8,6 @@ module aabblab.configs;
 
 import :choices;
 import :document;
-import aabb.policy;
 
 namespace aabblab {
 

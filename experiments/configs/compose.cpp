@@ -13,8 +13,6 @@ module aabblab.configs;
 import :choices;
 import :document;
 import aabb.base;
-import aabb.policy;
-import aabb.registry;
 import aabb.selection;
 
 namespace aabblab {

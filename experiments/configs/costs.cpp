@@ -12,10 +12,8 @@ module aabblab.configs;
 
 import :document;
 import aabb.base;
-import aabb.costs;
 import aabb.simd;
 import aabblab.files;
-import aabblab.results;
 
 namespace aabblab {
 

@@ -8,8 +8,6 @@ module aabblab.configs;
 
 import :choices;
 import :document;
-import aabb.policy;
-import aabb.registry;
 
 namespace aabblab {
 

@@ -21,7 +21,6 @@ module aabblab.configs;
 
 import :document;
 import aabb.base;
-import aabb.policy;
 import aabblab.files;
 
 namespace aabblab {

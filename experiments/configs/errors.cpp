@@ -12,10 +12,6 @@ module aabblab.configs;
 
 import :document;
 import aabb.base;
-import aabb.policy;
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -22,13 +22,8 @@ module aabblab.configs;
 
 import :document;
 import aabb.base;
-import aabb.policy;
-import aabb.registry;
 import aabb.selection;
 import aabb.validation;
-import aabblab.metrics;
-import aabblab.results;
-import aabblab.scenes;
 
 namespace aabblab {
 

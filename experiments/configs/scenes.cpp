@@ -18,10 +18,6 @@ import :document;
 import aabb.base;
 import aabb.digest;
 import aabb.geometry;
-import aabb.pipeline;
-import aabb.policy;
-import aabb.registry;
-import aabblab.scenes;
 
 namespace aabblab {
 

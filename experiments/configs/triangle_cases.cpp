@@ -11,9 +11,7 @@ module aabblab.configs;
 
 import :document;
 import aabb.base;
-import aabb.extreme;
 import aabb.geometry;
-import aabb.policy;
 
 namespace aabblab {
 

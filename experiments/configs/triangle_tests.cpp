@@ -7,9 +7,6 @@ module;
 module aabblab.configs;
 
 import aabb.base;
-import aabb.pipeline;
-import aabb.policy;
-import aabb.registry;
 import aabb.validation;
 
 namespace aabblab {

@@ -6,10 +6,8 @@ module;
 
 module aabblab.errors;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -14,15 +14,10 @@ module;
 module aabblab.errors;
 
 import :turns;
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;
-import aabb.validation;
-import aabblab.configs;
 import aabblab.numbers;
 import aabblab.progress;
-import aabblab.scenes;
-import aabblab.tables;
 
 namespace aabblab {
 

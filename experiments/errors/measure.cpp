@@ -15,13 +15,8 @@ module aabblab.errors;
 
 import :turns;
 import aabb.base;
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
-import aabb.validation;
-import aabblab.configs;
 import aabblab.progress;
-import aabblab.scenes;
 
 namespace aabblab {
 

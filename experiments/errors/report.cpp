@@ -14,11 +14,7 @@ module;
 module aabblab.errors;
 
 import :front;
-import aabb.policy;
-import aabblab.figures;
 import aabblab.numbers;
-import aabblab.scenes;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,11 +10,8 @@ module;
 
 module aabblab.errors;
 
-import aabb.geometry;
-import aabb.policy;
 import aabblab.files;
 import aabblab.results;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -14,14 +14,10 @@ module aabblab.errors;
 
 import :front;
 import aabb.registry;
-import aabblab.configs;
-import aabblab.figures;
 import aabblab.metrics;
 import aabblab.numbers;
 import aabblab.trials;
 import aabblab.results;
-import aabblab.scenes;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -14,7 +14,6 @@ module aabblab.extreme;
 
 import :contenders;
 import aabb.base;
-import aabb.extreme;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;

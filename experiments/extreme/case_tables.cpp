@@ -8,7 +8,6 @@ module;
 module aabblab.extreme;
 
 import :cells;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,8 +10,6 @@ module;
 module aabblab.extreme;
 
 import :cells;
-import aabb.extreme;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,10 +10,8 @@ module;
 
 module aabblab.extreme;
 
-import aabb.extreme;
 import aabb.validation;
 import aabblab.results;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,7 +10,6 @@ module;
 module aabblab.extreme;
 
 import :contenders;
-import aabb.extreme;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;

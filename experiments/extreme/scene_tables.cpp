@@ -12,10 +12,8 @@ module;
 module aabblab.extreme;
 
 import :cells;
-import aabb.extreme;
 import aabb.validation;
 import aabblab.numbers;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -9,7 +9,6 @@ module;
 
 module aabblab.extreme;
 
-import aabb.extreme;
 import aabb.geometry;
 import aabb.pipeline;
 import aabblab.scenes;

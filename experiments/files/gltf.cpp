@@ -16,7 +16,6 @@ module;
 module aabblab.files;
 
 import aabb.base;
-import aabb.geometry;
 import aabblab.vectors;
 import :file_text;
 import :gltf_asset;

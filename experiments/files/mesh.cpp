@@ -13,10 +13,8 @@ module;
 module aabblab.files;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.policy;
 import :file_text;
-import :loaded_mesh;
 import :readers;
 import :text_decoder;
 

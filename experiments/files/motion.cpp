@@ -12,8 +12,6 @@ module;
 module aabblab.files;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.pipeline;
 import :file_text;
 import :text_scanner;
 

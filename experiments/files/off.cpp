@@ -10,9 +10,7 @@ module;
 module aabblab.files;
 
 import aabb.base;
-import aabb.geometry;
 import :file_text;
-import :loaded_mesh;
 import :mesh_builder;
 import :readers;
 import :text_scanner;

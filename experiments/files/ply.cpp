@@ -13,7 +13,6 @@ module;
 
 module aabblab.files;
 
-import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :ply_header;

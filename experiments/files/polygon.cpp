@@ -12,7 +12,6 @@ module;
 
 module aabblab.files;
 
-import aabb.geometry;
 import :polygon;
 
 // Sums and products as they are written: see aabb.base:floating_point.

@@ -16,8 +16,6 @@ module;
 module aabblab.files;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.pipeline;
 import :file_text;
 
 // The format is Broadmark's (Serpa and Rodrigues, "Broadmark: a testing framework for broad-phase collision detection

@@ -14,7 +14,6 @@ module;
 
 module aabblab.files;
 
-import aabb.geometry;
 import :file_text;
 import :mesh_builder;
 import :readers;

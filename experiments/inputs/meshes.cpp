@@ -10,10 +10,8 @@ module;
 module aabblab.inputs;
 
 import aabb.base;
-import aabb.geometry;
 import aabblab.files;
 import aabblab.output;
-import aabblab.scenes;
 
 namespace aabblab {
 

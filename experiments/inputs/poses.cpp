@@ -9,7 +9,6 @@ module;
 module aabblab.inputs;
 
 import aabb.base;
-import aabb.geometry;
 import aabblab.files;
 
 namespace aabblab {

@@ -10,7 +10,6 @@ module aabblab.inputs;
 
 import aabb.base;
 import aabblab.files;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -8,7 +8,6 @@ module;
 
 module aabblab.measures;
 
-import aabb.geometry;
 import aabb.prepare.mean_extent;
 
 namespace aabblab {

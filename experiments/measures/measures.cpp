@@ -10,12 +10,9 @@ module;
 
 module aabblab.measures;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.registry;
 import aabblab.numbers;
-import aabblab.trials;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -10,7 +10,6 @@ module;
 
 module aabblab.measures;
 
-import aabb.geometry;
 import aabb.global_search;
 
 namespace aabblab {

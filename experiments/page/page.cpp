@@ -7,9 +7,7 @@ module;
 
 module aabblab.page;
 
-import aabblab.figures;
 import aabblab.markup;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,11 +10,7 @@ module;
 
 module aabblab.queries;
 
-import aabb.geometry;
-import aabb.pipeline;
 import aabblab.digits;
-import aabblab.pair_output;
-import aabblab.trials;
 import aabblab.progress;
 import aabblab.stopwatch;
 

@@ -16,13 +16,6 @@ module aabblab.queries;
 import :neighbours;
 import aabb.base;
 import aabb.digest;
-import aabb.geometry;
-import aabb.pipeline;
-import aabb.selection;
-import aabblab.configs;
-import aabblab.inputs;
-import aabblab.pair_output;
-import aabblab.trials;
 import aabblab.stopwatch;
 
 namespace aabblab {

@@ -10,13 +10,7 @@ module;
 module aabblab.queries;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.pipeline;
-import aabb.policy;
-import aabb.registry;
-import aabb.selection;
 import aabb.validation;
-import aabblab.configs;
 
 namespace aabblab {
 

@@ -12,7 +12,6 @@ module;
 module aabblab.queries;
 
 import :neighbours;
-import aabb.geometry;
 
 namespace aabblab {
 

@@ -13,7 +13,6 @@ module aabblab.race;
 import aabb.registry;
 import aabblab.numbers;
 import aabblab.results;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -22,10 +22,7 @@ import aabb.registry;
 import aabb.selection;
 import aabb.validation;
 import aabblab.numbers;
-import aabblab.trials;
 import aabblab.progress;
-import aabblab.scenes;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -7,8 +7,6 @@ module;
 
 module aabblab.race;
 
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {

@@ -8,7 +8,6 @@ module;
 
 module aabblab.results;
 
-import :csv;
 import aabb.base;
 
 namespace aabblab {

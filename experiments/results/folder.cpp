@@ -17,7 +17,6 @@ module aabblab.results;
 
 import aabb.base;
 import aabblab.files;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -21,11 +21,9 @@ module aabblab.results;
 
 import aabb.base;
 import aabb.costs;
-import aabb.registry;
 import aabblab.files;
 import aabblab.json;
 import aabblab.machine;
-import aabblab.scenes;
 import aabblab.sha256;
 
 namespace aabblab {

@@ -13,13 +13,8 @@ module;
 
 module aabblab.results;
 
-import :columns;
-import :csv;
 import aabb.base;
-import aabb.counters;
-import aabb.registry;
 import aabblab.files;
-import aabblab.scenes;
 
 namespace aabblab {
 

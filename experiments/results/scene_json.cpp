@@ -7,7 +7,6 @@ module;
 module aabblab.results;
 
 import aabb.policy;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -10,10 +10,8 @@ module;
 
 module aabblab.results;
 
-import :csv;
 import aabb.base;
 import aabblab.files;
-import aabblab.scenes;
 import aabblab.sha256;
 
 namespace aabblab {

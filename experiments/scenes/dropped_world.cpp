@@ -12,7 +12,6 @@ module aabblab.scenes;
 import aabb.geometry;
 import aabblab.stepping;
 import :boxes;
-import :dropped_world;
 import :random;
 import :rotation;
 

@@ -16,9 +16,7 @@ module aabblab.scenes;
 
 import aabb.base;
 import aabb.geometry;
-import aabb.policy;
 import aabb.registry;
-import aabblab.files;
 import :icosphere;
 import :kind;
 import :noise_sphere;

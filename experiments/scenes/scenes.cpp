@@ -8,8 +8,6 @@ module;
 module aabblab.scenes;
 
 import aabb.base;
-import aabb.pipeline;
-import aabb.policy;
 import :kind;
 
 namespace aabblab {

@@ -14,7 +14,6 @@ import :dropped_balls;
 import :simulation;
 import aabb.base;
 import aabb.geometry;
-import aabblab.trials;
 import aabblab.scenes;
 import aabblab.stepping;
 

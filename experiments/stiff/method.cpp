@@ -13,7 +13,6 @@ import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabb.validation;
-import aabblab.trials;
 
 namespace aabblab {
 

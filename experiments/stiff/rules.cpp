@@ -10,7 +10,6 @@ module;
 module aabblab.stiff;
 
 import :rules;
-import :study;
 import aabb.base;
 
 namespace aabblab {

@@ -12,7 +12,6 @@ module aabblab.stiff;
 import :simulation;
 import aabb.geometry;
 import aabb.pipeline;
-import aabblab.trials;
 import aabblab.stepping;
 import aabblab.stopwatch;
 

@@ -1,7 +1,6 @@
 module aabblab.stiff;
 
 import aabb.registry;
-import aabblab.trials;
 
 namespace aabblab {
 

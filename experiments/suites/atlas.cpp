@@ -10,9 +10,7 @@ module;
 
 module aabblab.suites;
 
-import aabblab.configs;
 import aabblab.output;
-import aabblab.results;
 
 namespace aabblab {
 

@@ -10,13 +10,10 @@ module;
 
 module aabblab.suites;
 
-import aabblab.configs;
 import aabblab.errors;
 import aabblab.files;
 import aabblab.output;
-import aabblab.results;
 import aabblab.stopwatch;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -20,7 +20,6 @@ module aabblab.suites;
 import aabb.policy;
 import aabb.registry;
 import aabb.validation;
-import aabblab.configs;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.metrics;
@@ -28,10 +27,7 @@ import aabblab.output;
 import aabblab.trials;
 import aabblab.processes;
 import aabblab.processor;
-import aabblab.results;
-import aabblab.scenes;
 import aabblab.stopwatch;
-import aabblab.tables;
 
 namespace aabblab {
 

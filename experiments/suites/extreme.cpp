@@ -7,11 +7,9 @@ module;
 module aabblab.suites;
 
 import aabb.extreme;
-import aabblab.configs;
 import aabblab.extreme;
 import aabblab.files;
 import aabblab.output;
-import aabblab.tables;
 
 namespace aabblab {
 

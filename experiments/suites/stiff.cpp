@@ -14,13 +14,11 @@ module aabblab.suites;
 import aabb.base;
 import aabb.policy;
 import aabblab.digits;
-import aabblab.figures;
 import aabblab.files;
 import aabblab.output;
 import aabblab.progress;
 import aabblab.stepping;
 import aabblab.stiff;
-import aabblab.tables;
 
 namespace aabblab {
 

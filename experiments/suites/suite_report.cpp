@@ -12,10 +12,8 @@ module;
 module aabblab.suites;
 
 import aabb.base;
-import aabblab.figures;
 import aabblab.files;
 import aabblab.json;
-import aabblab.tables;
 
 namespace aabblab {
 

@@ -10,15 +10,8 @@ module;
 module aabblab.trials;
 
 import :external;
-import :player;
 import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
-import aabb.registry;
-import aabb.selection;
-import aabb.validation;
-import aabblab.configs;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -23,15 +23,12 @@ module;
 module aabblab.trials;
 
 import :external;
-import :player;
 import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
-import aabblab.configs;
 import aabblab.files;
 import aabblab.pair_output;
 import aabblab.processes;
-import aabblab.scenes;
 
 namespace aabblab {
 

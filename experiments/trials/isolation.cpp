@@ -20,7 +20,6 @@ module;
 
 module aabblab.trials;
 
-import :isolation;
 import aabb.base;
 
 namespace aabblab {

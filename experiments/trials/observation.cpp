@@ -9,12 +9,8 @@ module;
 
 module aabblab.trials;
 
-import :observation;
-import :player;
 import aabb.geometry;
 import aabb.pipeline;
-import aabblab.configs;
-import aabblab.scenes;
 import aabblab.stopwatch;
 
 namespace aabblab {

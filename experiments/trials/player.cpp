@@ -13,15 +13,11 @@ module;
 
 module aabblab.trials;
 
-import :player;
 import aabb.base;
-import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
-import aabb.policy;
 import aabblab.pair_output;
-import aabblab.scenes;
 import aabblab.stopwatch;
 
 namespace aabblab {

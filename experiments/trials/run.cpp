@@ -11,14 +11,8 @@ module;
 
 module aabblab.trials;
 
-import :observation;
-import :player;
-import :turns;
-import aabblab.configs;
 import aabblab.metrics;
 import aabblab.progress;
-import aabblab.results;
-import aabblab.scenes;
 import aabblab.stopwatch;
 
 namespace aabblab {

@@ -10,12 +10,7 @@ module;
 
 module aabblab.trials;
 
-import :isolation;
-import :observation;
-import :player;
-import :staged_scene;
 import aabb.pipeline;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -9,13 +9,7 @@ module;
 
 module aabblab.trials;
 
-import :isolation;
-import :observation;
-import :player;
-import :staged_scene;
-import :turns;
 import aabblab.progress;
-import aabblab.scenes;
 import aabblab.statistics;
 
 namespace aabblab {

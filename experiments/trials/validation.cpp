@@ -14,14 +14,9 @@ module;
 
 module aabblab.trials;
 
-import :player;
-import aabb.counters;
 import aabb.geometry;
 import aabb.pipeline;
-import aabb.validation;
 import aabblab.progress;
-import aabblab.results;
-import aabblab.scenes;
 
 namespace aabblab {
 

@@ -15,8 +15,6 @@ module;
 
 module aabb.digest;
 
-import aabb.geometry;
-
 namespace aabb {
 
 static_assert(std::endian::native == std::endian::little, "digests hash the bytes of little-endian u32s");

@@ -12,7 +12,6 @@ module;
 module aabblab.measuring;
 
 import aabb.base;
-import aabblab.configs;
 import aabblab.files;
 import aabblab.output;
 import aabblab.processes;

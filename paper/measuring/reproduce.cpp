@@ -18,7 +18,6 @@ import aabblab.conditions;
 import aabblab.files;
 import aabblab.output;
 import aabblab.record;
-import aabblab.reproduction;
 import aabblab.results;
 import aabblab.sha256;
 

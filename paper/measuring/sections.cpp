@@ -12,10 +12,8 @@ module;
 module aabblab.measuring;
 
 import aabblab.atlas;
-import aabblab.configs;
 import aabblab.errors;
 import aabblab.record;
-import aabblab.reproduction;
 import aabblab.results;
 import aabblab.suites;
 import aabblab.tables;

@@ -8,7 +8,6 @@ module;
 module aabblab.record;
 
 import aabb.base;
-import aabblab.archive;
 
 namespace aabblab {
 

@@ -8,8 +8,6 @@ module;
 
 module aabblab.reproduction;
 
-import aabblab.claims;
-
 namespace aabblab {
 
 std::string agreement_of(std::span<const claim_result> here, std::span<const claim_result> there,

@@ -10,10 +10,8 @@ module;
 
 module aabblab.reproduction;
 
-import aabblab.claims;
 import aabblab.markup;
 import aabblab.scale;
-import aabblab.statistics;
 
 namespace aabblab {
 

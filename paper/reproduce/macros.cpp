@@ -11,12 +11,6 @@ module;
 
 module aabblab.reproduction;
 
-import aabblab.claims;
-import aabblab.conditions;
-import aabblab.figures;
-import aabblab.tables;
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {

@@ -10,12 +10,7 @@ module;
 
 module aabblab.reproduction;
 
-import aabblab.claims;
-import aabblab.figures;
 import aabblab.markup;
-import aabblab.page;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -11,14 +11,8 @@ module;
 
 module aabblab.reproduction;
 
-import aabblab.claims;
-import aabblab.conditions;
-import aabblab.figures;
 import aabblab.files;
-import aabblab.page;
 import aabblab.record;
-import aabblab.tables;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -8,9 +8,6 @@ module;
 
 module aabblab.reproduction;
 
-import aabblab.statistics;
-import aabblab.tables;
-
 namespace aabblab {
 
 std::vector<verdict_word> verdict_words() {

@@ -11,8 +11,6 @@ module;
 module aabb.build.balanced;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.build.balanced_items;
 import aabb.build.threaded;
 

@@ -10,8 +10,6 @@ module;
 module aabb.build.file_order;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.build.top_down;
 
 namespace aabb {

@@ -5,10 +5,6 @@ module;
 
 module aabb.build.midpoint;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.build.top_down;
-
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 

@@ -11,9 +11,6 @@ module;
 module aabb.build.top_down;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.build.threaded;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -40,8 +40,8 @@ public:
     struct config {
         /// How many of the two axes across are cut into columns.
         std::uint32_t axes = 2;
-        /// Up to so many boxes are tested each against each, a vector at a time.
-        std::uint32_t few = 4 * simd::width;
+        /// Up to so many boxes are tested each against each, a vector at a time. auto: as many as four vectors hold.
+        std::optional<std::uint32_t> few;
         /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
         /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
         /// be written in turn without much waiting. Any number of boxes is put into groups, and those into further
@@ -110,7 +110,7 @@ public:
     }
 
     /// Of so many boxes, or fewer, none is cut.
-    [[nodiscard]] std::size_t few() const noexcept { return config_.few; }
+    [[nodiscard]] std::size_t few() const noexcept { return config_.few.value_or(4 * simd::width); }
     /// How many of so many boxes are cut into columns together, about.
     [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
         if (config_.group) return std::min(boxes, std::size_t{*config_.group});

@@ -12,10 +12,7 @@ module;
 
 module aabb.partition.kd_tree;
 
-import aabb.base;
 import aabb.costs;
-import aabb.geometry;
-import aabb.global_search;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

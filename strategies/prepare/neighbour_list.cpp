@@ -13,12 +13,10 @@ module;
 
 module aabb.prepare.neighbour_list;
 
-import aabb.base;
 import aabb.costs;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
-import aabb.pipeline;
 import aabb.prepare.displacement_law;
 import aabb.prepare.grown_boxes;
 import aabb.prepare.list_pause;

@@ -15,7 +15,6 @@ import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
-import aabb.pipeline;
 import aabb.prepare.mean_extent;
 import aabb.prepare.pieces;
 

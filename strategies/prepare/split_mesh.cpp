@@ -14,7 +14,6 @@ module aabb.prepare.split_mesh;
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
-import aabb.pipeline;
 import aabb.prepare.pieces;
 import aabb.split_mesh;
 

@@ -13,10 +13,7 @@ module;
 module aabb.registry;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.local_detection;
-import aabb.pipeline;
-import aabb.policy;
 import aabb.composed;
 import aabb.composed.global_search;
 import aabb.composed.local_detection;

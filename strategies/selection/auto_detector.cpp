@@ -13,11 +13,6 @@ module;
 module aabb.auto_detector;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.pipeline;
-import aabb.policy;
-import aabb.registry;
-import aabb.selection;
 
 namespace aabb {
 

@@ -10,9 +10,6 @@ module;
 module aabb.selection;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.policy;
-import aabb.registry;
 
 namespace aabb {
 

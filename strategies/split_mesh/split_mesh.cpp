@@ -13,7 +13,6 @@ module aabb.split_mesh;
 
 import aabb.base;
 import aabb.geometry;
-import aabb.pipeline;
 
 namespace aabb {
 

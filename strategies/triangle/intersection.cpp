@@ -10,7 +10,6 @@ module;
 module aabb.triangle.intersection;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.triangle.orientation_test;
 
 // Sums and products as they are written: see aabb.base:floating_point.

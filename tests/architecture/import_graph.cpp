@@ -163,6 +163,40 @@ std::vector<arrow> arrows_in(const std::filesystem::path& root) {
     return arrows;
 }
 
+/// Imports that the interface of an implementation unit has already: "FILE imports MODULE", a line each.
+std::string repeated_imports(const std::filesystem::path& root) {
+    static const std::regex declaration(R"(^(export )?module ([a-z_.0-9]+);)");
+    static const std::regex import_line(R"(^(?:export )?import ([a-z_.0-9:]+);)");
+    std::map<std::string, std::set<std::string>> of_interface;  // by module
+    std::map<std::string, std::pair<std::string, std::vector<std::string>>> units;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+        const std::string ending = entry.path().extension().string();
+        if (ending != ".cpp" && ending != ".cppm") continue;
+        std::vector<std::string> imported;
+        std::smatch found;
+        std::smatch declared;
+        std::string module;
+        bool is_interface = false;
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+            if (std::regex_search(line, declared, declaration)) {
+                module = declared[2];
+                is_interface = declared[1].matched;
+            }
+            if (std::regex_search(line, found, import_line)) imported.push_back(found[1]);
+        }
+        if (is_interface)
+            of_interface[module].insert(imported.begin(), imported.end());
+        else if (!module.empty())
+            units[std::filesystem::relative(entry.path(), root).generic_string()] = {module, imported};
+    }
+    std::string text;
+    for (const auto& [file, unit] : units)
+        for (const std::string& one : unit.second)
+            if (of_interface[unit.first].contains(one)) text += file + " imports " + one + "\n";
+    return text;
+}
+
 /// "experiments/trials <- paper/claims: FILE imports MODULE", a line each.
 std::string arrows_back(const std::vector<arrow>& arrows) {
     std::string text;
@@ -193,6 +227,15 @@ TEST_CASE("No import runs back from a room to one that stands on it") {
     std::ofstream(AABBLAB_DRAWING) << drawing_of(arrows);
     REQUIRE(arrows.size() > 40);
     CHECK(arrows_back(arrows) == "");
+}
+
+TEST_CASE("No implementation unit imports what its interface does") {
+    for (const char* folder : {"modules", "strategies", "validation", "experiments", "paper"})
+        CHECK(repeated_imports(std::filesystem::path(AABBLAB_SOURCE) / folder) == "");
+    const temporary_folder folder;
+    std::ofstream(folder / "a.cppm") << "export module a;\nimport b;\nexport import :c;\n";
+    std::ofstream(folder / "a.cpp") << "module a;\nimport :c;\nimport b;\nimport d;\n";
+    CHECK(repeated_imports(folder.path()) == "a.cpp imports :c\na.cpp imports b\n");
 }
 
 TEST_CASE("An import that runs back is found") {

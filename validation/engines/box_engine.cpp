@@ -6,7 +6,6 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.global_search;
 import :box_engine;
 

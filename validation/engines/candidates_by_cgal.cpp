@@ -8,7 +8,6 @@ module;
 
 module aabb.engines;
 
-import aabb.geometry;
 import :numbered_box;
 import :pairwise;
 

@@ -9,8 +9,6 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.pipeline;
-import aabb.policy;
 import :engine;
 import :library_test;
 

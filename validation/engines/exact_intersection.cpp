@@ -18,8 +18,6 @@ module;
 
 module aabb.engines;
 
-import aabb.geometry;
-
 namespace aabb {
 
 namespace {

@@ -5,8 +5,6 @@ module;
 
 module aabb.engines;
 
-import aabb.geometry;
-
 namespace aabb {
 
 namespace {

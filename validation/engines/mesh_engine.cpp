@@ -5,7 +5,6 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
 import :mesh_engine;
 
 namespace aabb {

@@ -8,9 +8,7 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.local_detection;
-import aabb.pipeline;
 import :mesh_engine;
 import :pairwise;
 

@@ -11,8 +11,6 @@ module;
 
 module aabb.extreme;
 
-import :arithmetic;
-
 namespace aabb {
 
 namespace {

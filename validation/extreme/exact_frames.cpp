@@ -9,8 +9,6 @@ module aabb.extreme;
 import aabb.engines;
 import aabb.geometry;
 import aabb.pipeline;
-import :exact_frames;
-import :scene;
 
 namespace aabb {
 

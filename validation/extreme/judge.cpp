@@ -12,11 +12,7 @@ module aabb.extreme;
 import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
-import :arithmetic;
 import :comparison;
-import :exact_frames;
-import :judge;
-import :scene;
 
 namespace aabb {
 

@@ -16,9 +16,6 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabb.truth;
 import :comparison;
-import :exact_frames;
-import :judge;
-import :scene;
 
 namespace aabb {
 

@@ -3,9 +3,6 @@ module;
 
 module aabb.extreme;
 
-import :known_scenes;
-import :scene;
-
 namespace aabb {
 
 std::vector<extreme_scene> extreme_scenes(extreme_size size) {

@@ -10,9 +10,7 @@ module aabb.extreme;
 
 import aabb.geometry;
 import aabb.pipeline;
-import :known_scenes;
 import :making;
-import :scene;
 
 namespace aabb {
 

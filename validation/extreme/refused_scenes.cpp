@@ -11,10 +11,7 @@ module aabb.extreme;
 
 import aabb.geometry;
 import aabb.pipeline;
-import :arithmetic;
-import :known_scenes;
 import :making;
-import :scene;
 
 namespace aabb {
 

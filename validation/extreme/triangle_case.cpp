@@ -5,7 +5,6 @@ module;
 module aabb.extreme;
 
 import aabb.geometry;
-import :triangle_case;
 
 namespace aabb {
 

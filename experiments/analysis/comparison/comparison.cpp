@@ -9,9 +9,6 @@ module;
 module aabblab.comparison;
 
 import aabb.base;
-import aabblab.results;
-import aabblab.scenes;
-import aabblab.statistics;
 
 namespace aabblab {
 

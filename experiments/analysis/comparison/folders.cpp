@@ -13,7 +13,6 @@ module;
 module aabblab.comparison;
 
 import aabb.base;
-import aabblab.results;
 
 namespace aabblab {
 

@@ -12,7 +12,6 @@ module;
 module aabblab.comparison;
 
 import aabb.counters;
-import aabblab.results;
 
 namespace aabblab {
 

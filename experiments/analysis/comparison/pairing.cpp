@@ -8,9 +8,7 @@ module;
 
 module aabblab.comparison;
 
-import aabblab.scenes;
 import aabblab.tables;
-import aabblab.results;
 
 namespace aabblab {
 

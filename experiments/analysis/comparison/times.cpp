@@ -11,8 +11,6 @@ module;
 module aabblab.comparison;
 
 import aabblab.metrics;
-import aabblab.results;
-import aabblab.statistics;
 
 namespace aabblab {
 

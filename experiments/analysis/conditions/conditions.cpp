@@ -17,12 +17,6 @@ module;
 module aabblab.conditions;
 
 import aabb.policy;
-import aabb.registry;
-import aabblab.figures;
-import aabblab.metrics;
-import aabblab.results;
-import aabblab.scenes;
-import aabblab.statistics;
 
 namespace aabblab {
 

@@ -10,8 +10,6 @@ module;
 
 module aabblab.metrics;
 
-import aabblab.results;
-
 namespace aabblab {
 
 namespace {

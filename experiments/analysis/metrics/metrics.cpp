@@ -13,7 +13,6 @@ module aabblab.metrics;
 import aabb.base;
 import aabb.counters;
 import aabb.policy;
-import aabblab.results;
 
 namespace aabblab {
 

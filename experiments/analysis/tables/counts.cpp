@@ -13,9 +13,7 @@ module;
 
 module aabblab.tables;
 
-import aabb.counters;
 import aabblab.numbers;
-import aabblab.results;
 
 namespace aabblab {
 

@@ -13,11 +13,7 @@ module;
 
 module aabblab.tables;
 
-import aabb.registry;
 import aabblab.digits;
-import aabblab.metrics;
-import aabblab.results;
-import aabblab.scenes;
 
 namespace aabblab {
 

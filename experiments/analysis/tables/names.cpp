@@ -8,8 +8,6 @@ module;
 
 module aabblab.tables;
 
-import aabb.registry;
-import aabblab.results;
 import aabblab.text;
 
 namespace aabblab {

@@ -15,10 +15,7 @@ module;
 
 module aabblab.tables;
 
-import aabb.registry;
 import aabblab.numbers;
-import aabblab.results;
-import aabblab.statistics;
 
 namespace aabblab {
 

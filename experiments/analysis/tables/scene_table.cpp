@@ -13,11 +13,7 @@ module;
 
 module aabblab.tables;
 
-import aabblab.metrics;
 import aabblab.numbers;
-import aabblab.results;
-import aabblab.scenes;
-import aabblab.statistics;
 
 namespace aabblab {
 

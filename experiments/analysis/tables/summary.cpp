@@ -15,12 +15,6 @@ module;
 
 module aabblab.tables;
 
-import aabb.registry;
-import aabblab.metrics;
-import aabblab.results;
-import aabblab.scenes;
-import aabblab.statistics;
-
 namespace aabblab {
 
 namespace {

@@ -6,7 +6,6 @@ module;
 
 module aabblab.tables;
 
-import aabblab.results;
 import aabblab.text;
 
 namespace aabblab {

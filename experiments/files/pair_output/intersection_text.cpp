@@ -5,7 +5,6 @@ module;
 module aabblab.pair_output;
 
 import aabb.base;
-import aabb.geometry;
 
 namespace aabblab {
 

@@ -13,9 +13,6 @@ module;
 
 module aabblab.pair_output;
 
-import aabb.geometry;
-import aabblab.files;
-
 namespace aabblab {
 
 void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where) {

@@ -11,8 +11,6 @@ module;
 
 module aabblab.pair_output;
 
-import aabb.geometry;
-
 namespace aabblab {
 
 namespace {

@@ -17,8 +17,6 @@ module aabblab.scenes;
 
 import aabb.base;
 import aabb.geometry;
-import aabb.policy;
-import :pair_classes;
 import :random;
 
 namespace aabblab {

@@ -17,7 +17,6 @@ import aabb.geometry;
 import aabblab.markup;
 import aabblab.scale;
 import :panel;
-import :survey;
 
 namespace aabblab {
 

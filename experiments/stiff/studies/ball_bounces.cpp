@@ -13,7 +13,6 @@ import :ball_world;
 import :oscillator;
 import :rules;
 import :simulation;
-import :study;
 import aabblab.figures;
 import aabblab.stepping;
 

@@ -16,7 +16,6 @@ module aabblab.stiff;
 import :dropped_balls;
 import :method;
 import :rules;
-import :study;
 import aabblab.figures;
 import aabblab.stepping;
 

@@ -10,7 +10,6 @@ import :ball_world;
 import :oscillator;
 import :rules;
 import :simulation;
-import :study;
 import aabblab.stepping;
 
 namespace aabblab {

@@ -10,11 +10,9 @@ module aabblab.stiff;
 
 import :rules;
 import :shapes;
-import :study;
 import aabb.geometry;
 import aabb.pipeline;
 import aabblab.figures;
-import aabblab.trials;
 
 namespace aabblab {
 

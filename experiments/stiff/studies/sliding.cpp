@@ -12,7 +12,6 @@ module aabblab.stiff;
 import :method;
 import :rules;
 import :shapes;
-import :study;
 import aabb.geometry;
 import aabb.pipeline;
 import aabblab.figures;

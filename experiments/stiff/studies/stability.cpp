@@ -13,7 +13,6 @@ module aabblab.stiff;
 import :ball_world;
 import :rules;
 import :simulation;
-import :study;
 import aabblab.figures;
 import aabblab.stepping;
 

@@ -10,7 +10,6 @@ module aabblab.stiff;
 import :rules;
 import :shapes;
 import :simulation;
-import :study;
 import aabblab.stepping;
 
 namespace aabblab {

@@ -10,8 +10,6 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.pipeline;
 import :box_engine;
 import :engine;
 import :pairwise;

@@ -8,7 +8,6 @@ module;
 
 module aabb.engines;
 
-import aabb.geometry;
 import :library_test;
 
 namespace aabb {

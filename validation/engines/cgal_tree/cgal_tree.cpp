@@ -16,9 +16,7 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.local_detection;
-import aabb.pipeline;
 import :engine;
 import :mesh_engine;
 

@@ -12,8 +12,6 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
-import aabb.pipeline;
 import :box_engine;
 import :engine;
 

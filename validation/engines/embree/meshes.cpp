@@ -15,9 +15,7 @@ module;
 module aabb.engines;
 
 import aabb.base;
-import aabb.geometry;
 import aabb.local_detection;
-import aabb.pipeline;
 import aabb.triangle.devillers_guigue;
 import :engine;
 import :mesh_engine;

@@ -8,8 +8,6 @@ module;
 
 module aabb.engines;
 
-import aabb.geometry;
-import aabb.policy;
 import :engine;
 import :library_test;
 import :pairwise;
