@@ -33,7 +33,7 @@ struct error_point {
     std::uint64_t intersecting = 0;     ///< of them, by CGAL's exact predicates
     std::uint64_t false_negatives = 0;  ///< intersecting, but it said no
     std::uint64_t false_positives = 0;  ///< apart, but it said yes
-    quartiles ns_a_pair;                ///< over batches, in which all methods take turns
+    quartiles ns_a_pair{};              ///< over batches, in which all methods take turns
 
     [[nodiscard]] std::uint64_t wrong() const { return false_negatives + false_positives; }
 };
@@ -96,8 +96,8 @@ struct hit_point {
     std::array<std::uint64_t, 5> kinds{};  ///< hits by kind
     std::uint64_t different = 0;           ///< hits whose kind or number of corners is not the exact one
     std::uint64_t outside = 0;             ///< hits with a coordinate off by more than the error that was stated
-    aabb::corner_errors greatest;          ///< of all hits
-    quartiles ns_a_hit;                    ///< over batches, in which the tests take turns
+    aabb::corner_errors greatest{};        ///< of all hits
+    quartiles ns_a_hit{};                  ///< over batches, in which the tests take turns
 
     [[nodiscard]] bool is_right() const { return different + outside == 0; }
 };

@@ -41,12 +41,12 @@ public:
         /// How many of the two axes across are cut into columns.
         std::uint32_t axes = 2;
         /// Up to so many boxes are tested each against each, a vector at a time. auto: as many as four vectors hold.
-        std::optional<std::uint32_t> few;
+        std::optional<std::uint32_t> few{};
         /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
         /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
         /// be written in turn without much waiting. Any number of boxes is put into groups, and those into further
         /// ones, where they lie in clumps so far apart that columns over all of them leave each clump in one place.
-        std::optional<std::uint32_t> group;
+        std::optional<std::uint32_t> group{};
         /// How many threads take groups.
         std::uint32_t threads = 1;
     };
@@ -342,9 +342,12 @@ private:
                 rejected += std::popcount(some & entries[first / simd::width].rejected_late(others, other));
             }
         }
-        // Each is met from either side.
+        // Each is met from either side. Chance makes counts differ by their square root; three times that is beyond it.
         const double pairs = 2 * static_cast<double>(asked) * (static_cast<double>(seen.kept) - 1);
-        return cost(met * n / pairs, rejected * n / pairs) > most;
+        const auto at_least = [&](int count) {
+            return std::max(0.0, count - 3 * std::sqrt(double(count))) * n / pairs;
+        };
+        return cost(at_least(met), at_least(rejected)) > most;
     }
 
     config config_;

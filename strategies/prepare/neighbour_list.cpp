@@ -87,6 +87,9 @@ public:
     void search(std::vector<index_pair>& pairs) override;
     [[nodiscard]] work_counters counters() const override;
     [[nodiscard]] std::vector<part_bytes> bytes() const override;
+    [[nodiscard]] double share_of_update() const override {
+        return state_ <= state::watching ? search_->share_of_update() : 0;
+    }
     [[nodiscard]] std::vector<stage_plan> plans() const override;
     [[nodiscard]] std::vector<omission> left_out() const override;
 

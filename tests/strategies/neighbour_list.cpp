@@ -617,7 +617,8 @@ TEST_CASE("a few boxes never say that all moved further than they did") {
         objects.settle();
         const auto frame = [&] {
             std::vector<box> boxes;
-            for (std::uint32_t id = 0; id < n; ++id) boxes.push_back(cube(*rc::gen::inRange(-50, 50) / 8.0F));
+            for (std::uint32_t id = 0; id < n; ++id)
+                boxes.push_back(cube(static_cast<float>(*rc::gen::inRange(-50, 50)) / 8));
             return boxes;
         };
         const std::vector<box> from = frame();

@@ -61,7 +61,6 @@ constexpr std::array<sign, 10> signs = {{{is_disc, 0, false, 0.25},
                                          {4, 0, false, 0.36},
                                          {3, 90, true, 0.38}}};
 
-constexpr std::string_view ink = "#000000";
 constexpr std::string_view frame_colour = "#404040";
 constexpr std::string_view grid_colour = "#E0E0E0";
 constexpr double line_width = 0.14;
@@ -118,8 +117,8 @@ private:
         const places at = lines_below(top, lines.size());
         for (std::size_t i = 0; i < lines.size(); ++i) write({at[i], lines[i], end, power});
     }
-    void stroke(std::vector<places> lines, std::string_view colour, double width, std::vector<double> dashes = {}) {
-        to_.parts.emplace_back(strokes{std::move(lines), colour, width, std::move(dashes)});
+    void stroke(std::vector<places> lines, std::string_view colour, double thickness, std::vector<double> pattern = {}) {
+        to_.parts.emplace_back(strokes{std::move(lines), colour, thickness, std::move(pattern)});
     }
     void stroke_look(std::vector<places> lines, std::size_t look, bool dashed) {
         std::vector<double> lengths;
