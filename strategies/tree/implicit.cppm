@@ -83,8 +83,7 @@ public:
                  {{{"queries", static_cast<double>(scene.queries)}, {"repaid", static_cast<double>(repaid)}}}});
         }
         if (scene.triangles_of_two() >= double{least_of_front} && scene.exact_triangles &&
-            scene.frames >= scene_outlook::fewest_frames_to_keep &&
-            scene.queries <= scene.frames * most_fronts) {
+            scene.frames >= scene_outlook::fewest_frames_to_keep && scene.queries <= scene.frames * most_fronts) {
             fit.settings.push_back({"front", "kept"});
             fit.because.push_back({"frames follow each other: pairs of leaves are kept while meshes move little"});
         }

@@ -117,7 +117,8 @@ private:
         const places at = lines_below(top, lines.size());
         for (std::size_t i = 0; i < lines.size(); ++i) write({at[i], lines[i], end, power});
     }
-    void stroke(std::vector<places> lines, std::string_view colour, double thickness, std::vector<double> pattern = {}) {
+    void stroke(std::vector<places> lines, std::string_view colour, double thickness,
+                std::vector<double> pattern = {}) {
         to_.parts.emplace_back(strokes{std::move(lines), colour, thickness, std::move(pattern)});
     }
     void stroke_look(std::vector<places> lines, std::size_t look, bool dashed) {
