@@ -109,7 +109,7 @@ private:
         if (bytes_.size() < bytes_of(type))
             refuse(file_, "ends in element " + std::to_string(index_) + " of " + std::to_string(element_->count) +
                               " elements " + in_quotes(element_->name));
-        const double value = number_at(bytes_.data(), type, big_);
+        const double value = number_at(&bytes_.front(), type, big_);
         bytes_.remove_prefix(bytes_of(type));
         return value;
     }

@@ -41,7 +41,7 @@ public:
 
     [[nodiscard]] double exponent() const noexcept {
         if (age_ < 2 || !(before_ > 0)) return known_exponent_;
-        const double times = static_cast<double>(age_) / static_cast<double>(std::bit_floor(age_) / 2);
+        const double times = static_cast<double>(age_) / static_cast<double>(std::bit_floor(age_ / 2));
         return std::min(std::log2(farthest_ / before_) / std::log2(times), fastest);
     }
 
