@@ -59,7 +59,7 @@ aabblab::reproduction judged_worlds(const std::vector<double>& ratios, double no
 
 /// Holds the verdict on every claim against that of its row; where that is empty, nothing is expected.
 template <class Expected>
-void check_verdicts(const aabblab::reproduction& all, Expected expected) {
+void check_verdicts(const aabblab::reproduction& all, const Expected& expected) {
     REQUIRE(all.claims.size() == worlds::claim_rows().size());
     for (std::size_t i = 0; i < all.claims.size(); ++i) {
         const claim_result& c = all.claims[i];
