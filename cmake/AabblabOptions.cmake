@@ -10,12 +10,11 @@ set(aabblab_options
     -ffunction-sections
     -fdata-sections
     # Scenes are the same on every machine.
-    -ffp-contract=off)
+    -ffp-contract=off
+    # Vectors of the compiler's are handed over within what one set of options compiles, so that their ABI is the same.
+    -Wno-psabi)
 if(AABBLAB_NATIVE)
     list(APPEND aabblab_options -march=native)
-else()
-    # Vectors of the compiler's are handed over within what one set of options compiles, so that their ABI is the same.
-    list(APPEND aabblab_options -Wno-psabi)
 endif()
 add_compile_options("$<BUILD_INTERFACE:${aabblab_options}>")
 add_link_options(-Wl,--gc-sections)
