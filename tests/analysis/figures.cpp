@@ -101,8 +101,8 @@ struct placed_text {
 
 std::vector<placed_text> texts_of(const std::string& svg) {
     std::vector<placed_text> all;
-    const std::regex one(
-        R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" dy="5.6" text-anchor="([a-z]+)"( transform="rotate\(([-0-9.]+)[^"]*")?>(.*?)</text>)re");
+    const std::regex one(R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" dy="5.6" text-anchor="([a-z]+)")re"
+                         R"re(( transform="rotate\(([-0-9.]+)[^"]*")?>(.*?)</text>)re");
     for (std::sregex_iterator i(svg.begin(), svg.end(), one), end; i != end; ++i) {
         std::string text = std::regex_replace((*i)[6].str(), std::regex("<[^>]*>"), "");
         text = std::regex_replace(text, std::regex("&[a-z]+;"), "x");
