@@ -22,14 +22,15 @@ public:
     struct one {
         Point point;
         std::unique_ptr<aabb::triangle_test> test;
-        std::size_t share = 1;   ///< takes part in one batch of so many
+        std::size_t share = 1;   ///< of how many batches it takes part in one
         std::vector<double> ns;  ///< a pair, of each batch
     };
 
     void add(one added) { all_.push_back(std::move(added)); }
 
-    /// @param work what is timed, with one test, of so many pairs
-    /// @param judge what follows, untimed
+    /// @param pairs in the batch
+    /// @param work is timed, for each test
+    /// @param judge follows it, untimed
     template <class Work, class Judge>
     void play(std::size_t pairs, Work work, Judge judge) {
         for (std::size_t i = 0; i < all_.size(); ++i) {

@@ -45,7 +45,7 @@ struct arrangement {
 
 [[nodiscard]] arrangement arranged(const drawing& d);
 
-/// The label of a tick as its axis shows it: a name in lines of at most so many characters, a number in one.
+/// The label of a tick as its axis shows it: a name is broken into short lines, a number stands in one.
 [[nodiscard]] std::vector<std::string> lines_of(const scale& axis, const tick& t, std::size_t length);
 
 // In ems.
