@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 # Interfaces are installed as sources: a consumer's compiler makes its own module files of them.
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/aabblab)
 install(
-    TARGETS aabblab_core aabblab_strategies aabblab_registry
+    TARGETS aabblab_std aabblab_core aabblab_strategies aabblab_registry
     EXPORT aabblab
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     FILE_SET CXX_MODULES DESTINATION ${package_dir}/modules)

@@ -3,17 +3,13 @@
 #include <CLI/CLI.hpp>
 
 #include <csignal>
-#include <exception>
-#include <filesystem>
-#include <new>
-#include <stdexcept>
-#include <string>
 
 #include "commands/command_line.hpp"
 #include "commands/command_parser.hpp"
 #include "commands/kept_costs.hpp"
 
 import aabb.base;
+import aabb.std;
 import aabblab.output;
 import aabblab.pair_output;
 

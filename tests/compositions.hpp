@@ -1,9 +1,8 @@
 #pragma once
 
-#include <variant>
-
 #include "testing.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 

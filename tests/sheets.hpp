@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cstdint>
-
+import aabb.std;
 import aabb;
 
 /// n × n squares, each cut into two triangles.

@@ -1,16 +1,3 @@
-module;
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <limits>
-#include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.atlas;
 
 import aabb.policy;

@@ -1,15 +1,8 @@
-module;
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Which composition or engine wins in which scene: a map made of the rows of experiments, with what it costs to use
 /// one of them everywhere, where the borders lie, and what it says of statements of others.
 export module aabblab.atlas;
 
+import aabb.std;
 import aabblab.calibrate;
 import aabblab.figures;
 import aabblab.measures;

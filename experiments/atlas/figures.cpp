@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <map>
-#include <string>
-#include <tuple>
-#include <vector>
-
 module aabblab.atlas;
 
 import :labels;

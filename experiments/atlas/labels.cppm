@@ -1,13 +1,7 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Who plays in an atlas, and what it costs to use one of them everywhere.
 module aabblab.atlas:labels;
 
+import aabb.std;
 import aabblab.atlas;
 
 namespace aabblab {

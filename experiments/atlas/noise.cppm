@@ -1,10 +1,7 @@
-module;
-#include <cmath>
-#include <vector>
-
 /// How sure ratios are of which there is one only.
 module aabblab.atlas:noise;
 
+import aabb.std;
 import aabblab.atlas;
 import aabblab.statistics;
 

@@ -1,11 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 module aabblab.atlas;
 
 import :labels;

@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <iterator>
-#include <string>
-#include <vector>
-
 module aabblab.atlas;
 
 import aabblab.files;

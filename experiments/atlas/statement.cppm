@@ -1,11 +1,7 @@
-module;
-#include <functional>
-#include <string>
-#include <vector>
-
 /// Statements as they are written down.
 module aabblab.atlas:statement;
 
+import aabb.std;
 import aabblab.atlas;
 import aabblab.statistics;
 

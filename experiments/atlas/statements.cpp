@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.atlas;
 
 import :statement;

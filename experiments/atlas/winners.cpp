@@ -1,12 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 module aabblab.atlas;
 
 import :labels;

@@ -1,16 +1,11 @@
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <string>
-#include <string_view>
-#include <thread>
-#include <vector>
-
 #include "stages.hpp"
 
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.std;
 import aabb.strategies;
 import aabb.tree.implicit;
 import aabblab.cases;

@@ -1,16 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 /// What benchmarks are run on: every strategy of a kind with the values of its parameters, and frames of a scene.
 export module aabblab.cases;
 
@@ -18,6 +5,7 @@ import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.scenes;
 
 export namespace aabblab {

@@ -1,19 +1,11 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "stages.hpp"
 #include "time_tests.hpp"
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.triangle.exact;
 import aabblab.rotated_boxes;
 import aabblab.walked_pairs;

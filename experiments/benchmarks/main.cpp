@@ -1,14 +1,11 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <iostream>
-#include <stdexcept>
-#include <string_view>
-#include <vector>
 
 #include "stages.hpp"
 
+import aabb.std;
 import aabblab.processor;
 
 namespace {

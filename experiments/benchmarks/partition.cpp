@@ -1,11 +1,5 @@
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "stages.hpp"
 
 import aabb.base;
@@ -13,6 +7,7 @@ import aabb.columns;
 import aabb.counters;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 import aabb.strategies;
 import aabblab.cases;
 

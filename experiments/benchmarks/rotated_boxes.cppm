@@ -1,14 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-
 /// Boxes of two trees held against each other as they stand, one of them rotated: what trees of axis-aligned boxes were
 /// tested by when the paper's references were written, in place of a new box around the rotated one.
 export module aabblab.rotated_boxes;
 
 import aabb.geometry;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

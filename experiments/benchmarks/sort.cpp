@@ -1,21 +1,12 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "stages.hpp"
 
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 import aabb.strategies;
 import aabblab.cases;
 import aabblab.stopwatch;

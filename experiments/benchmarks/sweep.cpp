@@ -1,17 +1,5 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <stdexcept>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "stages.hpp"
 
 import aabb.columns;
@@ -19,6 +7,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 import aabb.strategies;
 import aabblab.cases;
 

@@ -1,13 +1,10 @@
 #include <benchmark/benchmark.h>
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "stages.hpp"
 #include "time_tests.hpp"
 
 import aabb.policy;
+import aabb.std;
 import aabb.strategies;
 import aabblab.cases;
 import aabblab.walked_pairs;

@@ -1,11 +1,3 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <stdexcept>
-#include <vector>
-
 /// What a walk over two meshes tests, so that each test can be made again by itself.
 export module aabblab.walked_pairs;
 
@@ -14,6 +6,7 @@ import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
 import aabb.build.median;
+import aabb.std;
 import aabb.tree.canonical;
 import aabb.triangle.exact;
 import aabblab.rotated_boxes;

@@ -1,14 +1,5 @@
 module;
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 module aabblab.calibrate;
 
@@ -51,7 +42,7 @@ box_frames frames_of(const scene_choice& choice) {
     std::vector<std::vector<aabb::box>> all;
     std::vector<aabb::box> boxes;
     while (scene->next(boxes)) all.push_back(boxes);
-    return std::make_shared<const std::vector<std::vector<aabb::box>>>(std::move(all));
+    return std::make_unique<const std::vector<std::vector<aabb::box>>>(std::move(all));
 }
 
 /// Other costs to plan by, for a while.

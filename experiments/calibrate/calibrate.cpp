@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <cstddef>
-#include <iterator>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.calibrate;
 
 import :trial;

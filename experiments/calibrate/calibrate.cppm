@@ -1,16 +1,9 @@
-module;
-#include <array>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// What elementary work takes on this machine. Strategies play generated scenes, once with their work counted and
 /// several times against the clock, and costs are fitted to what both passes say.
 export module aabblab.calibrate;
 
 import aabb.costs;
+import aabb.std;
 import aabblab.statistics;
 
 export namespace aabblab {

@@ -1,13 +1,5 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <map>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 module aabblab.calibrate;
 

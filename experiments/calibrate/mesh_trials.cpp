@@ -1,8 +1,3 @@
-module;
-#include <cstddef>
-#include <string>
-#include <vector>
-
 module aabblab.calibrate;
 
 import :trial;

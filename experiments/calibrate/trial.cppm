@@ -1,15 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// What is played to measure costs.
 module aabblab.calibrate:trial;
 
 import aabb.costs;
+import aabb.std;
 import aabblab.calibrate;
 
 namespace aabblab {

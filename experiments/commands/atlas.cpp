@@ -1,13 +1,9 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
 import aabb.base;
+import aabb.std;
 import aabblab.atlas;
 import aabblab.output;
 import aabblab.record;

@@ -1,16 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-
 #include "command_parser.hpp"
 #include "kept_costs.hpp"
 
 import aabb.base;
 import aabb.costs;
+import aabb.std;
 import aabblab.calibrate;
 import aabblab.configs;
 import aabblab.files;

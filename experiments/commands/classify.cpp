@@ -1,12 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "command_parser.hpp"
 
 import aabb.base;
@@ -14,6 +8,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.inputs;

@@ -1,16 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -20,6 +10,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.configs;
 import aabblab.inputs;
 import aabblab.numbers;

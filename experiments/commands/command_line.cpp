@@ -2,16 +2,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <vector>
-
 import aabb.base;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.output;
 
 namespace aabblab {

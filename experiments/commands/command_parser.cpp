@@ -2,14 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cstddef>
-#include <functional>
-#include <string>
-#include <type_traits>
-#include <utility>
-#include <variant>
-
 import aabb.base;
+import aabb.std;
 
 namespace aabblab {
 

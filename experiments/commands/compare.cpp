@@ -1,14 +1,8 @@
 #include <fmt/format.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "command_parser.hpp"
 
+import aabb.std;
 import aabblab.comparison;
 import aabblab.output;
 import aabblab.record;

@@ -1,12 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -16,6 +10,7 @@ import aabb.base;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
+import aabb.std;
 import aabblab.queries;
 
 namespace aabblab {

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.queries;
 
 namespace aabblab {

@@ -1,10 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -13,6 +9,7 @@
 import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;

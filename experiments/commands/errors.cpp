@@ -1,10 +1,6 @@
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
+import aabb.std;
 import aabblab.configs;
 import aabblab.errors;
 import aabblab.figures;

@@ -1,12 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "command_parser.hpp"
 
 // Import, so they come last.
@@ -20,6 +13,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
+import aabb.std;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.inputs;

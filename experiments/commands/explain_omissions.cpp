@@ -1,13 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 // Imports, so they come last.
 #include "explain_omissions.hpp"
@@ -16,6 +9,7 @@
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.numbers;
 import aabblab.output;
 import aabblab.trials;

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 import aabb.pipeline;
 import aabb.registry;
+import aabb.std;
 import aabblab.trials;
 import aabblab.race;
 import aabblab.results;

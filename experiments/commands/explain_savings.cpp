@@ -1,13 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <iterator>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 // Imports, so they come last.
 #include "explain_omissions.hpp"
 #include "explain_savings.hpp"
@@ -17,6 +9,7 @@ import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.numbers;
 import aabblab.output;
 import aabblab.trials;

@@ -1,12 +1,8 @@
 #include "kept_costs.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <system_error>
-
 import aabb.base;
 import aabb.costs;
+import aabb.std;
 import aabblab.configs;
 import aabblab.machine;
 import aabblab.output;

@@ -2,19 +2,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "command_parser.hpp"
 
 import aabb.base;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabb.validation;
 import aabblab.metrics;
 import aabblab.output;

@@ -1,9 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <optional>
-#include <string>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -12,6 +8,7 @@
 import aabb.base;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <optional>
-#include <string>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -11,6 +8,7 @@
 
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;

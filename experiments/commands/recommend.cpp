@@ -1,10 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -12,6 +7,7 @@
 
 import aabb.base;
 import aabb.costs;
+import aabb.std;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.inputs;

@@ -1,7 +1,6 @@
-#include <string>
-
 #include "command_parser.hpp"
 
+import aabb.std;
 import aabblab.measuring;
 
 namespace aabblab {

@@ -1,11 +1,6 @@
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
+import aabb.std;
 import aabblab.configs;
 import aabblab.output;
 import aabblab.results;

@@ -1,19 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <limits>
-#include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "command_parser.hpp"
 
 import aabb.base;
@@ -21,6 +8,7 @@ import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.inputs;

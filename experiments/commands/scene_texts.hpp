@@ -1,11 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <sstream>
-#include <string>
-#include <vector>
-
+import aabb.std;
 import aabblab.measures;
 import aabblab.output;
 import aabblab.scenes;

@@ -1,9 +1,3 @@
-#include <algorithm>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "command_parser.hpp"
 
 // Imports, so it comes last.
@@ -11,6 +5,7 @@
 
 import aabb.base;
 import aabb.registry;
+import aabb.std;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.output;

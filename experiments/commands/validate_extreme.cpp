@@ -1,10 +1,7 @@
-#include <filesystem>
-#include <optional>
-#include <string>
-
 #include "command_parser.hpp"
 
 import aabb.extreme;
+import aabb.std;
 import aabblab.extreme;
 import aabblab.output;
 import aabblab.suites;

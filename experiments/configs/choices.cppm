@@ -1,13 +1,9 @@
-module;
-#include <functional>
-#include <string>
-#include <vector>
-
 /// Choices of a strategy as configs write them.
 module aabblab.configs:choices;
 
 import :document;
 import aabb.policy;
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,15 +1,3 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <set>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Experiments as config files: which scenes, which compositions and engines, what to measure.
 export module aabblab.configs;
 
@@ -18,6 +6,7 @@ import aabb.extreme;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.metrics;
 import aabblab.results;
 import aabblab.scenes;

@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.configs;
 
 import :document;

@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.configs;
 
 import :choices;

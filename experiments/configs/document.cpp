@@ -1,19 +1,4 @@
 module;
-#include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <numeric>
-#include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "toml.hpp"
 

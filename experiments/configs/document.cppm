@@ -1,19 +1,9 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// A TOML document as plain values that know their line, so that the rest of the config reader is free of TOML.
 module aabblab.configs:document;
 
 import aabb.base;
 import aabb.policy;
+import aabb.std;
 
 namespace aabblab {
 

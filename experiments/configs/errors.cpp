@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <initializer_list>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.configs;
 
 import :document;

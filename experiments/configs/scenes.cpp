@@ -1,17 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.configs;
 
 import :document;

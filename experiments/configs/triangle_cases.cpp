@@ -1,12 +1,3 @@
-module;
-#include <charconv>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.configs;
 
 import :document;

@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
-
 module aabblab.configs;
 
 import aabb.base;

@@ -1,9 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 module aabblab.errors;
 
 import aabb.pipeline;

@@ -1,19 +1,9 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Error against run time: what methods get wrong, and the time that they take for it.
 export module aabblab.errors;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.figures;

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <numeric>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.errors;
 
 import :front;

@@ -1,12 +1,7 @@
-module;
-#include <array>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
-
 /// What the figures of errors share.
 module aabblab.errors:front;
+
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,16 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <functional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.errors;
 
 import :turns;

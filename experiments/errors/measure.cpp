@@ -1,15 +1,5 @@
 module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <iterator>
-#include <memory>
 #include <random>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 module aabblab.errors;
 

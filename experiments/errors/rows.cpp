@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <filesystem>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.errors;
 
 import aabblab.files;

@@ -1,14 +1,8 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-#include <utility>
-#include <vector>
-
 /// Triangle tests that take turns with batches of pairs.
 module aabblab.errors:turns;
 
 import aabb.pipeline;
+import aabb.std;
 import aabblab.statistics;
 import aabblab.stopwatch;
 

@@ -1,10 +1,3 @@
-module;
-#include <set>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.extreme;
 
 import :cells;

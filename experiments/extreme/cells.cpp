@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <cstdint>
-#include <set>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.extreme;
 
 import :cells;

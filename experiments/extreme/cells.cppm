@@ -1,14 +1,8 @@
-module;
-#include <cstdint>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 /// What rows come to in a cell of a table.
 module aabblab.extreme:cells;
 
 import :row;
+import aabb.std;
 import aabblab.tables;
 
 namespace aabblab {

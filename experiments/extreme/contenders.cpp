@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <iterator>
-#include <memory>
-#include <string>
-#include <utility>
-#include <variant>
-#include <vector>
-
 module aabblab.extreme;
 
 import :contenders;

@@ -1,13 +1,9 @@
-module;
-#include <memory>
-#include <string>
-#include <vector>
-
 /// Who plays.
 module aabblab.extreme:contenders;
 
 import aabb.pipeline;
 import aabb.registry;
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,12 +1,8 @@
-module;
-#include <span>
-#include <string>
-#include <vector>
-
 /// Plays extreme scenes, and pairs of triangles known to be hard, through every composition and engine.
 export module aabblab.extreme;
 
 import aabb.extreme;
+import aabb.std;
 import aabblab.tables;
 export import :row;
 

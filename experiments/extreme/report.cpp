@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.extreme;
 
 import aabb.validation;

@@ -1,10 +1,7 @@
-module;
-#include <cstdint>
-#include <string>
-
 export module aabblab.extreme:row;
 
 import aabb.extreme;
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,12 +1,3 @@
-module;
-#include <cstddef>
-#include <functional>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.extreme;
 
 import :contenders;

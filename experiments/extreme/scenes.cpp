@@ -1,12 +1,3 @@
-module;
-#include <array>
-#include <cstddef>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.extreme;
 
 import aabb.geometry;

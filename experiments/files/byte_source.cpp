@@ -5,13 +5,7 @@ module;
 #include <sys/vfs.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <chrono>
-#include <cstddef>
-#include <filesystem>
-#include <string>
-#include <thread>
 
 module aabblab.files;
 

@@ -1,11 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-
 /// Bytes of a file, a pipe or a device as they come.
 module aabblab.files:byte_source;
+
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,8 +1,6 @@
-module;
-#include <cstddef>
-#include <string_view>
-
 export module aabblab.files:comment;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,10 +1,5 @@
 module;
 #include <cerrno>
-#include <cstddef>
-#include <cstdio>
-#include <filesystem>
-#include <string>
-#include <system_error>
 
 module aabblab.files;
 
@@ -17,7 +12,7 @@ std::size_t size_of_file(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (status.type() == std::filesystem::file_type::not_found) refuse(file, "no such file");
-    if (!status_known(status)) refuse(file, "cannot be read: " + error.message());
+    if (status.type() == std::filesystem::file_type::none) refuse(file, "cannot be read: " + error.message());
     if (is_directory(status)) refuse(file, "is a folder, not a file");
     if (!is_regular_file(status)) refuse(file, "is not a regular file");
     const auto size = std::filesystem::file_size(file, error);

@@ -1,18 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
-
 /// A whole file in memory, and how its words are quoted to the user.
 module aabblab.files:file_text;
 
 import aabb.base;
+import aabb.std;
 import :text_decoder;
 
 namespace aabblab {

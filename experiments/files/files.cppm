@@ -1,20 +1,10 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Files of the user: meshes, recordings of boxes, pairs. Everything wrong with one is an input_error whose sentence
 /// names the file, the line where there is one, and what was expected.
 export module aabblab.files;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 export import :comment;
 export import :loaded_mesh;
 

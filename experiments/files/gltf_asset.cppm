@@ -1,16 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 /// What a glTF 2.0 file says about its meshes, as plain numbers: which indices are in range and which bytes are there
 /// is checked where they are used. (Khronos Group, "glTF 2.0 Specification", 2021.)
 module aabblab.files:gltf_asset;
 
+import aabb.std;
 import :file_text;
 
 namespace aabblab {

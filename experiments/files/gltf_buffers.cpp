@@ -1,11 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-
 module aabblab.files;
 
 import aabb.base;

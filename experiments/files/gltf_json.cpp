@@ -1,14 +1,5 @@
 module;
 #include <Eigen/Geometry>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 module aabblab.files;
 

@@ -1,11 +1,3 @@
-module;
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-
 module aabblab.files;
 
 import :file_text;

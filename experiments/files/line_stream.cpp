@@ -1,12 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
-
 module aabblab.files;
 
 import :byte_source;

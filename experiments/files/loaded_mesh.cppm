@@ -1,12 +1,7 @@
-module;
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 export module aabblab.files:loaded_mesh;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

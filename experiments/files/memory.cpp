@@ -2,9 +2,6 @@ module;
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
-#include <string>
-
 module aabblab.files;
 
 import aabb.base;

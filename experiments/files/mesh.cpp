@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <cctype>
-#include <cstddef>
-#include <cstdio>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.files;
 
 import aabb.base;

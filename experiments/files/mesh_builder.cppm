@@ -1,19 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// A mesh as its file brings it: vertices, faces of any number of corners, and what became of them.
 module aabblab.files:mesh_builder;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 import :file_text;
 import :loaded_mesh;
 import :polygon;

@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <limits>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.files;
 
 import :file_text;

@@ -1,12 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.files;
 
 import aabb.base;

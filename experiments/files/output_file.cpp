@@ -2,15 +2,8 @@ module;
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <system_error>
 
 module aabblab.files;
 
@@ -75,7 +68,7 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     // The file gets its name when all work is done, which is late to hear that the name is too long.
-    if (!status_known(status)) state_->refuse(error.message());
+    if (status.type() == std::filesystem::file_type::none) state_->refuse(error.message());
     if (is_directory(status)) state_->refuse("it is a folder");
     if (exists(status) && !is_regular_file(status)) {
         state_->in_place = true;

@@ -1,17 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// The header of a PLY file: which elements follow, with which properties.
 module aabblab.files:ply_header;
 
+import aabb.std;
 import :file_text;
 import :scalar;
 import :text_scanner;

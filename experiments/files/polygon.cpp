@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 module aabblab.files;
 
 import :polygon;

@@ -1,14 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 /// Polygons become triangles. Every decision is exact, on the coordinates as they stand in the mesh.
 module aabblab.files:polygon;
 
 import aabb.geometry;
+import aabb.std;
 
 namespace aabblab {
 

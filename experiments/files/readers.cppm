@@ -1,12 +1,7 @@
-module;
-#include <cstddef>
-#include <filesystem>
-#include <optional>
-#include <string_view>
-
 /// The readers, one a format.
 module aabblab.files:readers;
 
+import aabb.std;
 import :file_text;
 import :loaded_mesh;
 

@@ -1,15 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <string_view>
-
 /// Numbers as bytes, on a machine that is little-endian (`gltf_parts.cpp`).
 module aabblab.files:scalar;
+
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,12 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-
 /// Text as programs of many systems write it, made UTF-8 with line feeds at the ends of lines.
 module aabblab.files:text_decoder;
+
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,19 +1,9 @@
-module;
-#include <charconv>
-#include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <string>
-#include <string_view>
-#include <system_error>
-
 /// Words of a text file, line by line; numbers in them; errors with the file and the line.
 module aabblab.files:text_scanner;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 import :comment;
 import :file_text;
 

@@ -1,16 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// What the user gives a command: numbers, poses, meshes and scenes. Everything wrong with it is an aabb::input_error.
 export module aabblab.inputs;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.scenes;
 
 export namespace aabblab {

@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <system_error>
-#include <utility>
-#include <vector>
-
 module aabblab.inputs;
 
 import aabb.base;

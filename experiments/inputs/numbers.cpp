@@ -1,16 +1,3 @@
-module;
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <string>
-#include <string_view>
-#include <system_error>
-#include <vector>
-
 module aabblab.inputs;
 
 import aabb.base;

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <system_error>
-#include <vector>
-
 module aabblab.inputs;
 
 import aabb.base;

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <vector>
-
 module aabblab.measures;
 
 import aabb.prepare.mean_extent;

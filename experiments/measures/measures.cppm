@@ -1,16 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// What a scene is like: numbers that decide which composition serves it.
 export module aabblab.measures;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.trials;
 import aabblab.scenes;
 

@@ -1,7 +1,4 @@
 module;
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "page_css.hpp"
 

@@ -1,10 +1,7 @@
-module;
-#include <string>
-#include <string_view>
-
 /// Reports, as one page of HTML that needs no other file, light or dark as its reader has it, and as Markdown.
 export module aabblab.page;
 
+import aabb.std;
 import aabblab.figures;
 import aabblab.tables;
 

@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-
 module aabblab.queries;
 
 import aabblab.digits;

@@ -2,11 +2,6 @@ module;
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
-
 module aabblab.queries;
 
 import aabb.base;

@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <iterator>
-#include <numeric>
-#include <span>
-#include <vector>
-
 module aabblab.queries;
 
 import :neighbours;

@@ -1,12 +1,8 @@
-module;
-#include <cstdint>
-#include <functional>
-#include <span>
-
 /// Pairs of triangles of a mesh that share a vertex.
 module aabblab.queries:neighbours;
 
 import aabb.geometry;
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,13 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <numeric>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// What users ask of both stages or of one: every pair of boxes or triangles in the frames of a scene, or of two meshes
 /// at poses, with its digest, its times and its rows.
 export module aabblab.queries;
@@ -17,6 +7,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
+import aabb.std;
 import aabblab.configs;
 import aabblab.inputs;
 import aabblab.pair_output;

@@ -1,14 +1,8 @@
-module;
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 /// Who is the fastest in a scene, without playing it through with everybody: those who are far behind after some frames
 /// play no more.
 export module aabblab.race;
 
+import aabb.std;
 import aabblab.trials;
 import aabblab.scenes;
 import aabblab.statistics;

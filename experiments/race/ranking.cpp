@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 module aabblab.race;
 
 namespace aabblab {

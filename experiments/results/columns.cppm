@@ -1,24 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <type_traits>
-#include <vector>
-
 /// Tables of rows of one type. Its columns are told once, by a function that calls `field(name, member)` for each, and
 /// are written and read by that.
 export module aabblab.results:columns;
 
 import aabb.base;
+import aabb.std;
 import aabblab.files;
 import :csv;
 

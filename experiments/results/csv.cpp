@@ -1,11 +1,3 @@
-module;
-#include <cstddef>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.results;
 
 import aabb.base;

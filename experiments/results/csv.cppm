@@ -1,13 +1,8 @@
-module;
-#include <cstddef>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Comma-separated values as RFC 4180 says, except that lines end in a line feed alone: a field with a comma, a quote
 /// or the end of a line stands in quotes, and a quote in it is doubled.
 export module aabblab.results:csv;
+
+import aabb.std;
 
 export namespace aabblab {
 

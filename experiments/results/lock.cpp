@@ -4,8 +4,6 @@ module;
 #include <unistd.h>
 
 #include <cerrno>
-#include <filesystem>
-#include <system_error>
 
 module aabblab.results;
 

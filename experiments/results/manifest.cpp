@@ -4,17 +4,6 @@ module;
 
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <ctime>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "commit.hpp"
 
 module aabblab.results;

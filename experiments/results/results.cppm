@@ -1,24 +1,9 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <optional>
-#include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// Results of an experiment in a folder: results.csv, manifest.json, differences.csv.
 export module aabblab.results;
 
 import aabb.counters;
 import aabb.registry;
+import aabb.std;
 import aabblab.scenes;
 export import :columns;
 export import :csv;

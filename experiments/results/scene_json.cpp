@@ -1,9 +1,6 @@
 module;
 #include <nlohmann/json.hpp>
 
-#include <string>
-#include <vector>
-
 module aabblab.results;
 
 import aabb.policy;

@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <string>
-#include <tuple>
-#include <vector>
-
 module aabblab.results;
 
 import aabb.base;

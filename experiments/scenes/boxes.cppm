@@ -1,13 +1,5 @@
 module;
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <vector>
 
 /// What the kinds of scenes of boxes share.
 module aabblab.scenes:boxes;
@@ -15,6 +7,7 @@ module aabblab.scenes:boxes;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 import :drift;
 import :parameters;

@@ -1,13 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 /// Points that drift, and roots that are the same everywhere.
 module aabblab.scenes:drift;
 
+import aabb.std;
 import :random;
 
 namespace aabblab {

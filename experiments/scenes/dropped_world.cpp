@@ -1,11 +1,5 @@
 module;
 #include <Eigen/Core>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numbers>
-#include <utility>
-#include <vector>
 
 module aabblab.scenes;
 

@@ -1,10 +1,7 @@
-module;
-#include <cstdint>
-#include <vector>
-
 export module aabblab.scenes:dropped_world;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.stepping;
 
 export namespace aabblab {

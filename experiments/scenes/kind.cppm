@@ -1,15 +1,3 @@
-module;
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// What makes a class a kind of scene. It has a name, a summary and parameters like a strategy, and is made from its
 /// configuration and a seed (a scene of boxes), or from its configuration, meshes and a seed (a scene of meshes). A
 /// kind that plays a file has no seed: it opens what its configuration names as `file`.
@@ -18,6 +6,7 @@ module aabblab.scenes:kind;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 import :scene_choice;
 

@@ -1,17 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdlib>
-#include <filesystem>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <system_error>
-#include <utility>
-#include <vector>
-
 module aabblab.scenes;
 
 import aabb.base;

@@ -1,13 +1,8 @@
-module;
-#include <array>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-
 /// Parameters that several kinds of scenes have.
 module aabblab.scenes:parameters;
 
 import aabb.policy;
+import aabb.std;
 
 namespace aabblab {
 

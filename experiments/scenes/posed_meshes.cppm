@@ -1,14 +1,9 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 /// What the kinds of scenes of meshes share.
 module aabblab.scenes:posed_meshes;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import :parameters;
 import :rotation;
 

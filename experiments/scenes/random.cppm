@@ -1,12 +1,12 @@
 module;
 #include <Eigen/Core>
-#include <cstdint>
 #include <random>
 
 /// Random numbers that are the same with every compiler and on every machine: the standard fixes the engine, not its
 /// distributions, and of functions only the square root is rounded alike everywhere.
 module aabblab.scenes:random;
 
+import aabb.std;
 import aabblab.vectors;
 
 namespace aabblab {

@@ -1,6 +1,5 @@
 module;
 #include <Eigen/Geometry>
-#include <cmath>
 
 /// Rotations in double, and what places a mesh with one. Products are written out where Eigen's round as the processor
 /// likes: quaternions, and matrices with vectors.
@@ -8,6 +7,7 @@ module aabblab.scenes:rotation;
 
 import aabb.eigen;
 import aabb.geometry;
+import aabb.std;
 import aabblab.vectors;
 import :random;
 

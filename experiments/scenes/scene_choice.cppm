@@ -1,15 +1,7 @@
-module;
-#include <compare>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <tuple>
-#include <vector>
-
 export module aabblab.scenes:scene_choice;
 
 import aabb.policy;
+import aabb.std;
 
 export namespace aabblab {
 

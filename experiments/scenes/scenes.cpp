@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.scenes;
 
 import aabb.base;

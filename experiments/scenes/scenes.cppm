@@ -1,17 +1,9 @@
-module;
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Scenes by name: boxes or meshes that move, the same for the same seed on every machine, or as a file says.
 export module aabblab.scenes;
 
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 export import :dropped_world;
 export import :pair_classes;

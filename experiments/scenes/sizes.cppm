@@ -1,12 +1,7 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 /// Sizes of boxes that are the same everywhere.
 module aabblab.scenes:sizes;
+
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,6 +1,3 @@
-module;
-#include <cstddef>
-
 module aabblab.scenes;
 
 import aabb.geometry;

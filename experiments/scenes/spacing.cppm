@@ -1,9 +1,7 @@
-module;
-#include <cstddef>
-
 export module aabblab.scenes:spacing;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,11 +1,7 @@
-module;
-#include <array>
-#include <cstdint>
-#include <limits>
-
 export module aabblab.stepping:body;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

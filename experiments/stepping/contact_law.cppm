@@ -1,10 +1,7 @@
-module;
-#include <cstdint>
-#include <span>
-
 export module aabblab.stepping:contact_law;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

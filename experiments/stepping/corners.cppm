@@ -1,10 +1,9 @@
 module;
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
 
 module aabblab.stepping:corners;
 
+import aabb.std;
 import aabblab.vectors;
 import :contact_law;
 

@@ -1,12 +1,5 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <span>
-#include <vector>
 
 module aabblab.stepping;
 

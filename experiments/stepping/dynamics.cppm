@@ -1,12 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 export module aabblab.stepping:dynamics;
 
 import aabb.geometry;
+import aabb.std;
 import :body;
 import :contact_law;
 

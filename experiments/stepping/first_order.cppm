@@ -1,14 +1,9 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <functional>
-#include <vector>
-
 /// The same motion as a system of first order, twice as large: ways since some moment, then velocities. Ways, since a
 /// contact's depth can be a billionth of a position, and solvers change each value by a share of it to see what
 /// follows.
 module aabblab.stepping:first_order;
 
+import aabb.std;
 import :dynamics;
 import :integrator;
 

@@ -1,12 +1,6 @@
-module;
-#include <functional>
-#include <memory>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabblab.stepping:integrator;
 
+import aabb.std;
 import :dynamics;
 
 export namespace aabblab {

@@ -1,10 +1,5 @@
 module;
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 module aabblab.stepping;
 

@@ -1,6 +1,3 @@
-module;
-#include <vector>
-
 module aabblab.stiff;
 
 import :ball_world;

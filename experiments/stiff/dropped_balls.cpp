@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <numeric>
-#include <span>
-#include <vector>
-
 module aabblab.stiff;
 
 import :dropped_balls;

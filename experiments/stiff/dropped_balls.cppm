@@ -1,10 +1,7 @@
-module;
-#include <cstddef>
-#include <vector>
-
 /// Balls that fall in a lattice on a floor, with whoever finds their contacts.
 module aabblab.stiff:dropped_balls;
 
+import aabb.std;
 import aabblab.trials;
 import aabblab.stepping;
 import :simulation;

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.stiff;
 
 import :method;

@@ -1,11 +1,7 @@
-module;
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Compositions and engines whose effect on a trajectory is told.
 module aabblab.stiff:method;
 
+import aabb.std;
 import aabblab.trials;
 
 namespace aabblab {

@@ -1,7 +1,3 @@
-module;
-#include <cmath>
-#include <numbers>
-
 module aabblab.stiff;
 
 import :oscillator;

@@ -1,12 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cmath>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <utility>
-
 module aabblab.stiff;
 
 import :rules;

@@ -1,11 +1,7 @@
-module;
-#include <functional>
-#include <string>
-#include <string_view>
-
 /// Rules that verdicts follow.
 module aabblab.stiff:rules;
 
+import aabb.std;
 import :study;
 
 namespace aabblab {

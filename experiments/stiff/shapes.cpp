@@ -1,8 +1,3 @@
-module;
-#include <array>
-#include <cstdint>
-#include <string>
-
 module aabblab.stiff;
 
 import :shapes;

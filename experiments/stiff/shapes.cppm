@@ -1,10 +1,8 @@
-module;
-#include <cstdint>
-
 /// Meshes whose contacts have closed forms.
 module aabblab.stiff:shapes;
 
 import aabb.geometry;
+import aabb.std;
 
 namespace aabblab {
 

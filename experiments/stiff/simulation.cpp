@@ -1,12 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
-
 module aabblab.stiff;
 
 import :simulation;

@@ -1,13 +1,8 @@
-module;
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
-
 module aabblab.stiff:simulation;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import aabblab.trials;
 import aabblab.stepping;
 

@@ -1,9 +1,7 @@
-module;
-#include <span>
-
 /// The stiff suite: bodies stepped in time through detection, held against closed forms and published results.
 export module aabblab.stiff;
 
+import aabb.std;
 import aabblab.trials;
 export import :study;
 

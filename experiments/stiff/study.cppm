@@ -1,11 +1,6 @@
-module;
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 export module aabblab.stiff:study;
 
+import aabb.std;
 import aabblab.figures;
 import aabblab.trials;
 

@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <array>
-#include <filesystem>
-#include <iterator>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.suites;
 
 import aabblab.output;

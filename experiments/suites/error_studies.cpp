@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <iterator>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.suites;
 
 import aabblab.errors;

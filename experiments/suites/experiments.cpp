@@ -2,18 +2,7 @@ module;
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
-#include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <optional>
-#include <set>
-#include <span>
-#include <string>
-#include <system_error>
-#include <vector>
 
 module aabblab.suites;
 

@@ -1,9 +1,3 @@
-module;
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.suites;
 
 import aabb.extreme;

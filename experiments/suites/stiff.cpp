@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <iterator>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.suites;
 
 import aabb.base;

@@ -1,14 +1,6 @@
 module;
 #include <nlohmann/json.hpp>
 
-#include <cstddef>
-#include <filesystem>
-#include <limits>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.suites;
 
 import aabb.base;

@@ -1,13 +1,8 @@
-module;
-#include <cstddef>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 /// What is played into a folder, told on the way and kept: experiments, studies of errors, the atlas, the suites of
 /// `validate`.
 export module aabblab.suites;
 
+import aabb.std;
 import aabblab.atlas;
 import aabblab.configs;
 import aabblab.figures;

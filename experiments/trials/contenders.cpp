@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <memory>
-#include <optional>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.trials;
 
 import :external;
@@ -93,7 +84,7 @@ contender contender_of(const external_engine& engine, const std::shared_ptr<exch
     contender who;
     who.name.engine = engine.name;
     who.exact = who.exact_boxes = engine.exact;
-    const auto told = std::make_shared<std::vector<told_times>>();
+    const std::shared_ptr told = std::make_unique<std::vector<told_times>>();
     who.told = told;
     who.make_global = [engine, exchange, told](aabb::instrumentation) {
         return std::make_unique<external_search>(engine, *exchange, *told);
@@ -123,7 +114,7 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
         if (std::optional<contender> who = contender_of(*engine, meshes)) all.push_back(*std::move(who));
     }
     if (meshes) return all;
-    const auto exchange = std::make_shared<exchange_folder>(scene);
+    const std::shared_ptr exchange = std::make_unique<exchange_folder>(scene);
     for (const external_engine& engine : e.externals) all.push_back(contender_of(engine, exchange));
     return all;
 }

@@ -2,23 +2,7 @@ module;
 #include <stdlib.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <chrono>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <system_error>
-#include <utility>
-#include <vector>
 
 module aabblab.trials;
 

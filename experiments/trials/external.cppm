@@ -1,21 +1,10 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// External engines: programs of others that read a recording, and write what they found and how long they took.
 module aabblab.trials:external;
 
 import aabb.counters;
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.processes;

@@ -5,18 +5,7 @@ module;
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <algorithm>
-#include <array>
 #include <cerrno>
-#include <chrono>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <limits>
-#include <new>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 
 module aabblab.trials;
 

@@ -1,11 +1,7 @@
-module;
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-
 /// Work that may take too long or too much memory.
 export module aabblab.trials:isolation;
+
+import aabb.std;
 
 export namespace aabblab {
 

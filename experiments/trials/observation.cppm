@@ -1,16 +1,9 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
-
 /// One trial: who plays a scene, how it is asked, and what is seen of that.
 export module aabblab.trials:observation;
 
 import aabb.counters;
 import aabb.pipeline;
+import aabb.std;
 import aabblab.configs;
 import aabblab.scenes;
 import aabblab.stopwatch;

@@ -1,14 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// Scenes and those who play them.
 export module aabblab.trials:player;
 
@@ -17,6 +6,7 @@ import aabb.counters;
 import aabb.digest;
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.stopwatch;

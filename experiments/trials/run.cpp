@@ -1,13 +1,5 @@
 module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
 #include <random>
-#include <span>
-#include <string>
-#include <vector>
 
 module aabblab.trials;
 

@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <chrono>
-#include <cstddef>
-#include <functional>
-#include <sstream>
-#include <string>
-#include <string_view>
-
 module aabblab.trials;
 
 import aabb.pipeline;

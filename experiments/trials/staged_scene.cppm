@@ -1,12 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-
 /// Trials in copies of this process, which may take too long or too much memory.
 export module aabblab.trials:staged_scene;
 
+import aabb.std;
 import aabblab.scenes;
 import :isolation;
 import :observation;

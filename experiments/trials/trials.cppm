@@ -1,13 +1,3 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// Everything that is tried: who plays which scene, what is asked and what is seen of that; exact or not, in turn, in a
 /// copy of this process where it may take too long, and into a folder that can be resumed.
 export module aabblab.trials;
@@ -16,6 +6,7 @@ import aabb.counters;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
+import aabb.std;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.results;

@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <numeric>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 module aabblab.trials;
 
 import aabblab.progress;

@@ -1,16 +1,7 @@
-module;
-#include <algorithm>
-#include <chrono>
-#include <cstddef>
-#include <functional>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 /// Who plays when, and for how long.
 export module aabblab.trials:turns;
 
+import aabb.std;
 import :observation;
 import :player;
 import :staged_scene;

@@ -1,9 +1,9 @@
 module;
 #include <cassert>
-#include <cstddef>
-#include <vector>
 
 export module aabb.base:append_whole;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -2,6 +2,8 @@
 /// and the arithmetic that answers need.
 export module aabb.base;
 
+import aabb.std;
+
 export import :append_whole;
 export import :error;
 export import :floating_point;

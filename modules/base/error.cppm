@@ -1,8 +1,6 @@
-module;
-#include <stdexcept>
-#include <string>
-
 export module aabb.base:error;
+
+import aabb.std;
 
 export namespace aabb {
 

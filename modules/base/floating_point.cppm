@@ -2,11 +2,12 @@ module;
 #if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__
 #error "aabblab needs the arithmetic of IEEE 754: compile without -ffast-math, -Ofast or -ffinite-math-only"
 #endif
-#include <limits>
 
 /// What answers may assume of floating-point arithmetic. Interfaces are compiled with the options of whoever imports
 /// them, so a file whose results hang on every rounding says itself that sums and products stay as they are written.
 export module aabb.base:floating_point;
+
+import aabb.std;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 

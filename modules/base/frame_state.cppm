@@ -1,10 +1,9 @@
 module;
 #include <cassert>
-#include <cstdint>
-#include <utility>
 
 export module aabb.base:frame_state;
 
+import aabb.std;
 import :error;
 
 export namespace aabb {

@@ -1,8 +1,5 @@
 module;
 #include <oneapi/tbb/scalable_allocator.h>
-#include <cstddef>
-#include <cstdlib>
-#include <new>
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif

@@ -1,12 +1,9 @@
 module;
-#include <cstddef>
-#include <memory>
 #include <new>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 export module aabb.base:large_pages;
+
+import aabb.std;
 
 namespace aabb::detail {
 

@@ -1,8 +1,6 @@
-module;
-#include <cstddef>
-#include <vector>
-
 export module aabb.base:memory;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,10 +1,6 @@
-module;
-#include <array>
-#include <charconv>
-#include <concepts>
-#include <string>
-
 export module aabb.base:shortest;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,13 +1,6 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-
 export module aabb.base:statement;
 
+import aabb.std;
 import :shortest;
 
 export namespace aabb {

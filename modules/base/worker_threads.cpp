@@ -5,9 +5,6 @@ module;
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
-#include <algorithm>
-#include <cstddef>
-#include <memory>
 
 module aabb.base;
 

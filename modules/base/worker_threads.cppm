@@ -1,9 +1,6 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-
 export module aabb.base:worker_threads;
+
+import aabb.std;
 
 export namespace aabb {
 

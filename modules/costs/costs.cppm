@@ -1,10 +1,8 @@
-module;
-#include <array>
-#include <string_view>
-
 /// What elementary work takes on the machine at hand. Strategies hold ways to the same answer against each other by it;
 /// which way they take changes how long the answer takes, never the answer.
 export module aabb.costs;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,11 +1,6 @@
-module;
-#include <array>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-
 export module aabb.counters;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -2,16 +2,7 @@ module;
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <memory>
-#include <span>
-#include <string>
 
 module aabb.digest;
 

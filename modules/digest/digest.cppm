@@ -1,12 +1,7 @@
-module;
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-
 export module aabb.digest;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

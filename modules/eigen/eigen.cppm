@@ -1,10 +1,3 @@
-module;
-#include <array>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 /// Poses, points, boxes and meshes to and from Eigen. No type of Eigen's is named here: how those are aligned and how
 /// wide their vectors are follows from the options of whoever includes them, and a module file that held them would ask
 /// these options of everybody who imports it. So it asks for no alignment, and who does not use Eigen needs none.
@@ -12,6 +5,7 @@ export module aabb.eigen;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,7 @@
-module;
-#include <algorithm>
-#include <limits>
-#include <span>
-#include <string>
-
 export module aabb.geometry:box;
 
 import aabb.base;
+import aabb.std;
 import :triangle;
 import :vec3;
 

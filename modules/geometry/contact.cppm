@@ -1,8 +1,6 @@
-module;
-#include <compare>
-#include <cstdint>
-
 export module aabb.geometry:contact;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,6 +1,8 @@
 /// Points, triangles, boxes, meshes and poses, and what is decided by their coordinates alone.
 export module aabb.geometry;
 
+import aabb.std;
+
 export import :box;
 export import :contact;
 export import :index_pair;

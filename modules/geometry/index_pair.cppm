@@ -1,8 +1,6 @@
-module;
-#include <compare>
-#include <cstdint>
-
 export module aabb.geometry:index_pair;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,6 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string_view>
-
 export module aabb.geometry:intersection;
 
+import aabb.std;
 import :pose;
 import :vec3;
 

@@ -1,9 +1,7 @@
-module;
-#include <cstdint>
-
 /// Three numbers at a time, in whatever vectors the processor has.
 export module aabb.geometry:lanes;
 
+import aabb.std;
 import :triangle;
 import :vec3;
 

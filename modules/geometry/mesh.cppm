@@ -1,14 +1,7 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 export module aabb.geometry:mesh;
 
 import aabb.base;
+import aabb.std;
 import :box;
 import :triangle;
 import :vec3;

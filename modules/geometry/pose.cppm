@@ -1,14 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-
 export module aabb.geometry:pose;
 
 import aabb.base;
+import aabb.std;
 import :box;
 import :triangle;
 import :vec3;

@@ -1,12 +1,5 @@
 module;
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <initializer_list>
 
 module aabb.geometry;
 

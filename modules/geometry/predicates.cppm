@@ -1,12 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <limits>
-
 /// Signs of orientations of points, exact for any finite doubles: −0, denormals, the largest and the smallest together;
 /// in the arithmetic that `require_ieee_arithmetic` accepts.
 export module aabb.geometry:predicates;
 
+import aabb.std;
 import :lanes;
 import :triangle;
 import :vec3;

@@ -1,10 +1,6 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 export module aabb.geometry:triangle_box;
 
+import aabb.std;
 import :box;
 import :triangle;
 import :vec3;

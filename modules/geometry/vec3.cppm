@@ -1,7 +1,6 @@
-module;
-#include <cmath>
-
 export module aabb.geometry:vec3;
+
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,12 +1,5 @@
 module;
 #include <cassert>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 export module aabb.global_search;
 
@@ -26,6 +19,7 @@ import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,17 +1,12 @@
 module;
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 export module aabb.global_search:interval_ends;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
+import aabb.std;
 import :pair_set;
 
 // What sweeps share that keep the overlapping pairs between frames and follow the swaps of a sort.

@@ -1,14 +1,10 @@
 module;
-#include <algorithm>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 export module aabb.global_search:inversions;
 
 import aabb.base;
+import aabb.std;
 import :projection;
 
 export namespace aabb {

@@ -1,13 +1,7 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 export module aabb.global_search:membership;
 
 import aabb.base;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,17 +1,11 @@
 module;
-#include <algorithm>
-#include <bit>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
 
 export module aabb.global_search:pair_set;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,8 @@
-module;
-#include <concepts>
-#include <cstdint>
-#include <span>
-
 export module aabb.global_search:partition_policy;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :membership;
 import :projection;
 

@@ -1,12 +1,7 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 export module aabb.global_search:projection;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,19 +1,12 @@
 module;
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <type_traits>
-#include <vector>
 
 export module aabb.global_search:projection_lists;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
+import aabb.std;
 import :inversions;
 import :membership;
 import :projection;

@@ -1,11 +1,8 @@
-module;
-#include <concepts>
-#include <span>
-
 export module aabb.global_search:sort_policy;
 
 import aabb.counters;
 import aabb.policy;
+import aabb.std;
 import :projection;
 
 export namespace aabb {

@@ -1,13 +1,7 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 export module aabb.global_search:spread;
 
 import aabb.geometry;
+import aabb.std;
 import :membership;
 import :projection;
 

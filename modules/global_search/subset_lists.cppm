@@ -1,18 +1,12 @@
 module;
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
 
 export module aabb.global_search:subset_lists;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
+import aabb.std;
 import :partition_policy;
 import :projection;
 

@@ -1,14 +1,9 @@
-module;
-#include <concepts>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.global_search:sweep_policy;
 
 import aabb.counters;
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :membership;
 import :partition_policy;
 import :projection;

@@ -1,16 +1,9 @@
-module;
-#include <array>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 export module aabb.local_detection:build_policy;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

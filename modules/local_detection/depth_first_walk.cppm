@@ -1,16 +1,12 @@
 module;
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 export module aabb.local_detection:depth_first_walk;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
+import aabb.std;
 import :model;
 import :tree_policy;
 import :triangle_policy;

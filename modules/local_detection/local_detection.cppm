@@ -1,12 +1,3 @@
-module;
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.local_detection;
 
 export import :build_policy;
@@ -21,6 +12,7 @@ import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 
 namespace aabb::detail {
 

@@ -1,13 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 export module aabb.local_detection:model;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 import :build_policy;
 import :mesh_fit;
 import :tree_policy;

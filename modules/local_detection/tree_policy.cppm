@@ -1,15 +1,8 @@
-module;
-#include <array>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 export module aabb.local_detection:tree_policy;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :build_policy;
 
 export namespace aabb {

@@ -1,14 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 export module aabb.local_detection:tree_survey;
 
 import aabb.geometry;
+import aabb.std;
 import :tree_policy;
 
 export namespace aabb {

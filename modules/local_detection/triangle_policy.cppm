@@ -1,10 +1,8 @@
-module;
-#include <concepts>
-
 export module aabb.local_detection:triangle_policy;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

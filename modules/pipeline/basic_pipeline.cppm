@@ -1,21 +1,11 @@
 module;
-#include <algorithm>
 #include <cassert>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 export module aabb.pipeline:basic_pipeline;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 import :posed_boxes;
 import :scene;
 import :scene_parts;

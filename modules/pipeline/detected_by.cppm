@@ -1,17 +1,9 @@
-module;
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:detected_by;
 
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import :mesh_detection;
 import :stage;
 

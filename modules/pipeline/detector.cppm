@@ -1,15 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:detector;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 import :basic_pipeline;
 import :scene;
 import :searched_by;

@@ -1,18 +1,10 @@
-module;
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <optional>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:mesh_detection;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import :stage;
 
 export namespace aabb {

@@ -1,5 +1,7 @@
 export module aabb.pipeline;
 
+import aabb.std;
+
 export import :basic_pipeline;
 export import :detected_by;
 export import :detector;

@@ -1,10 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabb.pipeline;
 
 import aabb.base;

@@ -1,11 +1,7 @@
-module;
-#include <cstddef>
-#include <span>
-#include <vector>
-
 export module aabb.pipeline:posed_boxes;
 
 import aabb.geometry;
+import aabb.std;
 import :scene;
 
 export namespace aabb {

@@ -1,15 +1,8 @@
-module;
-#include <concepts>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:prepared_search;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :scene;
 import :scene_parts;
 import :searched_by;

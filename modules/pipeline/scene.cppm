@@ -1,15 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:scene;
 
 import aabb.base;
 import aabb.geometry;
+import aabb.std;
 
 // What happens in a scene, frame by frame; a scene is played once, from frame 0 to the last, so only one frame is held.
 // Whoever searches its frames tells it what was found, so that what happens next may depend on it.

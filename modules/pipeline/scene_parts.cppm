@@ -1,13 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:scene_parts;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

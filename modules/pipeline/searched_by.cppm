@@ -1,17 +1,9 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 export module aabb.pipeline:searched_by;
 
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 import :stage;
 
 export namespace aabb {

@@ -1,20 +1,10 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 export module aabb.pipeline:stage;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import :scene;
 import :scene_parts;
 

@@ -1,16 +1,12 @@
 module;
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <utility>
 
 export module aabb.pipeline:tested_by;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import :stage;
 
 export namespace aabb {

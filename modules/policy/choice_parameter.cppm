@@ -1,13 +1,9 @@
 module;
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <string>
-#include <string_view>
 
 export module aabb.policy:choice_parameter;
 
+import aabb.std;
 import :parameter_values;
 
 export namespace aabb {

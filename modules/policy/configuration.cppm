@@ -1,14 +1,7 @@
-module;
-#include <concepts>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.policy:configuration;
 
 import aabb.base;
+import aabb.std;
 import :nearest_name;
 import :parameter_values;
 import :strategy;

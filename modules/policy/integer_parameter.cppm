@@ -1,13 +1,6 @@
-module;
-#include <charconv>
-#include <concepts>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <system_error>
-
 export module aabb.policy:integer_parameter;
 
+import aabb.std;
 import :parameter_values;
 
 export namespace aabb {

@@ -1,13 +1,6 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 export module aabb.policy:nearest_name;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,16 +1,7 @@
-module;
-#include <array>
-#include <charconv>
-#include <concepts>
-#include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <system_error>
-
 export module aabb.policy:number_parameter;
 
 import aabb.base;
+import aabb.std;
 import :parameter_values;
 
 export namespace aabb {

@@ -1,13 +1,7 @@
-module;
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <variant>
-#include <vector>
-
 export module aabb.policy:parameter_values;
 
 import aabb.base;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,9 +1,6 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <string_view>
-
 export module aabb.policy:refusal;
+
+import aabb.std;
 
 namespace aabb::detail {
 

@@ -1,13 +1,8 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 export module aabb.policy:scene_outlook;
 
 import aabb.base;
 import aabb.costs;
+import aabb.std;
 import :strategy_choice;
 
 export namespace aabb {

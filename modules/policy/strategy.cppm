@@ -1,8 +1,6 @@
-module;
-#include <concepts>
-#include <string_view>
-
 export module aabb.policy:strategy;
+
+import aabb.std;
 
 export namespace aabb {
 

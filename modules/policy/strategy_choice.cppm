@@ -1,13 +1,7 @@
-module;
-#include <compare>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 export module aabb.policy:strategy_choice;
 
 import aabb.base;
+import aabb.std;
 
 export namespace aabb {
 

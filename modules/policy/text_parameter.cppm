@@ -1,9 +1,6 @@
-module;
-#include <string>
-#include <string_view>
-
 export module aabb.policy:text_parameter;
 
+import aabb.std;
 import :parameter_values;
 
 export namespace aabb {

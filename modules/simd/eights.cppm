@@ -1,11 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-
 /// Eight numbers at a time, whatever a register of the processor takes: for what comes in eights by its nature, such as
 /// the children of a node.
 export module aabb.simd:eights;
+
+import aabb.std;
 
 export namespace aabb::simd {
 

@@ -1,10 +1,4 @@
 module;
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <type_traits>
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -13,6 +7,7 @@ module;
 /// is said in vectors of the compiler; intrinsics stand only where it has no word for what the processor can do.
 export module aabb.simd:lanes;
 
+import aabb.std;
 import :width;
 
 // Intrinsics of either width, whichever is used: vectors are handed over in memory, which leaves no trace when

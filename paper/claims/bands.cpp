@@ -1,12 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <array>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

@@ -1,6 +1,3 @@
-module;
-#include <string>
-
 module aabblab.claims;
 
 namespace aabblab {

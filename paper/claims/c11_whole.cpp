@@ -1,11 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

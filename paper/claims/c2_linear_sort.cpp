@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.claims;
 
 import aabblab.numbers;

@@ -1,8 +1,3 @@
-module;
-#include <algorithm>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 import aabblab.numbers;

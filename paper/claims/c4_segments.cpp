@@ -1,9 +1,3 @@
-module;
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 import aabblab.numbers;

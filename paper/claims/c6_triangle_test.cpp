@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <map>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.claims;
 
 import aabb.base;

@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

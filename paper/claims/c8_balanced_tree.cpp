@@ -1,9 +1,3 @@
-module;
-#include <cstddef>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

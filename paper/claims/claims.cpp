@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <iterator>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

@@ -1,15 +1,7 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// The claims of the paper, one a file, each decided from measurements by the rule of aabblab.statistics.
 export module aabblab.claims;
 
+import aabb.std;
 import aabblab.conditions;
 import aabblab.figures;
 import aabblab.tables;

@@ -1,11 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

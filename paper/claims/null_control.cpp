@@ -1,11 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.claims;
 
 namespace aabblab {

@@ -1,10 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <optional>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 import aabblab.numbers;

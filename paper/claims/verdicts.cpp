@@ -1,12 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <functional>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.claims;
 
 import aabblab.numbers;

@@ -1,12 +1,7 @@
-module;
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 /// The reproduction from its configs to its report: what is measured, and where it leaves what.
 export module aabblab.measuring;
 
+import aabb.std;
 import aabblab.configs;
 import aabblab.reproduction;
 

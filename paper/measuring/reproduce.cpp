@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <iterator>
-#include <map>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.measuring;
 
 import aabb.base;

@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <iterator>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.measuring;
 
 import aabblab.atlas;

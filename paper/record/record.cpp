@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <filesystem>
-#include <initializer_list>
-#include <string>
-#include <vector>
-
 module aabblab.record;
 
 namespace aabblab {

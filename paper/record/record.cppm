@@ -1,14 +1,10 @@
 module;
-#include <filesystem>
-#include <functional>
 #include <list>
-#include <span>
-#include <string>
-#include <vector>
 
 /// What of a reproduction's folder its report is made from, and whether it is as the run left it.
 export module aabblab.record;
 
+import aabb.std;
 import aabblab.archive;
 
 export namespace aabblab {

@@ -1,10 +1,3 @@
-module;
-#include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <span>
-#include <string>
-
 module aabblab.record;
 
 import aabb.base;

@@ -1,12 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cstddef>
-#include <filesystem>
-#include <map>
-#include <sstream>
-#include <string>
-
 module aabblab.record;
 
 import aabb.base;

@@ -1,11 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <span>
-#include <string>
-
 module aabblab.reproduction;
 
 namespace aabblab {

@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <span>
-#include <string>
-#include <string_view>
-
 module aabblab.reproduction;
 
 import aabblab.markup;

@@ -1,11 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "report_css.hpp"
 
 module aabblab.reproduction;

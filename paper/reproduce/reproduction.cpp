@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabblab.reproduction;
 
 import aabblab.files;

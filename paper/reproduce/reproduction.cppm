@@ -1,14 +1,7 @@
-module;
-#include <cstddef>
-#include <filesystem>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// The reproduction as files: tables, figures, a page, and what the LaTeX report takes its numbers from.
 export module aabblab.reproduction;
 
+import aabb.std;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.figures;

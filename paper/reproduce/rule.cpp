@@ -1,8 +1,4 @@
 module;
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "rule_md.hpp"
 

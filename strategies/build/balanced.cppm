@@ -1,11 +1,9 @@
-module;
-#include <cstdint>
-
 /// Builds for layouts that prescribe how many triangles go to which side.
 export module aabb.build.balanced;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 
 export namespace aabb {
 

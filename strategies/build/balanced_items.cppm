@@ -1,18 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <span>
-
 /// What a balanced build moves about, and how it is split: many items across which axis, a few in which way.
 export module aabb.build.balanced_items;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

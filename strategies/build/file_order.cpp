@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <span>
-#include <vector>
-
 module aabb.build.file_order;
 
 import aabb.base;

@@ -1,12 +1,9 @@
-module;
-#include <string_view>
-#include <vector>
-
 export module aabb.build.file_order;
 
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.build.threaded;
+import aabb.std;
 
 export namespace aabb {
 

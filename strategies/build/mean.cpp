@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 module aabb.build.mean;
 
 // Sums and products as they are written: see aabb.base:floating_point.

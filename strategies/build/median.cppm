@@ -1,12 +1,10 @@
-module;
-#include <string_view>
-
 export module aabb.build.median;
 
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.build.balanced;
 import aabb.build.top_down;
+import aabb.std;
 
 export namespace aabb {
 

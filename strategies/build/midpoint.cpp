@@ -1,8 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <span>
-
 module aabb.build.midpoint;
 
 // Sums and products as they are written: see aabb.base:floating_point.

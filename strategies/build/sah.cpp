@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-
 module aabb.build.sah;
 
 // Sums and products as they are written: see aabb.base:floating_point.

@@ -1,8 +1,3 @@
-module;
-#include <cstddef>
-#include <span>
-#include <string_view>
-
 export module aabb.build.sah;
 
 import aabb.base;
@@ -12,6 +7,7 @@ import aabb.local_detection;
 import aabb.policy;
 import aabb.build.balanced;
 import aabb.build.top_down;
+import aabb.std;
 
 export namespace aabb {
 

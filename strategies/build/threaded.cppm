@@ -1,14 +1,9 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <tuple>
-
 /// Builds by several threads: their parameter, and how a range of triangles is split in two, and these again.
 export module aabb.build.threaded;
 
 import aabb.base;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,10 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <span>
-#include <vector>
-
 /// Builds from the root down, node by node, whatever says where a node is split.
 export module aabb.build.top_down;
 
@@ -12,6 +5,7 @@ import aabb.geometry;
 import aabb.local_detection;
 import aabb.build.balanced;
 import aabb.build.threaded;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 export module aabb.columns.few_boxes;
 
 import aabb.base;
@@ -14,6 +6,7 @@ import aabb.columns.plan;
 import aabb.counters;
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,16 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstring>
-#include <span>
-#include <vector>
-
 export module aabb.columns.frame_at_rest;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
-
 export module aabb.columns.groups;
 
 import aabb.base;
@@ -16,6 +5,7 @@ import aabb.columns.kernels;
 import aabb.columns.plan;
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 
 export namespace aabb {
 

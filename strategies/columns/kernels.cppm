@@ -1,9 +1,4 @@
 module;
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <type_traits>
-#include <utility>
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -13,6 +8,7 @@ module;
 export module aabb.columns.kernels;
 
 import aabb.simd;
+import aabb.std;
 
 namespace aabb::simd::detail {
 

@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.columns.lists;
 
 import aabb.base;
@@ -16,6 +7,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.simd;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 export module aabb.columns.plan;
 
 import aabb.columns.kernels;
@@ -16,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.simd;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 export module aabb.columns.search;
 
 import aabb.base;
@@ -22,6 +10,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <limits>
-#include <utility>
-#include <vector>
-
 export module aabb.columns.worker;
 
 import aabb.base;
@@ -17,6 +7,7 @@ import aabb.columns.plan;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

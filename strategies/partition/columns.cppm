@@ -1,17 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <optional>
-#include <span>
-#include <string_view>
-#include <tuple>
-
 export module aabb.partition.columns;
 
 import aabb.base;
@@ -21,6 +7,7 @@ import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
 import aabb.simd;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

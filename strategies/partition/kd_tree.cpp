@@ -1,14 +1,5 @@
 module;
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
 
 module aabb.partition.kd_tree;
 

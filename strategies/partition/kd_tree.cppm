@@ -1,19 +1,10 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.partition.kd_tree;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

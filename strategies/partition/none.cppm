@@ -1,9 +1,7 @@
-module;
-#include <string_view>
-
 export module aabb.partition.none;
 
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,16 +1,5 @@
 module;
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
 
 export module aabb.partition.uniform_grid;
 
@@ -18,6 +7,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,11 +1,6 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-
 export module aabb.prepare.displacement_law;
+
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,14 +1,8 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstring>
-#include <limits>
-#include <span>
-
 export module aabb.prepare.grown_boxes;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

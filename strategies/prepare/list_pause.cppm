@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 export module aabb.prepare.list_pause;
 
 import aabb.geometry;
@@ -12,6 +5,7 @@ import aabb.global_search;
 import aabb.prepare.displacement_law;
 import aabb.prepare.list_plan;
 import aabb.prepare.sample;
+import aabb.std;
 
 export namespace aabb {
 

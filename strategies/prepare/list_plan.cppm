@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
-
 export module aabb.prepare.list_plan;
 
 import aabb.costs;
@@ -16,6 +5,7 @@ import aabb.geometry;
 import aabb.global_search;
 import aabb.prepare.displacement_law;
 import aabb.prepare.sample;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,17 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <vector>
-
 export module aabb.prepare.listed_pairs;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 
 export namespace aabb {
 

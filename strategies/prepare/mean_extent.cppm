@@ -1,15 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 export module aabb.prepare.mean_extent;
 
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

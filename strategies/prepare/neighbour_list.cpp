@@ -1,16 +1,3 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 module aabb.prepare.neighbour_list;
 
 import aabb.costs;

@@ -1,18 +1,9 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string_view>
-#include <tuple>
-
 export module aabb.prepare.neighbour_list;
 
 import aabb.base;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,7 @@
-module;
-#include <array>
-#include <memory>
-#include <string_view>
-#include <utility>
-
 export module aabb.prepare.none;
 
 import aabb.pipeline;
+import aabb.std;
 
 export namespace aabb {
 

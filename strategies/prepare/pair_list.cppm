@@ -1,13 +1,5 @@
 module;
-#include <bit>
 #include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <span>
-#include <vector>
 
 export module aabb.prepare.pair_list;
 
@@ -15,6 +7,7 @@ import aabb.base;
 import aabb.geometry;
 import aabb.prepare.listed_pairs;
 import aabb.simd;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,14 +1,8 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <string_view>
-
 /// How many pieces something long is cut into.
 export module aabb.prepare.pieces;
 
 import aabb.base;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,17 +1,9 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <span>
-
 export module aabb.prepare.relative_motion;
 
 import aabb.geometry;
 import aabb.global_search;
 import aabb.simd;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

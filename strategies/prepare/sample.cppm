@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 /// What a few boxes, drawn by chance, tell of all.
 export module aabb.prepare.sample;
 
@@ -13,6 +6,7 @@ import aabb.global_search;
 import aabb.prepare.grown_boxes;
 import aabb.prepare.listed_pairs;
 import aabb.prepare.relative_motion;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,19 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.prepare.split_large;
 
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

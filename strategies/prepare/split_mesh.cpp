@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabb.prepare.split_mesh;
 
 import aabb.base;

@@ -1,14 +1,8 @@
-module;
-#include <array>
-#include <limits>
-#include <memory>
-#include <string_view>
-#include <tuple>
-
 export module aabb.prepare.split_mesh;
 
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,10 +1,3 @@
-module;
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// What turns strategies into entries of lists and combinations of them into rows of tables, for the generated units of
 /// the registry. It knows neither kinds nor stages.
 export module aabb.composed;
@@ -13,6 +6,7 @@ import aabb.counters;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 
 export namespace aabb::composed {
 

@@ -1,10 +1,3 @@
-module;
-#include <memory>
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// A global search composed statically, behind the interface of a stage.
 export module aabb.composed.global_search;
 
@@ -12,6 +5,7 @@ import aabb.global_search;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.composed;
+import aabb.std;
 
 export namespace aabb::composed {
 

@@ -1,10 +1,3 @@
-module;
-#include <memory>
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// A local detection composed statically, behind the interface of a stage.
 export module aabb.composed.local_detection;
 
@@ -13,6 +6,7 @@ import aabb.local_detection;
 import aabb.pipeline;
 import aabb.policy;
 import aabb.composed;
+import aabb.std;
 
 export namespace aabb::composed {
 

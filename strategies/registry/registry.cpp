@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-#include <optional>
-#include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 module aabb.registry;
 
 import aabb.base;

@@ -1,12 +1,3 @@
-module;
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// All strategies by name, and stages composed of them. The interface names none of them: importers are not rebuilt
 /// when a strategy changes.
 export module aabb.registry;
@@ -14,6 +5,7 @@ export module aabb.registry;
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 export import :kinds;
 
 export namespace aabb {

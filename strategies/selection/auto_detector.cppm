@@ -1,12 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// `detector` for those who choose when the program runs, or let `auto` choose.
 export module aabb.auto_detector;
 
@@ -15,6 +6,7 @@ import aabb.pipeline;
 import aabb.policy;
 import aabb.registry;
 import aabb.selection;
+import aabb.std;
 
 export namespace aabb {
 

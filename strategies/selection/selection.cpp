@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabb.selection;
 
 import aabb.base;

@@ -1,15 +1,10 @@
-module;
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
-
 /// What serves a scene: `auto`, by rules that say why.
 export module aabb.selection;
 
 import aabb.geometry;
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 
 export namespace aabb {
 

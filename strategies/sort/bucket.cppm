@@ -1,18 +1,10 @@
-module;
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.sort.bucket;
 
 import aabb.base;
 import aabb.counters;
 import aabb.global_search;
 import aabb.sort.inserting;
+import aabb.std;
 
 export namespace aabb {
 

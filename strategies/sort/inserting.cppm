@@ -1,11 +1,8 @@
-module;
-#include <cstddef>
-#include <span>
-
 export module aabb.sort.inserting;
 
 import aabb.counters;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,9 @@
-module;
-#include <span>
-#include <string_view>
-
 export module aabb.sort.insertion;
 
 import aabb.counters;
 import aabb.global_search;
 import aabb.sort.inserting;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,19 +1,10 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.sort.radix;
 
 import aabb.base;
 import aabb.counters;
 import aabb.global_search;
 import aabb.sort.inserting;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,17 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <tuple>
-
 export module aabb.sort.shell;
 
 import aabb.counters;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,8 @@
-module;
-#include <algorithm>
-#include <span>
-#include <string_view>
-
 export module aabb.sort.std;
 
 import aabb.counters;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,13 +1,5 @@
 module;
-#include <algorithm>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 module aabb.split_mesh;
 

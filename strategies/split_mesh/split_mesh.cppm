@@ -1,11 +1,7 @@
-module;
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 export module aabb.split_mesh;
 
 import aabb.pipeline;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,5 @@
 module;
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
 
 export module aabb.sweep.all_axes;
 
@@ -14,6 +7,7 @@ import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,15 +1,6 @@
 module;
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
 #include <ranges>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 export module aabb.sweep.incremental;
 
@@ -17,6 +8,7 @@ import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 
 export namespace aabb {
 

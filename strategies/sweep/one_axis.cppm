@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.sweep.one_axis;
 
 import aabb.base;
@@ -16,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

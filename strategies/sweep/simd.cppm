@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 export module aabb.sweep.simd;
 
 import aabb.base;
@@ -19,6 +7,7 @@ import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
 import aabb.simd;
+import aabb.std;
 
 export namespace aabb {
 

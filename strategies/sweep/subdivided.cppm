@@ -1,17 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.sweep.subdivided;
 
 import aabb.base;
@@ -19,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.policy;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,20 +1,10 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.sweep.two_axis;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,9 +1,7 @@
-module;
-#include <cstdint>
-
 export module aabb.tree.box_cursor;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,15 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.tree.canonical;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 
 export namespace aabb {
 

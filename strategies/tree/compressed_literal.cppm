@@ -1,18 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.tree.compressed_literal;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.tree.box_cursor;
 import aabb.tree.leafless_config;
 import aabb.tree.sibling_planes;

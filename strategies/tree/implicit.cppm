@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.tree.implicit;
 
 import aabb.base;
@@ -17,6 +5,7 @@ import aabb.costs;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.std;
 import aabb.wide_tree;
 
 export namespace aabb {

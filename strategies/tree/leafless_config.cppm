@@ -1,14 +1,9 @@
-module;
-#include <array>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-
 export module aabb.tree.leafless_config;
 
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.std;
 import aabb.tree.box_cursor;
 
 export namespace aabb {

@@ -1,19 +1,10 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <string_view>
-#include <tuple>
-#include <vector>
-
 export module aabb.tree.quantized;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.std;
 import aabb.tree.box_cursor;
 import aabb.tree.leafless_config;
 import aabb.tree.quantized_planes;

@@ -1,14 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-
 export module aabb.tree.quantized_planes;
 
 import aabb.geometry;
+import aabb.std;
 import aabb.tree.sibling_planes;
 
 // Sums and products as they are written: see aabb.base:floating_point.

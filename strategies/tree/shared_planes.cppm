@@ -1,15 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
-
 export module aabb.tree.shared_planes;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.tree.box_cursor;
 import aabb.tree.sibling_planes;
 

@@ -1,12 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-
 export module aabb.tree.sibling_planes;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,14 +1,8 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string_view>
-#include <tuple>
-
 export module aabb.triangle.devillers_guigue;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.triangle.precision;
 
 // Sums and products as they are written: see aabb.base:floating_point.

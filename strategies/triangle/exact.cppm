@@ -1,10 +1,8 @@
-module;
-#include <string_view>
-
 export module aabb.triangle.exact;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.triangle.intersection;
 import aabb.triangle.orientation_test;
 

@@ -1,15 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <utility>
-
 module aabb.triangle.intersection;
 
 import aabb.base;
+import aabb.std;
 import aabb.triangle.orientation_test;
 
 // Sums and products as they are written: see aabb.base:floating_point.

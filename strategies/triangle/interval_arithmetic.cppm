@@ -1,17 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string_view>
-#include <tuple>
-
 export module aabb.triangle.interval_arithmetic;
 
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.policy;
+import aabb.std;
 import aabb.triangle.orientation_test;
 
 // Sums and products as they are written: see aabb.base:floating_point.

@@ -1,16 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <utility>
-
 export module aabb.triangle.interval_test;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

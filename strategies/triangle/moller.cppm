@@ -1,11 +1,8 @@
-module;
-#include <string_view>
-#include <tuple>
-
 export module aabb.triangle.moller;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.triangle.interval_test;
 
 export namespace aabb {

@@ -1,11 +1,7 @@
-module;
-#include <array>
-#include <cstdint>
-#include <utility>
-
 export module aabb.triangle.orientation_test;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

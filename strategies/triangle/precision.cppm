@@ -1,12 +1,8 @@
-module;
-#include <array>
-#include <cstdint>
-#include <string_view>
-
 export module aabb.triangle.precision;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,15 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <string_view>
-#include <tuple>
-#include <utility>
-
 export module aabb.triangle.separating_axes;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.triangle.precision;
 
 // Sums and products as they are written: see aabb.base:floating_point.

@@ -1,14 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 export module aabb.wide_tree.batched_walk;
 
 import aabb.base;
@@ -16,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.child_pairs;
 import aabb.wide_tree.kernels;
 import aabb.wide_tree.leaf_front;

@@ -1,12 +1,8 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-
 export module aabb.wide_tree.box_images;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.eight_boxes;
 import aabb.wide_tree.wide_node;
 

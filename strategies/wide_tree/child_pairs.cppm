@@ -1,13 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 export module aabb.wide_tree.child_pairs;
 
 import aabb.counters;
 import aabb.geometry;
+import aabb.std;
 import aabb.wide_tree.box_images;
 import aabb.wide_tree.eight_boxes;
 import aabb.wide_tree.policy;

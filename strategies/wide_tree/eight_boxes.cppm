@@ -1,16 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-
 export module aabb.wide_tree.eight_boxes;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.kernels;
 
 // Sums and products as they are written: see aabb.base:floating_point.

@@ -1,18 +1,10 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <memory>
-#include <span>
-#include <vector>
-
 export module aabb.wide_tree.front_walk;
 
 import aabb.base;
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.wide_tree.batched_walk;
 import aabb.wide_tree.leaf_front;
 import aabb.wide_tree.leaf_reader;

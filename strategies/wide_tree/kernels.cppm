@@ -1,9 +1,4 @@
 module;
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -12,6 +7,7 @@ module;
 export module aabb.wide_tree.kernels;
 
 import aabb.simd;
+import aabb.std;
 
 namespace aabb::simd::detail {
 

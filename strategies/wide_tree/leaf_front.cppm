@@ -1,21 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.wide_tree.leaf_front;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,13 +1,3 @@
-module;
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.wide_tree.leaf_pairs;
 
 import aabb.base;
@@ -15,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.eight_boxes;
 import aabb.wide_tree.leaf_reader;
 import aabb.wide_tree.leaf_slab;

@@ -1,18 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
-
 export module aabb.wide_tree.leaf_reader;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.wide_tree.leaf_front;
 import aabb.wide_tree.policy;
 import aabb.wide_tree.triangle_block;

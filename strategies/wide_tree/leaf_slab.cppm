@@ -1,14 +1,8 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-
 export module aabb.wide_tree.leaf_slab;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.kernels;
 import aabb.wide_tree.triangle_block;
 

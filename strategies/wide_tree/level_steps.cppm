@@ -1,12 +1,7 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 export module aabb.wide_tree.level_steps;
 
 import aabb.base;
+import aabb.std;
 
 export namespace aabb {
 

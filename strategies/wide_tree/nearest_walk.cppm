@@ -1,11 +1,5 @@
 module;
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 export module aabb.wide_tree.nearest_walk;
 
@@ -14,6 +8,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.box_images;
 import aabb.wide_tree.eight_boxes;
 import aabb.wide_tree.level_steps;

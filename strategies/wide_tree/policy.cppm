@@ -1,12 +1,8 @@
-module;
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-
 export module aabb.wide_tree.policy;
 
 import aabb.geometry;
 import aabb.local_detection;
+import aabb.std;
 import aabb.wide_tree.vertex_lists;
 import aabb.wide_tree.wide_node;
 

@@ -1,14 +1,7 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 export module aabb.wide_tree.recently_made;
 
 import aabb.base;
+import aabb.std;
 
 export namespace aabb {
 

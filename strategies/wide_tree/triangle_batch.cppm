@@ -1,16 +1,9 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 export module aabb.wide_tree.triangle_batch;
 
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.kernels;
 import aabb.wide_tree.triangle_block;
 import aabb.wide_tree.triangle_filter;

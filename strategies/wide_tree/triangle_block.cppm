@@ -1,13 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-
 export module aabb.wide_tree.triangle_block;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.eight_boxes;
 import aabb.wide_tree.kernels;
 import aabb.wide_tree.policy;

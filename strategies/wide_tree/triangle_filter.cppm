@@ -1,12 +1,7 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-
 export module aabb.wide_tree.triangle_filter;
 
 import aabb.simd;
+import aabb.std;
 
 // Products may be fused into sums, which the bounds allow for; nothing else.
 #pragma clang fp reassociate(off) reciprocal(off)

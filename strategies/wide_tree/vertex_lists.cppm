@@ -1,19 +1,10 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <vector>
-
 export module aabb.wide_tree.vertex_lists;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.kernels;
 
 export namespace aabb {

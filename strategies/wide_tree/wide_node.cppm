@@ -1,17 +1,8 @@
-module;
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-
 export module aabb.wide_tree.wide_node;
 
 import aabb.geometry;
 import aabb.simd;
+import aabb.std;
 import aabb.wide_tree.eight_boxes;
 
 export namespace aabb {

@@ -1,6 +1,3 @@
-module;
-#include <cstddef>
-
 /// The room of trees with eight children a node: what a layout of such a tree sees of it, and who plans for its fronts.
 /// All else is behind.
 export module aabb.wide_tree;
@@ -10,6 +7,7 @@ export import aabb.wide_tree.policy;
 export import aabb.wide_tree.vertex_lists;
 export import aabb.wide_tree.wide_node;
 
+import aabb.std;
 import aabb.wide_tree.leaf_front;
 
 export namespace aabb {

@@ -1,11 +1,11 @@
 // Counts every allocation of the process but those of large arrays (`large_vector`), which no scene here has: once the
 // buffers have grown to the scene, neither stage may make one.
 
-#include <cstdlib>
-
 #include "../compositions.hpp"
 #include "../meshes.hpp"
 #include "counted_new.hpp"
+
+import aabb.std;
 
 using namespace aabb;
 

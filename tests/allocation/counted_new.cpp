@@ -1,8 +1,6 @@
 #include "counted_new.hpp"
 
-#include <cstddef>
-#include <cstdlib>
-#include <new>
+import aabb.std;
 
 namespace {
 

@@ -1,12 +1,11 @@
 // Memory that runs out at any allocation, in every stage there is: afterwards a stage is exact or refuses.
 
-#include <new>
-
 #include "../compositions.hpp"
 #include "../meshes.hpp"
 #include "../strategies/overlapping.hpp"
 #include "counted_new.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabb.validation;

@@ -1,22 +1,11 @@
-#include <algorithm>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cctype>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <limits>
 #include <regex>
-#include <set>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "../experiments/temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.figures;
 import aabblab.scale;

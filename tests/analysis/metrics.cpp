@@ -1,9 +1,6 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <optional>
-#include <set>
-#include <string>
 
+import aabb.std;
 import aabblab.metrics;
 import aabblab.results;
 

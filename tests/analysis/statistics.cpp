@@ -1,10 +1,7 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
 #include <random>
-#include <utility>
-#include <vector>
 
+import aabb.std;
 import aabblab.statistics;
 
 using aabblab::cells;

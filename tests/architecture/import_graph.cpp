@@ -1,20 +1,15 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <regex>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../experiments/temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 
 /// The rooms from the ground up: each may import those above it in this list, and itself.
 const std::vector<std::string> rooms = {
+    "modules/std",
     "modules/base",
     "modules/simd",
     "modules/counters",

@@ -1,16 +1,11 @@
 // Runs the program of micro-benchmarks.
 
-#include <algorithm>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "../experiments/program.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabb.strategies;

@@ -1,8 +1,8 @@
 #include <sched.h>
 
 #include <catch2/catch_test_macros.hpp>
-#include <thread>
 
+import aabb.std;
 import aabblab.processor;
 
 namespace {

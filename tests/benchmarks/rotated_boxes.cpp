@@ -1,12 +1,9 @@
 #include <rapidcheck.h>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
 
 #include "../random_poses.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.rotated_boxes;
 

@@ -1,5 +1,4 @@
-#include <utility>
-
+import aabb.std;
 import aabb;
 import aabb.partition.kd_tree;
 import aabb.sort.std;

@@ -1,10 +1,6 @@
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "fakes.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.sort.std;
 

@@ -60,16 +60,7 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 # C++20 with extensions, as the README leaves it to CMake, and C++23 without them, with all that a compiler may do to sums
 # where a file lets it.
 builds(readme "")
-# The headers are in one module file, where the build has one, as in cmake/AabblabHeaderModule.cmake: that takes a third of
-# the time, and the first build has shown that they need not be.
 set(flags "-march=native -ffp-contract=fast-honor-pragmas -fassociative-math -freciprocal-math -fno-signed-zeros -fno-trapping-math")
-set(map ${BUILD}/headers/std.modulemap)
-if(EXISTS ${map})
-    set(use "-fmodules -fno-implicit-modules -fno-implicit-module-maps -fmodule-map-file=${map}")
-    separate_arguments(options UNIX_COMMAND "${FLAGS} ${flags} ${use} -O3 -DNDEBUG -std=c++23")
-    run(${COMPILER} ${options} -Xclang -emit-module -fmodule-name=std -x c++ -c ${map} -o ${WORK}/std.pcm)
-    string(APPEND flags " ${use} -fmodule-file=std=${WORK}/std.pcm")
-endif()
 builds(release_23 "${flags}" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=23 -DCMAKE_CXX_EXTENSIONS=OFF)
 
 set(clang -DCMAKE_CXX_COMPILER=${COMPILER})

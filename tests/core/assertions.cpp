@@ -1,11 +1,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <csignal>
 #include <cstdio>
 
+import aabb.std;
 import aabb;
 
 TEST_CASE("A broken promise of the caller ends the program, but not where assertions are left out") {

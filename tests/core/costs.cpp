@@ -1,8 +1,7 @@
 #include <catch2/catch_test_macros.hpp>
-#include <set>
-#include <string_view>
 
 import aabb.costs;
+import aabb.std;
 
 using namespace aabb;
 

@@ -1,15 +1,12 @@
 #include <Eigen/Geometry>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
 #include <cmath>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 #include "../random_poses.hpp"
 
+import aabb.std;
 import aabb;
 
 using namespace aabb;

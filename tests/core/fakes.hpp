@@ -2,14 +2,7 @@
 
 // The least that each kind of strategy must be. What compiles here is all that the concepts and the stages ask for.
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <utility>
-#include <vector>
-
+import aabb.std;
 import aabb;
 
 struct fake_sort {

@@ -1,7 +1,6 @@
-#include <new>
-
 #include "../testing.hpp"
 
+import aabb.std;
 import aabb;
 
 using namespace aabb;

@@ -1,8 +1,8 @@
 #include <rapidcheck.h>
-#include <set>
 
 #include "../testing.hpp"
 
+import aabb.std;
 import aabb;
 
 using namespace aabb;

@@ -1,8 +1,8 @@
 #include <catch2/catch_test_macros.hpp>
-#include <string_view>
 
 #include "fakes.hpp"
 
+import aabb.std;
 import aabb;
 
 namespace {

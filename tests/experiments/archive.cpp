@@ -4,16 +4,12 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "temporary_folder.hpp"
 
 import aabb.base;
+import aabb.std;
 import aabblab.archive;
 
 using aabblab::unpacked_archive;

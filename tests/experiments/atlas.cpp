@@ -1,19 +1,11 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <set>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
 import aabb.policy;
 import aabb.registry;
+import aabb.std;
 import aabblab.archive;
 import aabblab.atlas;
 import aabblab.configs;

@@ -1,19 +1,11 @@
 // `auto` in configs and commands, and what explain says of a scene.
 
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <limits>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.configs;
 import aabblab.measures;

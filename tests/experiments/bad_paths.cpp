@@ -1,15 +1,12 @@
 #include <sys/stat.h>
 
 #include <catch2/catch_test_macros.hpp>
-#include <filesystem>
-#include <functional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 

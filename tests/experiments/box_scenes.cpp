@@ -1,14 +1,7 @@
-#include <algorithm>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
 
+import aabb.std;
 import aabb;
 import aabb.validation;
 import aabblab.scenes;

@@ -1,18 +1,12 @@
 // Costs of a machine: how they are fitted, kept, read and told.
 
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.calibrate;
 import aabblab.configs;

@@ -1,12 +1,10 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cmath>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 

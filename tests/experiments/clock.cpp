@@ -1,11 +1,10 @@
 // On a clock that is too coarse nothing is timed.
 #include <catch2/catch_test_macros.hpp>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 TEST_CASE("On a clock that goes in steps of 15 ms, what is to be timed is refused, and nothing is written") {
     const temporary_folder folder;

@@ -1,17 +1,12 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cmath>
-#include <cstddef>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 

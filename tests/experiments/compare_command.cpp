@@ -1,19 +1,11 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabblab.comparison;

@@ -1,11 +1,9 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cstddef>
-#include <string>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.configs;
 import aabblab.scenes;

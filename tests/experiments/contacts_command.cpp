@@ -1,13 +1,12 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cstddef>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 

@@ -1,18 +1,10 @@
 #include <rapidcheck.h>
 
-#include <array>
-#include <bit>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.files;
 

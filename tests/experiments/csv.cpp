@@ -2,10 +2,8 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cstddef>
-#include <string>
-#include <vector>
 
+import aabb.std;
 import aabb;
 import aabblab.results;
 

@@ -1,16 +1,12 @@
 // FORMATS.md says of which numbers a digest is; these tests make each anew from the rows of the files.
 
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.results;
 

@@ -1,14 +1,8 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "../compositions.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.validation;
 import aabblab.configs;

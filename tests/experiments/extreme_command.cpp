@@ -1,17 +1,10 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <filesystem>
-#include <set>
-#include <span>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
 import aabb.extreme;
+import aabb.std;
 import aabblab.extreme;
 import aabblab.results;
 import aabblab.tables;

@@ -1,19 +1,12 @@
 // Recordings and motion files as scenes of an experiment.
 
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.configs;
 import aabblab.results;

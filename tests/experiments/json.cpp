@@ -1,15 +1,9 @@
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cstddef>
-#include <functional>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 import aabb.base;
+import aabb.std;
 import aabblab.json;
 
 using aabblab::json_value;

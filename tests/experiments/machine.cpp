@@ -1,9 +1,8 @@
 #include <catch2/catch_test_macros.hpp>
-#include <filesystem>
-#include <string>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabblab.machine;
 
 namespace {

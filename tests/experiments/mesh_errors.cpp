@@ -2,14 +2,11 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cstdint>
-#include <filesystem>
-#include <limits>
-#include <string>
 
 #include "mesh_bytes.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.files;
 

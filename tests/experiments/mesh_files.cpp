@@ -1,14 +1,9 @@
-#include <array>
 #include <catch2/catch_test_macros.hpp>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.files;
 

@@ -1,12 +1,11 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 TEST_CASE("order writes a mesh whose tree need not say which triangle stands where") {
     const temporary_folder folder;

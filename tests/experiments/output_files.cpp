@@ -4,13 +4,10 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cstddef>
-#include <filesystem>
-#include <string>
-#include <thread>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.files;
 

@@ -1,14 +1,10 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
-#include <cstddef>
-#include <cstdint>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.pair_output;
 

@@ -1,16 +1,10 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.picture;
 

@@ -1,21 +1,11 @@
 #include <rapidcheck.h>
-#include <algorithm>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <limits>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.files;
 

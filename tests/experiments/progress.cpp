@@ -1,6 +1,6 @@
 #include <catch2/catch_test_macros.hpp>
-#include <chrono>
 
+import aabb.std;
 import aabblab.progress;
 
 using namespace std::chrono_literals;

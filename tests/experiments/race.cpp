@@ -1,34 +1,15 @@
 // The race behind recommend, and the command.
 
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <chrono>
-#include <cmath>
 #include <csignal>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <initializer_list>
-#include <iterator>
-#include <memory>
-#include <new>
-#include <span>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabb.validation;

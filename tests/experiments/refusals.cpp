@@ -1,11 +1,10 @@
 #include <catch2/catch_test_macros.hpp>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 

@@ -1,19 +1,9 @@
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabblab.files;
 import aabblab.scenes;

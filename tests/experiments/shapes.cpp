@@ -1,20 +1,9 @@
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.triangle.exact;
 import aabblab.files;

@@ -1,10 +1,9 @@
 #include <catch2/catch_test_macros.hpp>
-#include <filesystem>
-#include <string>
 
 #include "program.hpp"
 #include "temporary_folder.hpp"
 
+import aabb.std;
 import aabblab.files;
 
 TEST_CASE("validate stiff plays the studies that are named, and keeps each in its file") {

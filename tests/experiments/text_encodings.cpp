@@ -1,18 +1,13 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
-#include <cstddef>
-#include <filesystem>
-#include <functional>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "mesh_bytes.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
 #include "text_encodings.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.extreme;
 import aabblab.configs;

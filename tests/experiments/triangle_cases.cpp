@@ -1,13 +1,8 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <limits>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
 
 import aabb.base;
 import aabb.extreme;
+import aabb.std;
 import aabblab.configs;
 import aabblab.extreme;
 

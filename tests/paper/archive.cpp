@@ -1,20 +1,13 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <random>
 #include <regex>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "../experiments/program.hpp"
 #include "../experiments/temporary_folder.hpp"
 
 #include "worlds.hpp"
 
+import aabb.std;
 import aabblab.archive;
 import aabblab.record;
 

@@ -4,13 +4,12 @@
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <csignal>
-#include <cstddef>
-#include <filesystem>
 #include <regex>
-#include <string>
 
 #include "../experiments/program.hpp"
 #include "../experiments/temporary_folder.hpp"
+
+import aabb.std;
 
 namespace {
 

@@ -1,16 +1,6 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <map>
 #include <random>
 #include <regex>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../experiments/program.hpp"
 #include "../experiments/temporary_folder.hpp"
@@ -18,6 +8,7 @@
 #include "worlds.hpp"
 
 import aabb.registry;
+import aabb.std;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.configs;

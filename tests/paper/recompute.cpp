@@ -1,12 +1,11 @@
 #include <catch2/catch_test_macros.hpp>
-#include <fstream>
-#include <string>
 
 #include "../experiments/program.hpp"
 #include "../experiments/temporary_folder.hpp"
 
 #include "worlds.hpp"
 
+import aabb.std;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.reproduction;

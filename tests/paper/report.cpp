@@ -1,12 +1,9 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
 #include <regex>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include "../experiments/temporary_folder.hpp"
 
+import aabb.std;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.reproduction;

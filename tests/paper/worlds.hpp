@@ -1,20 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <optional>
 #include <random>
-#include <set>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabblab.configs;

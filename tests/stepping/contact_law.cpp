@@ -1,12 +1,9 @@
-#include <array>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstdint>
 #include <random>
-#include <vector>
 
 #include "../validation/support.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.validation;
 import aabblab.scenes;

@@ -1,13 +1,9 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "../experiments/program.hpp"
 #include "../experiments/temporary_folder.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabblab.trials;

@@ -1,8 +1,6 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <string>
-#include <vector>
 
+import aabb.std;
 import aabblab.stepping;
 
 namespace {

@@ -1,12 +1,8 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <memory>
-#include <string>
-#include <string_view>
 
 #include "../validation/altered_stages.hpp"
 
+import aabb.std;
 import aabblab.trials;
 import aabblab.stepping;
 import aabblab.stiff;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <rapidcheck.h>
-#include <cmath>
 
+import aabb.std;
 import aabb;
 
 /// Costs in force for one test.

@@ -1,7 +1,5 @@
 // Detection composed at compile time and at run time, and that what is left out takes no room.
 
-#include <type_traits>
-
 #include "../meshes.hpp"
 #include "searches.hpp"
 
@@ -15,6 +13,7 @@ import aabb.prepare.split_mesh;
 import aabb.selection;
 import aabb.sort.bucket;
 import aabb.sort.insertion;
+import aabb.std;
 import aabb.sweep.incremental;
 import aabb.sweep.one_axis;
 import aabb.sweep.simd;

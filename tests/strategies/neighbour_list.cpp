@@ -1,20 +1,7 @@
 #include <rapidcheck.h>
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "../compositions.hpp"
 #include "../validation/support.hpp"
@@ -26,6 +13,7 @@ import aabb.prepare.list_plan;
 import aabb.prepare.relative_motion;
 import aabb.prepare.sample;
 import aabb.simd;
+import aabb.std;
 
 using namespace aabb;
 using Catch::Matchers::Message;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
+import aabb.std;
 import aabb;
 
 /// By comparing all: the pairs that any search must find, in ascending order.

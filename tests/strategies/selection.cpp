@@ -1,15 +1,11 @@
 // What `auto` selects.
 
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../compositions.hpp"
 
 import aabb.selection;
+import aabb.std;
 
 using namespace aabb;
 

@@ -1,9 +1,7 @@
-#include <concepts>
-#include <cstring>
-
 #include "../compositions.hpp"
 #include "../meshes.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.registry;
 import aabb.strategies;

@@ -1,15 +1,9 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "../compositions.hpp"
 
 import aabb.prepare.mean_extent;
+import aabb.std;
 
 using namespace aabb;
 

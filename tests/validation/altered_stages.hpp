@@ -1,17 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
+import aabb.std;
 import aabb.validation;
 
 // Imports modules, so it is included after every other header.

@@ -1,16 +1,12 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <random>
-#include <utility>
-#include <vector>
 
 #include "support.hpp"
 
 // Imports, so it comes last.
 #include "engines.hpp"
 
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

@@ -1,12 +1,8 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <numeric>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "support.hpp"
 
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

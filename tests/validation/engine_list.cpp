@@ -1,11 +1,8 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "support.hpp"
 
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

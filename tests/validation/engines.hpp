@@ -1,9 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 
 import aabb.pipeline;
+import aabb.std;
 import aabb.validation;
 
 // Imports modules, so it is included after every other header.

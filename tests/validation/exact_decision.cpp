@@ -1,12 +1,9 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cstdint>
-#include <limits>
 #include <random>
-#include <vector>
 
 #include "support.hpp"
 
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

@@ -1,14 +1,11 @@
 #include <CGAL/Exact_rational.h>
 
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
 #include <random>
-#include <utility>
 
 #include "pairs.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.triangle.intersection;
 import aabb.validation;

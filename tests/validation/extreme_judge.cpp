@@ -1,16 +1,5 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cfenv>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <set>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "altered_stages.hpp"
 
@@ -20,6 +9,7 @@ import aabb.extreme;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

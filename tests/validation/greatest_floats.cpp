@@ -1,9 +1,5 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstdint>
-#include <limits>
 #include <random>
-#include <utility>
-#include <vector>
 
 #include "../compositions.hpp"
 #include "support.hpp"
@@ -12,6 +8,7 @@
 #include "engines.hpp"
 
 import aabb.registry;
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

@@ -1,11 +1,8 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdlib>
-#include <map>
-#include <string>
 
 #include "pairs.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.triangle.intersection;
 import aabb.validation;

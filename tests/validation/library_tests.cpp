@@ -1,12 +1,9 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 #include "pairs.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.triangle.exact;
 import aabb.validation;

@@ -1,18 +1,11 @@
-#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "support.hpp"
 
 // Imports, so it comes last.
 #include "engines.hpp"
 
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
 
 #include "../triangle_pairs.hpp"
 
+import aabb.std;
 import aabb;
 
 // Imports modules, so it is included after every other header.

@@ -1,14 +1,10 @@
 #include <CGAL/Exact_rational.h>
 #include <CGAL/determinant.h>
 
-#include <algorithm>
-#include <array>
 #include <catch2/catch_test_macros.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <random>
 
+import aabb.std;
 import aabb;
 
 // Signs of orientations against rational arithmetic, on points made for each way in which they are found; how often

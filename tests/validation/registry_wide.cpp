@@ -1,11 +1,5 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../compositions.hpp"
 #include "support.hpp"
@@ -14,6 +8,7 @@
 #include "engines.hpp"
 
 import aabb.registry;
+import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

@@ -1,16 +1,9 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numbers>
 #include <random>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "../sheets.hpp"
 
+import aabb.std;
 import aabb;
 
 namespace aabb {

@@ -1,8 +1,8 @@
 #include <catch2/catch_test_macros.hpp>
-#include <cstddef>
 
 #include "pairs.hpp"
 
+import aabb.std;
 import aabb;
 import aabb.triangle.exact;
 import aabb.validation;

@@ -2,18 +2,7 @@
 // which also counts the instructions of measured_frames.
 #include <malloc.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <new>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
+import aabb.std;
 import aabb;
 import aabb.columns;
 import aabb.partition.axial_cut;

@@ -1,8 +1,3 @@
-module;
-#include <cstdint>
-#include <span>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

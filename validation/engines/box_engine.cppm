@@ -1,9 +1,3 @@
-module;
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabb.engines:box_engine;
 
 import aabb.base;
@@ -11,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.global_search;
 import aabb.pipeline;
+import aabb.std;
 
 namespace aabb {
 

@@ -1,11 +1,6 @@
 module;
 #include <CGAL/box_intersection_d.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 module aabb.engines;
 
 import :numbered_box;

@@ -1,12 +1,8 @@
-module;
-#include <memory>
-#include <string>
-#include <vector>
-
 /// What a file in NAME/ says of the engine NAME; seen by this module only.
 module aabb.engines:engine;
 
 import aabb.pipeline;
+import aabb.std;
 import :library_test;
 
 namespace aabb {

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

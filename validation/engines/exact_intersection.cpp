@@ -5,18 +5,14 @@ module;
 #include <algorithm>
 #include <array>
 #include <boost/variant.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <memory>
-#include <span>
 #include <variant>
 #include <vector>
 
 #include "exact_decision.hpp"
 
-module aabb.engines;
+module aabb.exact_intersection;
 
 namespace aabb {
 
@@ -26,13 +22,13 @@ using kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using point_3 = kernel::Point_3;
 using segment_3 = kernel::Segment_3;
 using triangle_3 = kernel::Triangle_3;
-using exact_hull = hull<kernel>;
+using exact_hull = std::variant<point_3, segment_3, triangle_3>;
 using exact_number = kernel::FT::ET;
 using exact_point = std::array<exact_number, 3>;
 
 exact_hull exact_hull_of(const triangle3d& t) {
     const auto point = [](const vec3d& p) { return point_3(p[0], p[1], p[2]); };
-    return hull_of<kernel>({point(t[0]), point(t[1]), point(t[2])});
+    return with_hull<kernel>({point(t[0]), point(t[1]), point(t[2])}, [](const auto& h) { return exact_hull(h); });
 }
 
 /// The corners of a shape that CGAL returns.

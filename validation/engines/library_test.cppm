@@ -1,14 +1,8 @@
-module;
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabb.engines:library_test;
 
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 
 namespace aabb {
 

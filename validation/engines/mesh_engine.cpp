@@ -1,7 +1,3 @@
-module;
-#include <cstdint>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

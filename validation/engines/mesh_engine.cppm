@@ -1,9 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <vector>
-
 module aabb.engines:mesh_engine;
 
 import aabb.base;
@@ -11,6 +5,7 @@ import aabb.counters;
 import aabb.geometry;
 import aabb.local_detection;
 import aabb.pipeline;
+import aabb.std;
 
 namespace aabb {
 

@@ -1,9 +1,7 @@
-module;
-#include <cstdint>
-
 module aabb.engines:numbered_box;
 
 import aabb.geometry;
+import aabb.std;
 
 namespace aabb {
 

@@ -1,10 +1,3 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

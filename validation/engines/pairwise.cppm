@@ -1,12 +1,8 @@
-module;
-#include <memory>
-#include <span>
-#include <vector>
-
 module aabb.engines:pairwise;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 
 namespace aabb {
 

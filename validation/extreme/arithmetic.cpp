@@ -5,9 +5,6 @@ module;
 
 #include <cassert>
 #include <cfenv>
-#include <exception>
-#include <functional>
-#include <thread>
 
 module aabb.extreme;
 

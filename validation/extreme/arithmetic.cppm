@@ -1,8 +1,6 @@
-module;
-#include <cstdint>
-#include <functional>
-
 export module aabb.extreme:arithmetic;
+
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,15 +1,3 @@
-module;
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabb.extreme;
 
 import aabb.geometry;

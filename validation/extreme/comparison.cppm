@@ -1,15 +1,8 @@
-module;
-#include <algorithm>
-#include <functional>
-#include <iterator>
-#include <string>
-#include <utility>
-#include <vector>
-
 /// What a reported set of pairs and the exact one do not have in common.
 module aabb.extreme:comparison;
 
 import aabb.geometry;
+import aabb.std;
 import :judge;
 import :scene;
 

@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 module aabb.extreme;
 
 import aabb.engines;

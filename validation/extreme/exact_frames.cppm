@@ -1,15 +1,9 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <vector>
-
 /// The exact answers on a scene, by definition.
 export module aabb.extreme:exact_frames;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import :scene;
 
 export namespace aabb {

@@ -1,12 +1,3 @@
-module;
-#include <cstddef>
-#include <exception>
-#include <functional>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabb.extreme;
 
 import aabb.base;

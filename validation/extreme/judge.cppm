@@ -1,15 +1,7 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <string>
-#include <string_view>
-
 export module aabb.extreme:judge;
 
 import aabb.pipeline;
+import aabb.std;
 import aabb.truth;
 import :exact_frames;
 import :scene;

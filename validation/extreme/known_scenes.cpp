@@ -1,6 +1,3 @@
-module;
-#include <vector>
-
 module aabb.extreme;
 
 namespace aabb {

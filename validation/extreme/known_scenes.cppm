@@ -1,9 +1,6 @@
-module;
-#include <cstdint>
-#include <vector>
-
 export module aabb.extreme:known_scenes;
 
+import aabb.std;
 import :scene;
 
 export namespace aabb {

@@ -1,19 +1,12 @@
 module;
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <numbers>
 #include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 /// What lists of scenes are written with.
 module aabb.extreme:making;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import :scene;
 
 namespace aabb {

@@ -1,17 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 export module aabb.extreme:scene;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 import :arithmetic;
 
 export namespace aabb {

@@ -1,7 +1,3 @@
-module;
-#include <array>
-#include <vector>
-
 module aabb.extreme;
 
 import aabb.geometry;

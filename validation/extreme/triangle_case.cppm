@@ -1,10 +1,7 @@
-module;
-#include <string>
-#include <vector>
-
 export module aabb.extreme:triangle_case;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

@@ -1,12 +1,6 @@
 module;
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "../engines/exact_decision.hpp"
 
 module aabb.truth;

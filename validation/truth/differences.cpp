@@ -1,7 +1,3 @@
-module;
-#include <cstddef>
-#include <span>
-
 module aabb.truth;
 
 import aabb.geometry;

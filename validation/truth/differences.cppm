@@ -1,13 +1,7 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-
 export module aabb.truth:differences;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabb {
 

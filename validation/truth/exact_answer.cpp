@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabb.truth;
 
 import aabb.geometry;

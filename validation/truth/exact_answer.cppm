@@ -1,15 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
 export module aabb.truth:exact_answer;
 
 import aabb.geometry;
 import aabb.pipeline;
+import aabb.std;
 
 export namespace aabb {
 

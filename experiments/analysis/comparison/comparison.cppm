@@ -1,18 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 /// What changed between the results of two runs, A and B: two commits, or two machines. Times are compared as ratios to
 /// a peer in the same repeat, for machines and hours differ in speed; answers, counts and bytes do not vary at all.
 export module aabblab.comparison;
 
+import aabb.std;
 import aabblab.results;
 import aabblab.scenes;
 import aabblab.statistics;

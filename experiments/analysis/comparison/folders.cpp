@@ -1,15 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <iterator>
-#include <map>
-#include <string>
-#include <system_error>
-#include <utility>
-#include <vector>
-
 module aabblab.comparison;
 
 import aabb.base;

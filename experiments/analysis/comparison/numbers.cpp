@@ -1,14 +1,3 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <set>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.comparison;
 
 import aabb.counters;

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <map>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.comparison;
 
 import aabblab.tables;

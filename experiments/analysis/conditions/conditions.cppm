@@ -1,21 +1,8 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <initializer_list>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 /// What experiments measured, read from their results folders: condition by condition, whatever seeds and processes.
 export module aabblab.conditions;
 
 import aabb.registry;
+import aabb.std;
 import aabblab.figures;
 import aabblab.metrics;
 import aabblab.results;

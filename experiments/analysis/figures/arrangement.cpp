@@ -1,13 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <iterator>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.figures;
 
 import aabblab.scale;

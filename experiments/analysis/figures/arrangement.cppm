@@ -1,11 +1,7 @@
-module;
-#include <cstddef>
-#include <string>
-#include <vector>
-
 /// Where the parts of a figure go, in ems of its font, so that no legend, name or mark covers data.
 module aabblab.figures:arrangement;
 
+import aabb.std;
 import aabblab.scale;
 import :drawing;
 import :sheet;

@@ -1,10 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cstddef>
-#include <string>
-#include <vector>
-
 module aabblab.figures;
 
 import aabblab.digits;

@@ -1,11 +1,7 @@
-module;
-#include <cstddef>
-#include <string>
-#include <vector>
-
 /// A figure made ready to be drawn: which points have a place in it, and on which axes.
 module aabblab.figures:drawing;
 
+import aabb.std;
 import aabblab.scale;
 import :figure;
 

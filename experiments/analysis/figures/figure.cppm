@@ -1,10 +1,7 @@
-module;
-#include <string>
-#include <utility>
-#include <vector>
-
 /// What a figure is made of.
 export module aabblab.figures:figure;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,9 +1,3 @@
-module;
-#include <filesystem>
-#include <span>
-#include <string>
-#include <system_error>
-
 module aabblab.figures;
 
 import aabb.base;

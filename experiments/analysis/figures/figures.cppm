@@ -1,10 +1,7 @@
-module;
-#include <filesystem>
-#include <span>
-#include <string>
-
 /// Figures for a paper: readable in black and white, and by the colour-blind.
 export module aabblab.figures;
+
+import aabb.std;
 
 export import :figure;
 

@@ -1,17 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <iterator>
-#include <numbers>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <variant>
-#include <vector>
-
 module aabblab.figures;
 
 import aabblab.markup;

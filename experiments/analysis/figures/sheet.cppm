@@ -1,12 +1,7 @@
-module;
-#include <string>
-#include <string_view>
-#include <variant>
-#include <vector>
-
 /// A figure as lines, areas and texts with their places, as any format of pictures has them.
 module aabblab.figures:sheet;
 
+import aabb.std;
 import :figure;
 
 namespace aabblab {

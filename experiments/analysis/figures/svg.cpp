@@ -1,13 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <array>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <variant>
-#include <vector>
-
 module aabblab.figures;
 
 import aabblab.markup;

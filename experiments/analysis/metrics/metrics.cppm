@@ -1,17 +1,8 @@
-module;
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Metrics: numbers computed from the rows of results, after the run that wrote them. They stand
 /// in metric_list.cpp.
 export module aabblab.metrics;
 
+import aabb.std;
 import aabblab.results;
 
 export namespace aabblab {

@@ -1,13 +1,5 @@
 module;
-#include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <numeric>
-#include <span>
-#include <vector>
 
 module aabblab.statistics;
 

@@ -1,15 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numeric>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.statistics;
 
 namespace aabblab {

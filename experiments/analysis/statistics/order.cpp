@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 module aabblab.statistics;
 
 namespace aabblab {

@@ -1,14 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <span>
-#include <string>
-#include <vector>
-
 /// How claims are decided: intervals by a bootstrap over processes, seeds and repeats, and the rule that turns them
 /// into an outcome. Knows nothing of what was measured.
 export module aabblab.statistics;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <iterator>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.tables;
 
 import aabblab.text;

@@ -1,16 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.tables;
 
 import aabblab.digits;

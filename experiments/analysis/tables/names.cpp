@@ -1,11 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <set>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.tables;
 
 import aabblab.text;

@@ -1,16 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.tables;
 
 import aabblab.numbers;

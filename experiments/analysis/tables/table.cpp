@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 module aabblab.tables;
 
 import aabblab.text;

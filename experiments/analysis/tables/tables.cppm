@@ -1,18 +1,9 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Results as tables, scene by scene.
 export module aabblab.tables;
 
 import aabb.counters;
 import aabb.registry;
+import aabb.std;
 import aabblab.metrics;
 import aabblab.results;
 import aabblab.scenes;

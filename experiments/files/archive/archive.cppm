@@ -1,13 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <span>
-#include <string>
-
 /// Files of a folder as one: tar, compressed by xz, so that any system can open it without us.
 export module aabblab.archive;
 
+import aabb.std;
 import aabblab.processes;
 
 export namespace aabblab {

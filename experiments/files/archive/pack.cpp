@@ -2,14 +2,6 @@ module;
 #include <archive.h>
 #include <archive_entry.h>
 
-#include <cstddef>
-#include <exception>
-#include <filesystem>
-#include <memory>
-#include <span>
-#include <string>
-#include <utility>
-
 module aabblab.archive;
 
 import aabb.base;

@@ -1,17 +1,8 @@
 module;
 #include <archive.h>
 #include <archive_entry.h>
+#include <stdlib.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <set>
-#include <string>
-#include <system_error>
 
 module aabblab.archive;
 

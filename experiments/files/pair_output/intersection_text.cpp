@@ -1,7 +1,3 @@
-module;
-#include <cstdint>
-#include <string>
-
 module aabblab.pair_output;
 
 import aabb.base;

@@ -1,16 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <initializer_list>
-#include <iterator>
-#include <span>
-#include <string>
-#include <string_view>
-
 module aabblab.pair_output;
 
 namespace aabblab {

@@ -1,16 +1,8 @@
-module;
-#include <cstdint>
-#include <filesystem>
-#include <initializer_list>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-
 /// Pairs and contacts on their way out of the program.
 export module aabblab.pair_output;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.files;
 
 export namespace aabblab {

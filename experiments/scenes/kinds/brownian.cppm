@@ -1,12 +1,7 @@
-module;
-#include <cstdint>
-#include <optional>
-#include <string_view>
-#include <tuple>
-
 module aabblab.scenes:brownian;
 
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :drift;
 import :parameters;

@@ -1,17 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 module aabblab.scenes:cloud;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :drift;
 import :random;

@@ -1,15 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-#include <vector>
 
 module aabblab.scenes:clustered;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :random;
 

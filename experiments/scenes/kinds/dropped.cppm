@@ -1,19 +1,9 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 module aabblab.scenes:dropped;
 
 import aabb.base;
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 import aabblab.stepping;
 import :dropped_world;

@@ -1,14 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
 
 module aabblab.scenes:far;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 
 namespace aabblab {

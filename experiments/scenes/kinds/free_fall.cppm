@@ -1,15 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
 
 module aabblab.scenes:free_fall;
 
 import aabb.geometry;
+import aabb.std;
 import :boxes;
 import :random;
 

@@ -1,16 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
 
 module aabblab.scenes:hollow_sphere;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.vectors;
 import :boxes;
 import :random;

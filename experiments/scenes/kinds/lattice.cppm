@@ -1,15 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <tuple>
 
 module aabblab.scenes:lattice;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :parameters;
 

@@ -1,9 +1,6 @@
-module;
-#include <cstdint>
-#include <string_view>
-
 module aabblab.scenes:line;
 
+import aabb.std;
 import :boxes;
 
 namespace aabblab {

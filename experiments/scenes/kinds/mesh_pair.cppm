@@ -1,17 +1,11 @@
 module;
 #include <Eigen/Geometry>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 module aabblab.scenes:mesh_pair;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :parameters;
 import :posed_meshes;
 import :random;

@@ -1,20 +1,11 @@
 module;
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 module aabblab.scenes:mesh_swarm;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 import :drift;
 import :parameters;

@@ -1,16 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-#include <vector>
 
 module aabblab.scenes:mixed_sizes;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :drift;
 import :sizes;

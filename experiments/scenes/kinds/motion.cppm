@@ -1,16 +1,9 @@
-module;
-#include <memory>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 module aabblab.scenes:motion;
 
 import aabb.geometry;
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 
 namespace aabblab {

@@ -1,14 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <tuple>
 
 module aabblab.scenes:needles;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :drift;
 

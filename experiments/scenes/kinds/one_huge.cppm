@@ -1,16 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <tuple>
 
 module aabblab.scenes:one_huge;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import :boxes;
 import :drift;
 import :random;

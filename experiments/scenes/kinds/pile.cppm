@@ -1,17 +1,11 @@
 module;
 #include <Eigen/Core>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <tuple>
-#include <vector>
 
 module aabblab.scenes:pile;
 
 import aabb.geometry;
 import aabb.policy;
+import aabb.std;
 import aabblab.vectors;
 import :boxes;
 import :drift;

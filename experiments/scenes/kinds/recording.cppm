@@ -1,13 +1,8 @@
-module;
-#include <memory>
-#include <string>
-#include <string_view>
-#include <tuple>
-
 module aabblab.scenes:recording;
 
 import aabb.pipeline;
 import aabb.policy;
+import aabb.std;
 import aabblab.files;
 
 namespace aabblab {

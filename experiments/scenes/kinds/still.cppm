@@ -1,14 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <algorithm>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
 
 module aabblab.scenes:still;
 
 import aabb.geometry;
+import aabb.std;
 import :boxes;
 import :parameters;
 import :random;

@@ -1,12 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <cstdint>
-#include <span>
-#include <string_view>
 
 module aabblab.scenes:teleport;
 
 import aabb.geometry;
+import aabb.std;
 import :boxes;
 import :parameters;
 import :random;

@@ -1,13 +1,8 @@
-module;
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string_view>
-
 /// Generated pairs of triangles, class by class: how the two lie to each other, and where and how large they are.
 export module aabblab.scenes:pair_classes;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

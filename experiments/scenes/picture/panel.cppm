@@ -1,15 +1,8 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// The drawing of one frame, with its axes.
 module aabblab.picture:panel;
 
 import aabb.geometry;
+import aabb.std;
 import :survey;
 
 namespace aabblab {

@@ -1,8 +1,7 @@
-module;
-#include <string>
-
 /// Pictures of scenes, for people to see at a glance what a scene is.
 export module aabblab.picture;
+
+import aabb.std;
 
 export import :survey;
 

@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-
 module aabblab.picture;
 
 import aabb.geometry;

@@ -1,15 +1,7 @@
-module;
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 export module aabblab.picture:survey;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,9 +1,8 @@
-module;
-#include <cmath>
-
 /// Sine and cosine that are the same on every machine: libraries differ in the last digit, additions and products do
 /// not.
 module aabblab.scenes:circle;
+
+import aabb.std;
 
 namespace aabblab {
 

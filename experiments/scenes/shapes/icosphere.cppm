@@ -1,17 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 module aabblab.scenes:icosphere;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.vectors;
 import :shape_size;
 

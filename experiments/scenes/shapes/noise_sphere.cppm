@@ -1,12 +1,10 @@
 module;
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
-#include <string_view>
 
 module aabblab.scenes:noise_sphere;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.vectors;
 import :circle;
 import :random;

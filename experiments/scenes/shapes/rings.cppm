@@ -1,11 +1,8 @@
-module;
-#include <cmath>
-#include <cstdint>
-
 /// Meshes of rings: how many rings of how many vertices, and the triangles between neighbours.
 module aabblab.scenes:rings;
 
 import aabb.geometry;
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,12 +1,8 @@
-module;
-#include <cstdint>
-#include <string_view>
-#include <tuple>
-
 /// The one parameter of every shape.
 module aabblab.scenes:shape_size;
 
 import aabb.policy;
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,10 +1,7 @@
-module;
-#include <cstdint>
-#include <string_view>
-
 module aabblab.scenes:slivers;
 
 import aabb.geometry;
+import aabb.std;
 import :shape_size;
 
 namespace aabblab {

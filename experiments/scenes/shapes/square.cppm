@@ -1,10 +1,7 @@
-module;
-#include <cstdint>
-#include <string_view>
-
 module aabblab.scenes:square;
 
 import aabb.geometry;
+import aabb.std;
 import :rings;
 import :shape_size;
 

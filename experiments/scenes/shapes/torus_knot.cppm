@@ -1,11 +1,10 @@
 module;
 #include <Eigen/Geometry>
-#include <cstdint>
-#include <string_view>
 
 module aabblab.scenes:torus_knot;
 
 import aabb.geometry;
+import aabb.std;
 import aabblab.vectors;
 import :circle;
 import :rings;

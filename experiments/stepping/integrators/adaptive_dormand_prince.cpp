@@ -5,11 +5,6 @@ module;
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <boost/numeric/odeint/util/odeint_error.hpp>
 
-#include <limits>
-#include <memory>
-#include <string>
-#include <vector>
-
 module aabblab.stepping;
 
 import :first_order;

@@ -5,17 +5,6 @@ module;
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include <algorithm>
-#include <concepts>
-#include <cstddef>
-#include <exception>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 module aabblab.stepping;
 
 import :first_order;

@@ -1,9 +1,6 @@
 module;
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
-#include <memory>
-#include <vector>
-
 module aabblab.stepping;
 
 import :first_order;

@@ -1,11 +1,6 @@
 module;
 #include <boost/numeric/odeint/stepper/symplectic_euler.hpp>
 
-#include <functional>
-#include <memory>
-#include <utility>
-#include <vector>
-
 module aabblab.stepping;
 
 namespace aabblab {

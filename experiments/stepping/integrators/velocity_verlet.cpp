@@ -1,11 +1,6 @@
 module;
 #include <boost/numeric/odeint/stepper/velocity_verlet.hpp>
 
-#include <functional>
-#include <memory>
-#include <utility>
-#include <vector>
-
 module aabblab.stepping;
 
 namespace aabblab {

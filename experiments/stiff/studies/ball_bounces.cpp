@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabblab.stiff;
 
 import :ball_world;

@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 module aabblab.stiff;
 
 import :rules;

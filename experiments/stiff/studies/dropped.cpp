@@ -1,16 +1,3 @@
-module;
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <future>
-#include <iterator>
-#include <span>
-#include <string>
-#include <thread>
-#include <vector>
-
 module aabblab.stiff;
 
 import :dropped_balls;

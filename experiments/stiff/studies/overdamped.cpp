@@ -1,9 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
-
 module aabblab.stiff;
 
 import :ball_world;

@@ -1,12 +1,3 @@
-module;
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.stiff;
 
 import :method;

@@ -1,12 +1,5 @@
 module;
-#include <algorithm>
-#include <cmath>
 #include <complex>
-#include <cstddef>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
 module aabblab.stiff;
 

@@ -1,9 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <cmath>
-#include <string>
-
 module aabblab.digits;
 
 namespace aabblab {

@@ -1,8 +1,7 @@
-module;
-#include <string>
-
 /// Computed numbers without the digits that only rounding has made, as files have them.
 export module aabblab.digits;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,13 +1,5 @@
 module;
-#include <algorithm>
-#include <cstddef>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 module aabblab.json;
 
@@ -72,7 +64,7 @@ const json& content_at(const void* content) {
 
 json_value::json_value(std::string file, std::string_view text, const std::string& otherwise, position where) {
     json content = parsed(file, text, otherwise, where);
-    in_ = std::make_shared<document>(document{std::move(file), std::move(content)});
+    in_ = std::make_unique<document>(document{std::move(file), std::move(content)});
     content_ = &in_->content;
 }
 

@@ -1,15 +1,8 @@
-module;
-#include <array>
-#include <cstddef>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// JSON that anybody may have written or altered: each member is asked for by its type, and one of another type gets
 /// one sentence with the file and the way to it.
 export module aabblab.json;
+
+import aabb.std;
 
 export namespace aabblab {
 

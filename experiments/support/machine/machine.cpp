@@ -5,14 +5,6 @@ module;
 #include <gnu/libc-version.h>
 #endif
 
-#include <charconv>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <optional>
-#include <string>
-
 module aabblab.machine;
 
 namespace aabblab {

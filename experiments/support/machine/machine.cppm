@@ -1,13 +1,7 @@
-module;
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
-
 /// The machine that measures, as Linux tells it.
 export module aabblab.machine;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,9 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <string>
-#include <string_view>
-
 module aabblab.markup;
 
 namespace aabblab {

@@ -1,11 +1,7 @@
-module;
-#include <concepts>
-#include <initializer_list>
-#include <string>
-#include <string_view>
-
 /// HTML and SVG, element by element.
 export module aabblab.markup;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,14 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <string>
-#include <string_view>
-
 module aabblab.numbers;
 
 namespace aabblab {

@@ -1,10 +1,7 @@
-module;
-#include <cstdint>
-#include <string>
-#include <string_view>
-
 /// Numbers as people read them.
 export module aabblab.numbers;
+
+import aabb.std;
 
 export namespace aabblab {
 

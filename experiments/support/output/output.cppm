@@ -1,11 +1,7 @@
-module;
-#include <cstddef>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-
 /// What the program says on its standard streams.
 export module aabblab.output;
+
+import aabb.std;
 
 export namespace aabblab {
 

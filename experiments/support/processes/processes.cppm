@@ -1,11 +1,7 @@
-module;
-#include <chrono>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 /// Other programs, run to their end.
 export module aabblab.processes;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,13 +1,6 @@
 module;
 #include <sys/wait.h>
 
-#include <cstring>
-#include <filesystem>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 module aabblab.processes;
 
 import aabb.base;

@@ -1,16 +1,9 @@
 module;
 #include <sched.h>
 
-#include <chrono>
-#include <cstddef>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <sstream>
-#include <string>
-#include <thread>
-
 module aabblab.processor;
+
+import aabb.std;
 
 namespace aabblab {
 

@@ -1,13 +1,7 @@
 module;
 #include <unistd.h>
 
-#include <chrono>
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
-#include <string>
-#include <string_view>
-#include <utility>
 
 module aabblab.progress;
 

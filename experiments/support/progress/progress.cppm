@@ -1,11 +1,7 @@
-module;
-#include <chrono>
-#include <cstddef>
-#include <string>
-#include <string_view>
-
 /// How far long work has come, for whoever waits at a terminal.
 export module aabblab.progress;
+
+import aabb.std;
 
 export namespace aabblab {
 

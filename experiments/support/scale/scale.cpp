@@ -1,15 +1,6 @@
 module;
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.scale;
 
 namespace aabblab {

@@ -1,9 +1,7 @@
-module;
-#include <string>
-#include <vector>
-
 /// The range of an axis and its ticks.
 export module aabblab.scale;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,13 +1,6 @@
 module;
 #include <openssl/evp.h>
 
-#include <array>
-#include <cstddef>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-
 module aabblab.sha256;
 
 namespace aabblab {

@@ -1,9 +1,7 @@
-module;
-#include <string>
-#include <string_view>
-
 /// Checksums that every system has a tool for.
 export module aabblab.sha256;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,9 +1,5 @@
 module;
-#include <algorithm>
-#include <chrono>
 #include <ctime>
-#include <limits>
-#include <string>
 
 module aabblab.stopwatch;
 

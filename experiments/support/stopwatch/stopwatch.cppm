@@ -1,8 +1,7 @@
-module;
-#include <chrono>
-
 /// The clocks that all times are taken with.
 export module aabblab.stopwatch;
+
+import aabb.std;
 
 export namespace aabblab {
 

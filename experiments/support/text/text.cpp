@@ -1,10 +1,3 @@
-module;
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 module aabblab.text;
 
 namespace aabblab {

@@ -1,11 +1,7 @@
-module;
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 /// Text in lines of so many characters, which are counted, not bytes.
 export module aabblab.text;
+
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,6 +1,5 @@
 module;
 #include <Eigen/Core>
-#include <cmath>
 
 /// What scenes and bodies do with Eigen's vectors beside adding and scaling them, which is done for each component by
 /// itself. Sums are taken from left to right, while the order of Eigen's follows from the processor. A vector stands
@@ -9,6 +8,7 @@ module;
 export module aabblab.vectors;
 
 import aabb.geometry;
+import aabb.std;
 
 export namespace aabblab {
 

@@ -1,14 +1,6 @@
 module;
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <span>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

@@ -1,14 +1,6 @@
 module;
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

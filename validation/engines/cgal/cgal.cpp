@@ -1,13 +1,6 @@
 module;
 #include <CGAL/box_intersection_d.h>
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

@@ -1,9 +1,6 @@
 module;
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 
-#include <string_view>
-#include <vector>
-
 #include "../exact_decision.hpp"
 
 module aabb.engines;

@@ -4,13 +4,6 @@ module;
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <iterator>
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "../exact_decision.hpp"
 
 module aabb.engines;

@@ -1,11 +1,4 @@
 module;
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <new>
-#include <span>
-#include <vector>
 
 #include "device.hpp"
 

@@ -1,14 +1,4 @@
 module;
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <new>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "device.hpp"
 
@@ -169,7 +159,7 @@ private:
     }
 
     RTCBuildQuality quality_;
-    std::shared_ptr<std::ptrdiff_t> held_ = std::make_shared<std::ptrdiff_t>(0);  // bytes that Embree holds
+    std::shared_ptr<std::ptrdiff_t> held_ = std::make_unique<std::ptrdiff_t>(0);  // bytes that Embree holds
 };
 
 template <RTCBuildQuality Quality>

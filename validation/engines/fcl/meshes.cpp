@@ -4,18 +4,6 @@ module;
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <new>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;

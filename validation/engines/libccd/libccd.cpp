@@ -1,11 +1,6 @@
 module;
 #include <ccd/ccd.h>
 
-#include <cstdint>
-#include <memory>
-#include <string_view>
-#include <tuple>
-
 module aabb.engines;
 
 import :engine;

@@ -1,19 +1,6 @@
 module;
 #include <ode/ode.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <new>
-#include <span>
-#include <string>
-#include <vector>
-
 module aabb.engines;
 
 import aabb.base;
