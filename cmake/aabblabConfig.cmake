@@ -106,7 +106,7 @@ function(aabblab_match_importers)
         if(NOT first)
             set(first ${target})
             set(first_dialect ${dialect})
-            set_target_properties(aabblab::core aabblab::strategies aabblab::registry
+            set_target_properties(aabblab::std aabblab::core aabblab::strategies aabblab::registry
                                   PROPERTIES CXX_STANDARD ${standard} CXX_EXTENSIONS ${extensions})
         elseif(NOT dialect STREQUAL first_dialect)
             message(FATAL_ERROR "aabblab's module files are made once, but ${first} is compiled in ${first_dialect} and ${target} in ${dialect}: give both the same CXX_STANDARD and CXX_EXTENSIONS.")
