@@ -124,8 +124,6 @@ function(aabblab_registry)
         PUBLIC FILE_SET CXX_MODULES BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}
                FILES registry/registry.cppm
                      registry/composed.cppm
-                     registry/composed_global_search.cppm
-                     registry/composed_local_detection.cppm
                      selection/auto_detector.cppm
                      selection/selection.cppm
                      ${to}/kinds.cppm

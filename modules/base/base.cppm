@@ -4,12 +4,9 @@ export module aabb.base;
 
 import aabb.std;
 
-export import :append_whole;
-export import :error;
 export import :floating_point;
 export import :frame_state;
 export import :large_pages;
 export import :memory;
-export import :shortest;
 export import :statement;
 export import :worker_threads;

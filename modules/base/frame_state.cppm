@@ -4,9 +4,15 @@ module;
 export module aabb.base:frame_state;
 
 import aabb.std;
-import :error;
 
 export namespace aabb {
+
+/// Input that cannot be used: a malformed file, an unknown name, a NaN, a pose that is not rigid.
+/// `what()` is one sentence for the user; the program prints it and exits with status 2.
+class input_error : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
 
 /// Whether a stage has a frame to search, and whether it can take another one. Stages keep lists and pairs from frame
 /// to frame, so one that an exception left half-changed (std::bad_alloc, mostly) would be wrong later on without a
@@ -51,5 +57,18 @@ private:
 
     state state_ = state::none;
 };
+
+/// Calls `append`, which appends to a list; when it throws, what it had appended is taken back.
+template <class T, class Allocator, class Append>
+void append_whole(std::vector<T, Allocator>& list, Append append) {
+    const std::size_t before = list.size();
+    try {
+        append();
+    } catch (...) {
+        list.resize(before);
+        throw;
+    }
+    assert(list.size() >= before);
+}
 
 }  // namespace aabb

@@ -1,9 +1,15 @@
 export module aabb.base:statement;
 
 import aabb.std;
-import :shortest;
 
 export namespace aabb {
+
+/// The shortest decimals that read back to the same number.
+template <std::floating_point Real>
+[[nodiscard]] std::string shortest(Real number) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
 
 /// A sentence about numbers, which stand in it as their names in braces: "a list of {pairs} pairs". Programs read the
 /// numbers, `to_text` makes the sentence.

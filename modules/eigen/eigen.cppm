@@ -3,7 +3,6 @@
 /// these options of everybody who imports it. So it asks for no alignment, and who does not use Eigen needs none.
 export module aabb.eigen;
 
-import aabb.base;
 import aabb.geometry;
 import aabb.std;
 
@@ -61,22 +60,17 @@ concept EigenColumns = requires(const Matrix& m) {
 namespace aabb::detail {
 
 template <class Element>
-struct scalar_of {
-    using type = typename Element::value_type;
-};
+typename Element::value_type scalar_in(const Element& of);
 template <class Real>
-struct scalar_of<vec3<Real>> {
-    using type = Real;
-};
-template <>
-struct scalar_of<box> {
-    using type = float;
-};
+Real scalar_in(const vec3<Real>& of);
+float scalar_in(const box& of);
+template <class Element>
+using scalar_of = decltype(scalar_in(std::declval<const Element&>()));
 
 /// The columns of a matrix as the elements of our own that are laid out like them.
 template <class Element, class Matrix>
 [[nodiscard]] inline std::span<const Element> elements_in(const Matrix& m) {
-    static_assert(std::same_as<typename Matrix::Scalar, typename scalar_of<Element>::type>);
+    static_assert(std::same_as<typename Matrix::Scalar, scalar_of<Element>>);
     constexpr std::ptrdiff_t rows = sizeof(Element) / sizeof(typename Matrix::Scalar);
     const auto count = static_cast<std::size_t>(Matrix::IsRowMajor ? m.rows() : m.cols());
     if (count > 1 && (m.innerStride() != 1 || m.outerStride() != rows))
@@ -94,7 +88,7 @@ export namespace aabb {
 template <class Map, class Elements>
 [[nodiscard]] inline Map map_over(Elements& elements) {
     using element = typename Elements::value_type;
-    using scalar = typename detail::scalar_of<element>::type;
+    using scalar = detail::scalar_of<element>;
     constexpr std::size_t rows = sizeof(element) / sizeof(scalar);
     static_assert(EigenColumns<Map, int{rows}> && std::same_as<typename Map::Scalar, scalar>);
     // Found by its first member, which is an array of them or begins with one.

@@ -2,8 +2,7 @@ export module aabb.geometry:box;
 
 import aabb.base;
 import aabb.std;
-import :triangle;
-import :vec3;
+import :points;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

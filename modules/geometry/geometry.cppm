@@ -1,16 +1,14 @@
 /// Points, triangles, boxes, meshes and poses, and what is decided by their coordinates alone.
 export module aabb.geometry;
 
+export import aabb.base;
 import aabb.std;
 
 export import :box;
-export import :contact;
 export import :index_pair;
 export import :intersection;
-export import :lanes;
 export import :mesh;
 export import :pose;
 export import :predicates;
-export import :triangle;
 export import :triangle_box;
-export import :vec3;
+export import :points;

@@ -12,9 +12,18 @@ struct index_pair {
     friend constexpr auto operator<=>(const index_pair&, const index_pair&) = default;
 };
 
-/// The pair with the lower index first.
 [[nodiscard]] constexpr index_pair ordered_pair(std::uint32_t a, std::uint32_t b) noexcept {
     return a < b ? index_pair{a, b} : index_pair{b, a};
 }
+
+/// Two triangles of two objects that intersect; a < b are objects.
+struct contact {
+    std::uint32_t a;
+    std::uint32_t b;
+    std::uint32_t triangle_a;
+    std::uint32_t triangle_b;
+
+    friend constexpr auto operator<=>(const contact&, const contact&) = default;
+};
 
 }  // namespace aabb

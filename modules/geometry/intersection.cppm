@@ -2,7 +2,6 @@ export module aabb.geometry:intersection;
 
 import aabb.std;
 import :pose;
-import :vec3;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -20,7 +19,6 @@ enum class intersection_kind : std::uint8_t {
 inline constexpr std::array<std::string_view, 5> intersection_kind_names = {"none", "point", "segment", "transversal",
                                                                             "overlap"};
 
-/// "none", "point", "segment", "transversal", "overlap".
 [[nodiscard]] constexpr std::string_view name_of(intersection_kind kind) noexcept {
     return intersection_kind_names[static_cast<std::uint8_t>(kind)];
 }

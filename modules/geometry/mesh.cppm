@@ -1,10 +1,7 @@
 export module aabb.geometry:mesh;
 
-import aabb.base;
 import aabb.std;
 import :box;
-import :triangle;
-import :vec3;
 
 export namespace aabb {
 

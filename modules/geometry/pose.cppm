@@ -1,10 +1,7 @@
 export module aabb.geometry:pose;
 
-import aabb.base;
 import aabb.std;
 import :box;
-import :triangle;
-import :vec3;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

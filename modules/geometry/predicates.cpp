@@ -60,7 +60,6 @@ public:
 
     void subtract(double x, double y, double z) noexcept { add(-x, y, z); }
 
-    /// Adds det(p, q, r).
     void add_determinant(const vec3d& p, const vec3d& q, const vec3d& r) noexcept {
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3;
@@ -212,18 +211,13 @@ bool area_sign(const vec3i& p, const vec3i& q, int x, int y, bool is_exact, int&
     return is_exact || area >= least || area <= -least;
 }
 
-/// b, c and d from a, if no coordinate needs rounding.
-bool exact_rows(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d, std::array<vec3d, 3>& rows) noexcept {
-    return exact_difference(b, a, rows[0]) && exact_difference(c, a, rows[1]) && exact_difference(d, a, rows[2]);
-}
-bool exact_rows(const vec3d& a, const vec3d& b, const vec3d& c, std::array<vec3d, 2>& rows) noexcept {
-    return exact_difference(b, a, rows[0]) && exact_difference(c, a, rows[1]);
-}
-
 product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
-    if (std::array<vec3d, 3> rows; exact_rows(a, b, c, d, rows)) {
-        sum.add_determinant(rows[0], rows[1], rows[2]);
+    vec3d p{};
+    vec3d q{};
+    vec3d r{};
+    if (exact_difference(b, a, p) && exact_difference(c, a, q) && exact_difference(d, a, r)) {
+        sum.add_determinant(p, q, r);
         return sum;
     }
     sum.add_determinant(b, c, d);
@@ -235,8 +229,10 @@ product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3
 
 product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y) noexcept {
     product_sum sum;
-    if (std::array<vec3d, 2> rows; exact_rows(a, b, c, rows)) {
-        sum.add_cross(rows[0], rows[1], x, y);
+    vec3d p{};
+    vec3d q{};
+    if (exact_difference(b, a, p) && exact_difference(c, a, q)) {
+        sum.add_cross(p, q, x, y);
         return sum;
     }
     sum.add_cross(a, b, x, y);

@@ -3,9 +3,7 @@
 export module aabb.geometry:predicates;
 
 import aabb.std;
-import :lanes;
-import :triangle;
-import :vec3;
+import :points;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -78,8 +76,7 @@ struct scaled_double {
 /// below 2^33, and what is added up to a volume stays below 3 · 2^49: nothing was rounded, and the bound is zero.
 class orientations {
 public:
-    /// All points asked for are corners of `s` or `t`, which both outlive this and lie in the closed box from `low` to
-    /// `high`.
+    /// All points asked for are corners of `s` or `t`, which outlive this and lie in the box from `low` to `high`.
     inline orientations(const triangle3d& s, const triangle3d& t, const lanes<double>& low,
                         const lanes<double>& high) noexcept
         : s_(s), t_(t) {

@@ -2,8 +2,6 @@ export module aabb.geometry:triangle_box;
 
 import aabb.std;
 import :box;
-import :triangle;
-import :vec3;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -4,21 +4,17 @@ module;
 export module aabb.global_search;
 
 export import :interval_ends;
-export import :inversions;
 export import :membership;
 export import :pair_set;
-export import :partition_policy;
+export import :policies;
 export import :projection;
 export import :projection_lists;
-export import :sort_policy;
 export import :spread;
 export import :subset_lists;
-export import :sweep_policy;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.policy;
+export import aabb.counters;
+export import aabb.geometry;
+export import aabb.policy;
 import aabb.std;
 
 export namespace aabb {

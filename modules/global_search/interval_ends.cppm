@@ -3,11 +3,9 @@ module;
 
 export module aabb.global_search:interval_ends;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.std;
 import :pair_set;
+import :policies;
 
 // What sweeps share that keep the overlapping pairs between frames and follow the swaps of a sort.
 export namespace aabb {
@@ -60,6 +58,22 @@ inline void take_note_of_swap(const interval_end& passed, const interval_end& mo
     }
 }
 
+/// What they hand out, and with which strategies they go.
+class kept_pairs {
+public:
+    template <class... All>
+    static constexpr std::string_view refuses() {
+        return refusal_of_coherent_sweep<All...>();
+    }
+
+    void search(std::vector<index_pair>& pairs) const {
+        pairs.insert(pairs.end(), pairs_.pairs().begin(), pairs_.pairs().end());
+    }
+
+protected:
+    pair_set pairs_;
+};
+
 /// Sweeps a list of ends for the pairs of which one at least is new.
 class interval_sweep {
 public:
@@ -88,9 +102,7 @@ public:
         return tests;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(place_) + bytes_of(active_[0]) + bytes_of(active_[1]);
-    }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(place_, active_); }
 
 private:
     std::array<std::vector<std::uint32_t>, 2> active_;  // those met and not yet left, known ones and new ones

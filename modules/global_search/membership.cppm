@@ -35,12 +35,10 @@ public:
         }
     }
 
-    /// How many are present.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] inline bool contains(std::uint32_t id) const noexcept {
         return id < state_.size() && (state_[id] == state::coming || state_[id] == state::known);
     }
-    /// How many came.
     [[nodiscard]] std::size_t arrivals() const noexcept { return arrivals_; }
     [[nodiscard]] inline bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::coming; }
     [[nodiscard]] bool any_departures() const noexcept { return departures_; }

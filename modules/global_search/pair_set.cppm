@@ -3,7 +3,6 @@ module;
 
 export module aabb.global_search:pair_set;
 
-import aabb.base;
 import aabb.geometry;
 import aabb.std;
 
@@ -51,7 +50,7 @@ public:
             if (goes(pairs_[i])) erase(pairs_[i]);
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(pairs_) + bytes_of(table_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(pairs_, table_); }
 
 private:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();

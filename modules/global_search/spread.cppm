@@ -1,6 +1,5 @@
 export module aabb.global_search:spread;
 
-import aabb.geometry;
 import aabb.std;
 import :membership;
 import :projection;

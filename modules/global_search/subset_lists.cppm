@@ -3,12 +3,8 @@ module;
 
 export module aabb.global_search:subset_lists;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.std;
-import :partition_policy;
-import :projection;
+import :policies;
 
 export namespace aabb {
 
@@ -56,10 +52,7 @@ public:
         return part;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(starts_) + bytes_of(next_) + bytes_of(entries_[0]) + bytes_of(entries_[1]) +
-               bytes_of(entries_[2]);
-    }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, next_, entries_); }
 
 private:
     /// Room for a scene of few objects, some of them huge, and far more than a search of many gains by: 128 MiB and 512

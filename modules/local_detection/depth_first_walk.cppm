@@ -3,13 +3,9 @@ module;
 
 export module aabb.local_detection:depth_first_walk;
 
-import aabb.base;
 import aabb.counters;
-import aabb.geometry;
 import aabb.std;
 import :model;
-import :tree_policy;
-import :triangle_policy;
 
 export namespace aabb {
 
@@ -46,7 +42,7 @@ public:
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(stack_) + bytes_of(nodes_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(stack_, nodes_); }
 
 private:
     using cursor = typename Tree::cursor;

@@ -1,30 +1,21 @@
 export module aabb.local_detection;
 
-export import :build_policy;
 export import :depth_first_walk;
-export import :mesh_fit;
 export import :model;
-export import :tree_policy;
+export import :policies;
 export import :tree_survey;
-export import :triangle_policy;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.policy;
+export import aabb.counters;
+export import aabb.geometry;
+export import aabb.policy;
 import aabb.std;
 
 namespace aabb::detail {
 
 template <class Tree, class Triangle, class Counters>
-struct walk_of {
-    using type = depth_first_walk<Tree, Triangle, Counters>;
-};
+typename Tree::template walk<Triangle, Counters> walk_in(int);
 template <class Tree, class Triangle, class Counters>
-    requires requires { typename Tree::template walk<Triangle, Counters>; }
-struct walk_of<Tree, Triangle, Counters> {
-    using type = typename Tree::template walk<Triangle, Counters>;
-};
+depth_first_walk<Tree, Triangle, Counters> walk_in(...);
 
 }  // namespace aabb::detail
 
@@ -32,8 +23,7 @@ export namespace aabb {
 
 /// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles. The work
 /// is done in A's frame (`relative_pose`). Nothing is allocated once the walk's memory has grown to the deepest query,
-/// and to what is kept from query to query. Every query throws input_error as `require_ieee_arithmetic` and
-/// `relative_pose` do.
+/// and to what queries keep. Every query throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);
@@ -55,7 +45,6 @@ public:
         });
     }
 
-    /// How many pairs there are.
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
@@ -102,7 +91,7 @@ private:
     }
 
     [[no_unique_address]] Triangle triangle_;
-    typename detail::walk_of<Tree, Triangle, Counters>::type walk_;
+    decltype(detail::walk_in<Tree, Triangle, Counters>(0)) walk_;
 };
 
 }  // namespace aabb

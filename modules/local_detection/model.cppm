@@ -1,13 +1,30 @@
 export module aabb.local_detection:model;
 
-import aabb.base;
-import aabb.geometry;
 import aabb.std;
-import :build_policy;
-import :mesh_fit;
-import :tree_policy;
+import :policies;
 
 export namespace aabb {
+
+/// Whether the boxes made of a mesh hold its triangles as they lie now. After a refit that did not come to its end they
+/// may not, and a query would miss pairs without a word: it is refused until a refit succeeds.
+class mesh_fit {
+public:
+    template <class Refit>
+    void renew(Refit refit) {
+        fits_ = false;
+        refit();
+        fits_ = true;
+    }
+
+    /// Before a query.
+    /// @throws input_error when the last refit did not succeed.
+    void require() const {
+        if (!fits_) throw input_error("the last refit of a model did not succeed; refit it before the next query");
+    }
+
+private:
+    bool fits_ = true;
+};
 
 /// A mesh with its tree, built in the mesh's own frame. The mesh must outlive it.
 template <TreePolicy Tree>

@@ -1,8 +1,7 @@
 export module aabb.local_detection:tree_survey;
 
-import aabb.geometry;
 import aabb.std;
-import :tree_policy;
+import :policies;
 
 export namespace aabb {
 

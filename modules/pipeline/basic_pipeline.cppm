@@ -3,12 +3,7 @@ module;
 
 export module aabb.pipeline:basic_pipeline;
 
-import aabb.base;
-import aabb.geometry;
 import aabb.std;
-import :posed_boxes;
-import :scene;
-import :scene_parts;
 import :stage;
 
 export namespace aabb {
@@ -30,8 +25,7 @@ class basic_pipeline {
     static constexpr bool may_divide = DividingSearch<Global>;
 
 public:
-    /// Takes the objects, all of which are present, and builds the models of the scene. Scene and stages must outlive
-    /// the pipeline.
+    /// Takes the objects, all present, and builds the models of the scene. Scene and stages must outlive the pipeline.
     basic_pipeline(const mesh_scene& scene, Global& global, Local& local)
         : scene_(scene), global_(&global), local_(local) {
         if constexpr (may_divide) parts_ = global.divide(scene);
@@ -39,8 +33,7 @@ public:
         if (!parts_) world_.emplace(scene);
         for (std::uint32_t id = 0; id < pieces(); ++id) global.insert(id);
     }
-    /// Without global search every two objects are candidates, and no boxes are made of them in the world, so that they
-    /// may lie anywhere.
+    /// Without global search every two objects are candidates; they get no boxes in the world, so may lie anywhere.
     basic_pipeline(const mesh_scene& scene, Local& local)
         requires may_divide
         : scene_(scene), local_(local) {
@@ -49,14 +42,8 @@ public:
 
     /// An object that was removed comes back, or one goes, from the next frame on; there must be global search.
     /// @throws input_error where there is no such object, where it is present already, or is not.
-    void insert(std::uint32_t object) {
-        for_pieces_of(
-            object, [&](std::uint32_t id) { global_->insert(id); }, [&](std::uint32_t id) { global_->remove(id); });
-    }
-    void remove(std::uint32_t object) {
-        for_pieces_of(
-            object, [&](std::uint32_t id) { global_->remove(id); }, [&](std::uint32_t id) { global_->insert(id); });
-    }
+    void insert(std::uint32_t object) { change_pieces_of(object, true); }
+    void remove(std::uint32_t object) { change_pieces_of(object, false); }
 
     /// One frame, in three steps that can be timed apart. The first takes the poses, one an object, and fits the trees
     /// of meshes that have deformed.
@@ -145,8 +132,8 @@ public:
         return static_cast<std::uint32_t>(scene_.meshes.size());
     }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return (world_ ? world_->bytes() : 0) + bytes_of(poses_) + bytes_of(candidates_) +
-               (parts_ ? bytes_of(parts_->found) : 0) + bytes_of(triangle_pairs_) + bytes_of(contacts_);
+        return (world_ ? world_->bytes() : 0) + bytes_of(poses_, candidates_) + (parts_ ? bytes_of(parts_->found) : 0) +
+               bytes_of(triangle_pairs_, contacts_);
     }
     /// What parts take beside that.
     [[nodiscard]] std::size_t division_bytes() const noexcept { return parts_ ? parts_->bytes() : 0; }
@@ -169,20 +156,20 @@ private:
         return parts_ ? parts_->deforms(model) : scene_.deforms(model);
     }
 
-    /// Calls `change` with all pieces of an object, and `undo` with those that it was called with when it throws.
-    template <class Change, class Undo>
-    void for_pieces_of(std::uint32_t object, Change change, Undo undo) {
+    /// All pieces of an object come or go, or none where one of them must not.
+    void change_pieces_of(std::uint32_t object, bool come) {
+        const auto change = [&](std::uint32_t id, bool comes) { comes ? global_->insert(id) : global_->remove(id); };
         assert(searches());
         if (object >= scene_.mesh_of.size())
             throw input_error("there is no object " + std::to_string(object) + ": the scene has " +
                               std::to_string(scene_.mesh_of.size()));
-        if (!parts_) return change(object);
+        if (!parts_) return change(object, come);
         const auto [first, last] = parts_->pieces_of(object);
         for (std::uint32_t id = first; id < last; ++id) {
             try {
-                change(id);
+                change(id, come);
             } catch (...) {
-                while (id-- > first) undo(id);
+                while (id-- > first) change(id, !come);
                 throw;
             }
         }

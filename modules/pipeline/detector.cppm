@@ -1,12 +1,8 @@
 export module aabb.pipeline:detector;
 
-import aabb.base;
-import aabb.geometry;
 import aabb.std;
 import :basic_pipeline;
-import :scene;
 import :searched_by;
-import :stage;
 
 export namespace aabb {
 

@@ -1,13 +1,12 @@
 export module aabb.pipeline;
 
+export import aabb.global_search;
+export import aabb.local_detection;
 import aabb.std;
 
 export import :basic_pipeline;
-export import :detected_by;
 export import :detector;
 export import :mesh_detection;
-export import :posed_boxes;
-export import :prepared_search;
 export import :scene;
 export import :scene_parts;
 export import :searched_by;

@@ -1,6 +1,5 @@
 export module aabb.pipeline:scene;
 
-import aabb.base;
 import aabb.geometry;
 import aabb.std;
 
@@ -10,13 +9,8 @@ import aabb.std;
 export namespace aabb {
 
 /// Boxes that move. Object i of a frame is its box i.
-class box_scene {
+class box_scene : public kept_in_place {
 public:
-    box_scene() = default;
-    box_scene(const box_scene&) = delete;
-    box_scene& operator=(const box_scene&) = delete;
-    virtual ~box_scene() = default;
-
     [[nodiscard]] virtual std::size_t objects() const = 0;
     /// Frames played in all, the first one included.
     [[nodiscard]] virtual std::size_t frames() const = 0;
@@ -32,13 +26,8 @@ public:
 };
 
 /// Meshes, which mesh each object is, and the objects' poses frame by frame.
-class mesh_scene {
+class mesh_scene : public kept_in_place {
 public:
-    mesh_scene() = default;
-    mesh_scene(const mesh_scene&) = delete;
-    mesh_scene& operator=(const mesh_scene&) = delete;
-    virtual ~mesh_scene() = default;
-
     std::vector<mesh> meshes;
     std::vector<std::uint32_t> mesh_of;  ///< by object
 

@@ -1,9 +1,61 @@
 export module aabb.pipeline:scene_parts;
 
-import aabb.geometry;
 import aabb.std;
+import :scene;
 
 export namespace aabb {
+
+/// Refuses what is not one rigid pose for each object of the scene.
+/// @throws input_error that says how many there are, or names the first object whose pose is not rigid.
+void require_poses(const mesh_scene& scene, std::span<const pose> poses) {
+    if (poses.size() != scene.mesh_of.size())
+        throw input_error("the scene has " + std::to_string(scene.mesh_of.size()) + " objects, but the frame has " +
+                          std::to_string(poses.size()) + " poses");
+    for (std::size_t object = 0; object < poses.size(); ++object) {
+        try {
+            require_rigid(poses[object]);
+        } catch (const input_error& error) {
+            throw input_error("object " + std::to_string(object) + ": " + error.what());
+        }
+    }
+}
+
+/// The box in the world of an object, or of a part of it.
+/// @throws input_error where it lies beyond the range of float.
+[[nodiscard]] box posed_box(const box& local, const pose& at, std::size_t object) {
+    const box world = world_bounds(local, at);
+    if (!is_valid(world)) throw input_error("object " + std::to_string(object) + " lies beyond the range of float");
+    return world;
+}
+
+/// The objects of a scene of meshes as global search sees them: their boxes in the world, frame by frame.
+class posed_boxes {
+public:
+    /// @param scene must outlive this; its meshes are valid (`require_valid`)
+    explicit posed_boxes(const mesh_scene& scene) : scene_(scene), boxes_(scene.mesh_of.size()) {
+        for (const mesh& m : scene.meshes) mesh_bounds_.push_back(bounds_of(m));
+    }
+
+    /// Takes a frame: follows the meshes that deform, which must still be valid, and places every object.
+    /// @param poses one an object
+    /// @throws input_error as `require_poses`, and on an object beyond the range of float, by its number.
+    void update(std::span<const pose> poses) {
+        require_poses(scene_, poses);
+        for (std::uint32_t m = 0; m < mesh_bounds_.size(); ++m)
+            if (scene_.deforms(m)) mesh_bounds_[m] = bounds_of(scene_.meshes[m]);
+        for (std::size_t object = 0; object < poses.size(); ++object)
+            boxes_[object] = posed_box(mesh_bounds_[scene_.mesh_of[object]], poses[object], object);
+    }
+
+    /// Of the frame, by object.
+    [[nodiscard]] std::span<const box> boxes() const noexcept { return boxes_; }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(mesh_bounds_, boxes_); }
+
+private:
+    const mesh_scene& scene_;
+    std::vector<box> mesh_bounds_;
+    std::vector<box> boxes_;
+};
 
 /// What both stages see of a scene whose objects a global search has divided (`global_stage::divide`). Global search
 /// sees pieces: parts of objects, and objects that are whole, numbered in the order of the objects. Local detection

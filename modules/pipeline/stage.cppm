@@ -1,11 +1,7 @@
 export module aabb.pipeline:stage;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.local_detection;
 import aabb.std;
-import :scene;
 import :scene_parts;
 
 // The two stages as a program sees them. Each is composed statically behind one call a frame (global search) or one
@@ -38,13 +34,8 @@ struct stage_plan {
 
 /// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
 /// every later frame, by an input_error; a search that throws appends nothing.
-class global_stage {
+class global_stage : public kept_in_place {
 public:
-    global_stage() = default;
-    global_stage(const global_stage&) = delete;
-    global_stage& operator=(const global_stage&) = delete;
-    virtual ~global_stage() = default;
-
     /// The parts of the scene that are to come to this stage in place of whole objects; null, as of most stages, where
     /// all stay whole. Asked once, before anything comes.
     /// @throws input_error on meshes that `require_valid` refuses.
@@ -78,13 +69,8 @@ public:
 };
 
 /// Two meshes at two poses in, intersecting triangle pairs out.
-class local_stage {
+class local_stage : public kept_in_place {
 public:
-    local_stage() = default;
-    local_stage(const local_stage&) = delete;
-    local_stage& operator=(const local_stage&) = delete;
-    virtual ~local_stage() = default;
-
     /// Builds the tree of a mesh, which must outlive the stage; models are numbered from 0.
     /// @throws input_error on a mesh that `require_valid` refuses.
     virtual std::uint32_t add_model(const mesh& m) = 0;
@@ -97,7 +83,6 @@ public:
     [[nodiscard]] virtual std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a,
                                                                std::uint32_t model_b, const pose& pose_b) = 0;
 
-    /// How many intersecting pairs there are.
     [[nodiscard]] virtual std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                                     const pose& pose_b) = 0;
 
@@ -127,13 +112,8 @@ public:
 };
 
 /// A triangle test alone; it throws input_error as `require_ieee_arithmetic`.
-class triangle_test {
+class triangle_test : public kept_in_place {
 public:
-    triangle_test() = default;
-    triangle_test(const triangle_test&) = delete;
-    triangle_test& operator=(const triangle_test&) = delete;
-    virtual ~triangle_test() = default;
-
     [[nodiscard]] virtual bool intersects(const triangle3f& s, const triangle3f& t) const = 0;
     /// @throws input_error when the test is made for float only.
     [[nodiscard]] virtual bool intersects(const triangle3d& s, const triangle3d& t) const = 0;

@@ -3,9 +3,6 @@ module;
 
 export module aabb.pipeline:tested_by;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
 import :stage;
 

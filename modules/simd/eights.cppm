@@ -40,6 +40,12 @@ template <class Number, class Vector>
     return least(low < high ? low : high);
 }
 
+/// Number i is number `Place(i)` of the two vectors, one behind the other.
+template <class Result, auto Place, class Vector, std::size_t... I>
+[[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<I...>) noexcept {
+    return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(Place(I))...));
+}
+
 /// Bit i for number i of a comparison.
 template <class Flags>
 [[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_eight(Flags flags) noexcept {

@@ -10,8 +10,7 @@ export module aabb.simd:lanes;
 import aabb.std;
 import :width;
 
-// Intrinsics of either width, whichever is used: vectors are handed over in memory, which leaves no trace when
-// optimised.
+// Intrinsics of either width, whichever is used: vectors go through memory, which leaves no trace when optimised.
 namespace aabb::simd::detail {
 
 #if defined(__AVX512F__)

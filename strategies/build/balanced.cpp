@@ -1,8 +1,6 @@
 module aabb.build.balanced;
 
-import aabb.base;
 import aabb.build.balanced_items;
-import aabb.build.threaded;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

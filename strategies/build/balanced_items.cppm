@@ -98,8 +98,7 @@ public:
         }
     }
 
-    /// Along each axis the sum over both sides of their box's area times their number, where about so many go to the
-    /// left.
+    /// Along each axis the sum over both sides of box area times number, where about so many go to the left.
     [[nodiscard]] std::array<double, 3> costs(std::size_t left) const noexcept {
         std::array<std::size_t, 3> end{};
         std::array<std::size_t, 3> in_left{};

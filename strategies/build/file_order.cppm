@@ -1,8 +1,6 @@
 export module aabb.build.file_order;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.build.threaded;
+import aabb.build.top_down;
 import aabb.std;
 
 export namespace aabb {
@@ -16,8 +14,27 @@ struct file_order_build : threaded_build {
     static constexpr std::string_view name = "file_order";
     static constexpr std::string_view summary = "halves of the mesh's own order, for meshes written leaf by leaf";
 
-    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const;
-    [[nodiscard]] balanced_order order(const mesh& m) const;
+    [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const {
+        const auto halves = [](std::span<const build_element> range, const box&) {
+            return split_choice{split_choice::as_they_stand, std::bit_ceil(range.size()) / 2};
+        };
+        return build_top_down(m, arrangement, halves, threads);
+    }
+
+    [[nodiscard]] balanced_order order(const mesh& m) const {
+        constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
+        const std::size_t n = m.triangles.size();
+        balanced_order made{large_vector<std::uint32_t>(n), large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()),
+                            threads};
+        std::iota(made.triangles.begin(), made.triangles.end(), 0U);
+        worker_threads(threads).for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                box& leaf = made.bounds[t / in_leaf];
+                leaf = merged(leaf, bounds_of(m.triangle(static_cast<std::uint32_t>(t))));
+            }
+        });
+        return made;
+    }
 };
 
 static_assert(BuildPolicy<file_order_build>);

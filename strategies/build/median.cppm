@@ -1,8 +1,5 @@
 export module aabb.build.median;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.build.balanced;
 import aabb.build.top_down;
 import aabb.std;
 

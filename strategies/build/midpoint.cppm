@@ -1,14 +1,21 @@
 export module aabb.build.midpoint;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.build.balanced;
 import aabb.build.top_down;
 import aabb.std;
 
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
 export namespace aabb {
 
-[[nodiscard]] split_choice midpoint_split(std::span<const build_element> range, const box& bounds);
+[[nodiscard]] split_choice midpoint_split(std::span<const build_element> range, const box& bounds) {
+    const int axis = longest_axis(bounds);
+    // In double, so that the sum cannot overflow.
+    const double middle = (double{bounds.min[axis]} + double{bounds.max[axis]}) / 2;
+    const auto below = std::ranges::count_if(range, [&](const build_element& e) { return e.centroid[axis] < middle; });
+    const auto left = static_cast<std::size_t>(below);
+    return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
+}
 
 /// The spatial midpoint (van den Bergen, "Efficient collision detection of complex deformable models using AABB trees",
 /// 1997): a node is split in the middle of the longest axis of its box, each triangle to the side of its centroid; at

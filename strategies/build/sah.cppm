@@ -1,11 +1,6 @@
 export module aabb.build.sah;
 
-import aabb.base;
 import aabb.costs;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.policy;
-import aabb.build.balanced;
 import aabb.build.top_down;
 import aabb.std;
 

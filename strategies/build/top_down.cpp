@@ -1,7 +1,5 @@
 module aabb.build.top_down;
 
-import aabb.base;
-
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 

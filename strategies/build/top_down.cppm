@@ -1,10 +1,7 @@
 /// Builds from the root down, node by node, whatever says where a node is split.
 export module aabb.build.top_down;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.build.balanced;
-import aabb.build.threaded;
+export import aabb.build.balanced;
 import aabb.std;
 
 export namespace aabb {
@@ -26,8 +23,7 @@ struct centroid_order {
 [[nodiscard]] std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement,
                                                      const split_rule& split, std::uint32_t threads);
 
-/// In the middle of the centroids along the longest axis of the box: what every split falls back to where its own rule
-/// leaves a side empty.
+/// At the median of the longest axis of the box: what every split falls back to where its own rule leaves a side empty.
 [[nodiscard]] inline split_choice median_split(std::span<const build_element> range, const box& bounds) {
     return {longest_axis(bounds), range.size() / 2};
 }

@@ -1,10 +1,6 @@
 export module aabb.columns.groups;
 
-import aabb.base;
-import aabb.columns.kernels;
-import aabb.columns.plan;
-import aabb.geometry;
-import aabb.simd;
+export import aabb.columns.plan;
 import aabb.std;
 
 export namespace aabb {
@@ -114,9 +110,8 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(keys_) + bytes_of(wide_) + bytes_of(wide_first_) + bytes_of(wide_last_) +
-                          bytes_of(boxes_) + bytes_of(ids_) + bytes_of(starts_);
-        for (const part& p : parts_) all += bytes_of(p.next) + bytes_of(p.next_copy);
+        std::size_t all = bytes_of(keys_, wide_, wide_first_, wide_last_, boxes_, ids_, starts_);
+        for (const part& p : parts_) all += bytes_of(p.next, p.next_copy);
         return all;
     }
 

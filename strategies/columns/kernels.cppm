@@ -7,18 +7,12 @@ module;
 /// numbers each, as they lie in memory, to columns and back, and two numbers of 16 bits in a word.
 export module aabb.columns.kernels;
 
-import aabb.simd;
+export import aabb.simd;
 import aabb.std;
 
 namespace aabb::simd::detail {
 
 using pairs = double __attribute__((vector_size(4 * width)));  // of two numbers
-
-/// Lane i takes lane `Place(i)` of the two vectors, one behind the other.
-template <class Result, auto Place, class Vector, std::size_t... I>
-[[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<I...>) noexcept {
-    return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(Place(I))...));
-}
 
 /// Pair `K` of each of half as many rows of three pairs as a vector has numbers.
 template <std::size_t K>
@@ -74,9 +68,9 @@ export namespace aabb::simd {
         constexpr auto of_two = [](std::size_t i) { return 4 * (i % (width / 2)) + K; };
         constexpr auto joined = [](std::size_t i) { return i < width / 2 ? i : width + i - width / 2; };
         const auto all = std::make_index_sequence<width>{};
-        const words low = detail::shuffled<words, of_two>(rows[0], rows[1], all);
-        const words high = detail::shuffled<words, of_two>(rows[2], rows[3], all);
-        columns[K] = detail::shuffled<words, joined>(low, high, all);
+        const words low = shuffled<words, of_two>(rows[0], rows[1], all);
+        const words high = shuffled<words, of_two>(rows[2], rows[3], all);
+        columns[K] = shuffled<words, joined>(low, high, all);
     };
     column(std::integral_constant<std::size_t, 0>{});
     column(std::integral_constant<std::size_t, 1>{});
@@ -91,9 +85,9 @@ export namespace aabb::simd {
         constexpr auto of_two = [](std::size_t i) { return R * width / 4 + i / 4 + (i % 2) * width; };
         constexpr auto joined = [](std::size_t i) { return i % 4 < 2 ? i : width + i; };
         const auto all = std::make_index_sequence<width>{};
-        const words low = detail::shuffled<words, of_two>(columns[0], columns[1], all);
-        const words high = detail::shuffled<words, of_two>(columns[2], columns[3], all);
-        store(to + R * width, detail::shuffled<words, joined>(low, high, all));
+        const words low = shuffled<words, of_two>(columns[0], columns[1], all);
+        const words high = shuffled<words, of_two>(columns[2], columns[3], all);
+        store(to + R * width, shuffled<words, joined>(low, high, all));
     };
     rows(std::integral_constant<std::size_t, 0>{});
     rows(std::integral_constant<std::size_t, 1>{});

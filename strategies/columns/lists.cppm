@@ -1,12 +1,6 @@
 export module aabb.columns.lists;
 
-import aabb.base;
-import aabb.columns.kernels;
-import aabb.columns.plan;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
-import aabb.simd;
+export import aabb.columns.plan;
 import aabb.std;
 
 export namespace aabb {
@@ -20,8 +14,7 @@ class column_lists {
 public:
     /// @param ids by place in `boxes`; empty where the place is the id
     /// @param by_keys sorted by the sort policy, entry by entry, even where that leaves it to buckets
-    /// @param most_copies with more of them there is nothing to sweep: crowded. Nor is there with a box that is
-    /// invalid.
+    /// @param most_copies with more there is nothing to sweep: crowded. Nor is there with an invalid box.
     template <class Sort, CounterPolicy Counters>
     [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                    const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
@@ -45,8 +38,7 @@ public:
     [[nodiscard]] const column_block& block() const noexcept { return block_; }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(places_) + bytes_of(copies_) + bytes_of(entries_) + bytes_of(ends_) + bytes_of(list_) +
-               bytes_of(moved_) + bytes_of(column_ends_);
+        return bytes_of(places_, copies_, entries_, ends_, list_, moved_, column_ends_);
     }
 
 private:

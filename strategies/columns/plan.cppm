@@ -1,10 +1,7 @@
 export module aabb.columns.plan;
 
-import aabb.columns.kernels;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
-import aabb.simd;
+export import aabb.columns.kernels;
+export import aabb.global_search;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.

@@ -1,18 +1,149 @@
 export module aabb.columns.search;
 
-import aabb.base;
-import aabb.columns.few_boxes;
-import aabb.columns.frame_at_rest;
-import aabb.columns.groups;
-import aabb.columns.plan;
 import aabb.columns.worker;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
 import aabb.pipeline;
 import aabb.std;
 
 export namespace aabb {
+
+/// A frame whose pairs are kept for as long as nothing moves. Boxes are kept only when some of them stood still since
+/// the frame before: a scene in motion pays for a look at those. Where those stand still and others do not, frames are
+/// kept ever more rarely, down to one of 64.
+class frame_at_rest {
+public:
+    /// @returns whether all boxes are where they were in the frame that is kept, so that `pairs` has theirs
+    [[nodiscard]] bool lasts(std::span<const box> boxes, const membership& objects) {
+        const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
+        if (!boxes_.empty()) {
+            if (same_objects && are_same(boxes, boxes_)) {
+                pause_ = 0;
+                return true;
+            }
+            boxes_.clear();
+            pairs_.clear();
+            pause_ = std::min(2 * pause_ + 1, 63U);
+            waited_ = 0;
+        }
+        size_ = boxes.size();
+        const auto some = some_of(boxes);
+        is_to_be_kept_ = same_objects && are_same(some, some_) && ++waited_ > pause_;
+        some_ = some;
+        return false;
+    }
+
+    void keep(std::span<const box> boxes, std::span<const index_pair> pairs) {
+        if (!is_to_be_kept_) return;
+        pairs_.assign(pairs.begin(), pairs.end());
+        boxes_.assign(boxes.begin(), boxes.end());
+    }
+
+    [[nodiscard]] std::span<const index_pair> pairs() const noexcept { return pairs_; }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(boxes_, pairs_); }
+
+private:
+    static constexpr std::size_t looked_at = 64;
+
+    [[nodiscard]] static bool are_same(std::span<const box> a, std::span<const box> b) noexcept {
+        return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+    }
+    [[nodiscard]] static std::array<box, looked_at> some_of(std::span<const box> boxes) noexcept {
+        std::array<box, looked_at> some{};
+        if (!boxes.empty())
+            for (std::size_t i = 0; i < looked_at; ++i) some[i] = boxes[i * boxes.size() / looked_at];
+        return some;
+    }
+
+    std::size_t size_ = 0;
+    std::array<box, looked_at> some_{};
+    bool is_to_be_kept_ = false;
+    unsigned pause_ = 0;  // frames that are not kept, though some boxes stand still
+    unsigned waited_ = 0;
+    std::vector<box> boxes_;  // of all objects, absent ones too; empty where no frame is kept
+    std::vector<index_pair> pairs_;
+};
+
+/// Boxes so few that each is tested against all others, a vector at a time: to sort or cut them would take longer.
+class few_boxes {
+public:
+    /// @param group in the order of ids
+    /// @returns whether all are valid; if not, there is nothing to search.
+    [[nodiscard]] bool fill(const column_group& group) {
+        group_ = group;
+        vectors_.resize((group.boxes.size() + width - 1) / width);
+        simd::flags invalid{};
+        for_each_vector(group.boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t) {
+            invalid |= are_invalid(c);
+            std::ranges::copy(c, vectors_[i / width].coordinates);
+        });
+        return simd::bits(invalid) == 0;
+    }
+
+    template <CounterPolicy Counters>
+    void search(std::vector<index_pair>& pairs, Counters& counters) {
+        const std::size_t n = group_.boxes.size();
+        met_.resize(n * vectors_.size());
+        std::size_t found = 0;
+        std::size_t tests = 0;
+        for (std::size_t v = 0; v < vectors_.size(); ++v) {
+            const vector_of_boxes vector = vectors_[v];
+            const std::size_t first = v * width;
+            const std::uint32_t present = simd::lanes_below(n - first);
+            const auto test = [&](std::size_t i, std::uint32_t wanted) {
+                const std::uint32_t lanes = vector.met_by(group_.boxes[i]) & wanted;
+                // Kept without a branch, since whether there are any cannot be foreseen.
+                met_[found] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first), lanes};
+                found += static_cast<std::size_t>(lanes != 0);
+            };
+            for (std::size_t i = 0; i < first; ++i) test(i, present);
+            const std::size_t end = std::min(n, first + width);
+            for (std::size_t i = first; i < end; ++i) test(i, present & ~simd::lanes_below(i - first + 1));
+            tests += end;
+        }
+        counters.add(work::box_tests, width * tests);
+        report(std::span(met_).first(found), pairs);
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(vectors_, met_); }
+
+private:
+    static constexpr std::size_t width = simd::width;
+
+    struct vector_of_boxes {
+        simd::floats coordinates[6];
+
+        /// Bit l is set where box l overlaps this one.
+        [[nodiscard, gnu::always_inline]] inline std::uint32_t met_by(const box& b) const noexcept {
+            simd::flags met = (coordinates[0] <= b.max[0]) & (coordinates[3] >= b.min[0]);
+            for (int k = 1; k < 3; ++k) met &= (coordinates[k] <= b.max[k]) & (coordinates[3 + k] >= b.min[k]);
+            return simd::bits(met);
+        }
+    };
+    /// A box, and those behind it in a vector that it overlaps.
+    struct met_lanes {
+        std::uint32_t box;
+        std::uint32_t first;  ///< of the vector
+        std::uint32_t lanes;
+    };
+
+    void report(std::span<const met_lanes> all, std::vector<index_pair>& pairs) const {
+        std::size_t next = pairs.size();
+        std::size_t end = next;
+        for (const met_lanes& met : all) end += static_cast<std::size_t>(std::popcount(met.lanes));
+        pairs.resize(end);
+        for (const met_lanes& met : all)
+            for (std::uint32_t lanes = met.lanes; lanes != 0; lanes &= lanes - 1)
+                pairs[next++] = {id_of(met.box),
+                                 id_of(met.first + static_cast<std::uint32_t>(std::countr_zero(lanes)))};
+    }
+
+    [[nodiscard]] std::uint32_t id_of(std::uint32_t place) const noexcept {
+        return group_.ids.empty() ? place : group_.ids[place];
+    }
+
+    column_group group_{};
+    std::vector<vector_of_boxes> vectors_;
+    std::vector<met_lanes> met_;
+};
 
 /// Global search that cuts first: boxes go to columns as they are, group by group where there are many, and what a
 /// group needs is made while it is swept, so that it is still in a cache. A few boxes are not cut at all. Kept from
@@ -104,8 +235,7 @@ public:
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
-        return bytes_of(partition_) + bytes_of(groups_) + bytes_of(cut_) + bytes_of(present_boxes_) +
-               bytes_of(present_ids_) + bytes_of(few_) + bytes_of(at_rest_) +
+        return bytes_of(partition_, groups_, cut_, present_boxes_, present_ids_, few_, at_rest_) +
                sum_of([](const worker& w) { return w.own.column_bytes(); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {

@@ -1,12 +1,7 @@
 export module aabb.columns.worker;
 
-import aabb.base;
-import aabb.columns.groups;
-import aabb.columns.lists;
-import aabb.columns.plan;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
+export import aabb.columns.groups;
+export import aabb.columns.lists;
 import aabb.std;
 
 export namespace aabb {
@@ -74,8 +69,7 @@ template <class Plan>
 }
 
 /// How long groups took to be cut and sorted, which of boxes in one group is a part of the update, and to be swept.
-/// Groups of few boxes are timed now and then, for those before them too: a look at a clock takes as long as some
-/// boxes.
+/// Groups of few boxes are timed now and then, for those before too: a look at a clock takes as long as some.
 class phase_times {
 public:
     /// Calls both.

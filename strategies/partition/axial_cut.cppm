@@ -3,11 +3,8 @@ module;
 
 export module aabb.partition.axial_cut;
 
-import aabb.base;
 import aabb.costs;
-import aabb.geometry;
 import aabb.global_search;
-import aabb.policy;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -37,8 +34,7 @@ public:
         std::optional<std::uint32_t> axes;
         /// Segments wanted on each of these axes. auto: what the same model finds cheapest.
         std::optional<std::uint32_t> segments;
-        /// off: a box may be cut any number of times; a frame with more than 2^24 + 64 n copies of n objects is
-        /// refused.
+        /// off: a box may be cut any number of times; a frame with more than 2^24 + 64 n copies of n boxes is refused.
         limit_choice limit = limit_choice::on;
     };
     static constexpr std::tuple parameters{
@@ -52,9 +48,8 @@ public:
     axial_cut_partition() = default;
     explicit axial_cut_partition(const config& c) : config_(c) {}
 
-    /// An axis that is cut is exchanged for one on which centres vary half as much again only, and another number of
-    /// axes must cost a tenth less, since a new list must be sorted from scratch. One on which centres do not vary is
-    /// not cut.
+    /// An axis that is cut is exchanged for one on which centres vary half as much again only, and another number must
+    /// cost a tenth less, since a new list is sorted from scratch. One on which centres do not vary is not cut.
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
         const spread along = spread_of(boxes, objects);
         const std::array<int, 3> order = in_order(along, swept);
@@ -126,9 +121,7 @@ public:
                                                                axis_set{z == reach[2].first} << 2);
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(places_) + bytes_of(cuts_[0]) + bytes_of(cuts_[1]) + bytes_of(cuts_[2]);
-    }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(places_, cuts_); }
 
 private:
     static constexpr std::uint64_t most_subsets = std::uint64_t{1} << 26;

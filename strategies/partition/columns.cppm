@@ -1,12 +1,7 @@
 export module aabb.partition.columns;
 
-import aabb.base;
 import aabb.columns;
 import aabb.costs;
-import aabb.geometry;
-import aabb.global_search;
-import aabb.policy;
-import aabb.simd;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.

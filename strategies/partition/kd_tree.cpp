@@ -112,9 +112,8 @@ void kd_tree_partition::fit(const whole_subset& all) {
 }
 
 std::size_t kd_tree_partition::bytes() const noexcept {
-    return bytes_of(present_) + bytes_of(nodes_) + bytes_of(starts_) + bytes_of(entries_) + bytes_of(homes_) +
-           bytes_of(now_at_) + bytes_of(in_leaf_) + bytes_of(below_) + bytes_of(old_) + bytes_of(groups_) +
-           bytes_of(group_of_) + bytes_of(group_starts_) + bytes_of(group_ends_) + bytes_of(ids_);
+    return bytes_of(present_, nodes_, starts_, entries_, homes_, now_at_, in_leaf_, below_, old_, groups_, group_of_,
+                    group_starts_, group_ends_, ids_);
 }
 
 /// All planes, whatever there was.

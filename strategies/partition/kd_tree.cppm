@@ -1,9 +1,6 @@
 export module aabb.partition.kd_tree;
 
-import aabb.base;
-import aabb.geometry;
 import aabb.global_search;
-import aabb.policy;
 import aabb.std;
 
 export namespace aabb {
@@ -31,8 +28,7 @@ public:
         "planes at medians, kept between frames and chosen anew where boxes went elsewhere";
 
     struct config {
-        /// A leaf with more boxes than this is split wherever no more than half of them are copied. auto: where that
-        /// costs less.
+        /// A leaf with more boxes is split wherever no more than half of them are copied. auto: where that costs less.
         std::optional<std::uint32_t> leaf;
     };
     static constexpr std::tuple parameters{

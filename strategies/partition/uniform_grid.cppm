@@ -3,10 +3,7 @@ module;
 
 export module aabb.partition.uniform_grid;
 
-import aabb.base;
-import aabb.geometry;
 import aabb.global_search;
-import aabb.policy;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.

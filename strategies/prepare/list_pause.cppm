@@ -1,10 +1,6 @@
 export module aabb.prepare.list_pause;
 
-import aabb.geometry;
-import aabb.global_search;
-import aabb.prepare.displacement_law;
-import aabb.prepare.list_plan;
-import aabb.prepare.sample;
+export import aabb.prepare.list_plan;
 import aabb.std;
 
 export namespace aabb {
@@ -12,8 +8,7 @@ export namespace aabb {
 /// Frames that are searched as they are, since no list of neighbours was worth its cost: twice as many each time, so
 /// that lists tried in vain cost ever less of all frames, and what such a pause loses is at most as long as what went
 /// before (exponential back-off; Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988, for what it
-/// may cost). Then a few boxes are looked at for eight frames, and again after a rest, until they say that a list may
-/// be worth it.
+/// may cost). Then a few boxes are looked at for eight frames, and again after a rest, until a list may be worth it.
 class list_pause {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }

@@ -1,10 +1,8 @@
 export module aabb.prepare.list_plan;
 
 import aabb.costs;
-import aabb.geometry;
-import aabb.global_search;
-import aabb.prepare.displacement_law;
-import aabb.prepare.sample;
+export import aabb.prepare.displacement_law;
+export import aabb.prepare.sample;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.

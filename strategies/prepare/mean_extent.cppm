@@ -1,6 +1,5 @@
 export module aabb.prepare.mean_extent;
 
-import aabb.geometry;
 import aabb.global_search;
 import aabb.std;
 

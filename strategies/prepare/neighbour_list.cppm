@@ -1,8 +1,6 @@
 export module aabb.prepare.neighbour_list;
 
-import aabb.base;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 
 export namespace aabb {

@@ -1,13 +1,32 @@
 /// How many pieces something long is cut into.
 export module aabb.prepare.pieces;
 
-import aabb.base;
+import aabb.policy;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
+
+/// What both ways of dividing what is large have in common.
+class dividing_prepare {
+public:
+    static constexpr std::array leaves_out{std::string_view("no list of neighbours")};
+
+    struct config {
+        double size = 4;
+    };
+    static constexpr std::tuple parameters{number_parameter{"size", &config::size, 0.0,
+                                                            std::numeric_limits<double>::max(),
+                                                            "the longest extent that is not split, in mean extents"}};
+
+    dividing_prepare() = default;
+    explicit dividing_prepare(const config& c) : config_(c) {}
+
+protected:
+    config config_;
+};
 
 /// On an axis.
 inline constexpr std::size_t most_pieces = 16;

@@ -1,10 +1,8 @@
 /// What a few boxes, drawn by chance, tell of all.
 export module aabb.prepare.sample;
 
-import aabb.geometry;
-import aabb.global_search;
-import aabb.prepare.grown_boxes;
-import aabb.prepare.listed_pairs;
+export import aabb.global_search;
+import aabb.prepare.pair_list;
 import aabb.prepare.relative_motion;
 import aabb.std;
 

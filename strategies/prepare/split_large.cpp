@@ -1,11 +1,6 @@
 module aabb.prepare.split_large;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
 import aabb.prepare.mean_extent;
-import aabb.prepare.pieces;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -23,17 +18,74 @@ bool is_longer(const box& b, double longest) {
 
 class split_large_stage final : public global_stage {
 public:
-    split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted);
+    split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
+        : search_(std::move(search)), size_(size), counted_(counted) {}
 
-    void insert(std::uint32_t id) override;
-    void remove(std::uint32_t id) override;
-    void update(std::span<const box> boxes) override;
-    void search(std::vector<index_pair>& pairs) override;
+    void insert(std::uint32_t id) override {
+        objects_.insert(id);
+        frame_.change([&] {
+            if (id >= first_slot_) drop_pieces();
+            search_->insert(id);
+        });
+    }
+
+    void remove(std::uint32_t id) override {
+        objects_.remove(id);
+        search_->remove(id);
+    }
+
+    void update(std::span<const box> boxes) override {
+        frame_.begin();
+        objects_.require_boxes_for_all(boxes.size());
+        require_valid(boxes);
+        objects_.settle();
+        const double longest = mean_extents(size_, boxes, objects_);
+        find_splits(boxes, longest);
+        boxes_ = boxes;
+        frame_.change([&] {
+            if (first_slot_ != boxes.size()) drop_pieces();
+            first_slot_ = static_cast<std::uint32_t>(boxes.size());
+            assign_slots();
+        });
+        if (!splits_.empty()) make_pieces(boxes, longest);
+        if (counted_ == instrumentation::counters) pieces_counted_ += slots_.size() + splits_.size();
+        search_->update(splits_.empty() ? boxes : pieces_);
+        frame_.taken();
+    }
+
+    void search(std::vector<index_pair>& pairs) override {
+        frame_.require_taken();
+        if (splits_.empty()) return search_->search(pairs);
+        found_.clear();
+        search_->search(found_);
+        append_whole(pairs, [&] {
+            for (const auto [a, b] : found_)
+                if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
+        });
+    }
+
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
-    [[nodiscard]] work_counters counters() const override;
-    [[nodiscard]] std::vector<part_bytes> bytes() const override;
+
+    [[nodiscard]] work_counters counters() const override {
+        work_counters all = search_->counters();
+        all.add(work::pieces, pieces_counted_);
+        return all;
+    }
+
+    [[nodiscard]] std::vector<part_bytes> bytes() const override {
+        std::vector<part_bytes> parts = search_->bytes();
+        parts.push_back({"prepare", bytes_of(objects_, splits_, slots_, splits_now_, slots_now_, object_of_slot_,
+                                             free_slots_, left_slots_, pieces_, found_)});
+        return parts;
+    }
+
     [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
-    [[nodiscard]] std::vector<omission> left_out() const override;
+
+    [[nodiscard]] std::vector<omission> left_out() const override {
+        std::vector<omission> absent = search_->left_out();
+        if (splits_.empty()) absent.push_back({"no division of large objects", "none is large"});
+        return absent;
+    }
 
 private:
     /// Where the pieces of an interval begin, and the last one's end.
@@ -51,15 +103,119 @@ private:
         friend bool operator==(const split&, const split&) = default;
     };
 
-    [[nodiscard]] static cut_interval cut(float lower, float upper, double longest);
-    void find_splits(std::span<const box> boxes, double longest);
-    void assign_slots();
-    [[nodiscard]] std::uint32_t take_slot();
-    void drop_pieces();
-    void make_pieces(std::span<const box> boxes, double longest);
+    [[nodiscard]] static cut_interval cut(float lower, float upper, double longest) {
+        const double extent = double{upper} - double{lower};
+        cut_interval interval{1, {lower, upper}};
+        interval.pieces = piece_count(extent, longest);
+        const auto wanted = static_cast<double>(interval.pieces);
+        for (std::size_t i = 1; i < interval.pieces; ++i) {
+            interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
+            // Between floats that are this near each other there is no room for pieces.
+            if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper)) return {1, {lower, upper}};
+        }
+        interval.at[interval.pieces] = upper;
+        return interval;
+    }
+
+    void find_splits(std::span<const box> boxes, double longest) {
+        splits_now_.clear();
+        std::size_t all = 0;
+        for (std::uint32_t id = 0; id < boxes.size(); ++id) {
+            if (!objects_.contains(id) || !is_longer(boxes[id], longest)) continue;
+            split found{id, {}};
+            for (int k = 0; k < 3; ++k)
+                found.pieces[static_cast<std::size_t>(k)] =
+                    static_cast<std::uint8_t>(cut(boxes[id].min[k], boxes[id].max[k], longest).pieces);
+            if (found.further_pieces() == 0) continue;
+            all += found.further_pieces() + 1;
+            require_few_pieces(split_large_prepare::name, all, boxes.size());
+            splits_now_.push_back(found);
+        }
+    }
+
+    /// A split that stays the same keeps its slots.
+    void assign_slots() {
+        free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
+        left_slots_.clear();
+        slots_now_.clear();
+        std::size_t known = 0;
+        std::size_t first = 0;  // slot of the known split
+        const auto pass_known = [&](auto use) {
+            for (std::size_t end = first + splits_[known].further_pieces(); first < end; ++first) use(slots_[first]);
+            ++known;
+        };
+        const auto leave = [&](std::uint32_t slot) {
+            search_->remove(first_slot_ + slot);
+            left_slots_.push_back(slot);
+        };
+        for (const split& now : splits_now_) {
+            while (known < splits_.size() && splits_[known].object < now.object) pass_known(leave);
+            if (known < splits_.size() && splits_[known] == now) {
+                pass_known([&](std::uint32_t slot) { slots_now_.push_back(slot); });
+                continue;
+            }
+            for (std::size_t i = now.further_pieces(); i > 0; --i) {
+                slots_now_.push_back(take_slot());
+                object_of_slot_[slots_now_.back()] = now.object;
+                search_->insert(first_slot_ + slots_now_.back());
+            }
+        }
+        while (known < splits_.size()) pass_known(leave);
+        splits_.swap(splits_now_);
+        slots_.swap(slots_now_);
+    }
+
+    [[nodiscard]] std::uint32_t take_slot() {
+        if (free_slots_.empty()) {
+            object_of_slot_.push_back(0);
+            return static_cast<std::uint32_t>(object_of_slot_.size() - 1);
+        }
+        const std::uint32_t slot = free_slots_.back();
+        free_slots_.pop_back();
+        return slot;
+    }
+
+    void drop_pieces() {
+        for (const std::uint32_t slot : slots_) search_->remove(first_slot_ + slot);
+        for (auto* list : {&slots_, &object_of_slot_, &free_slots_, &left_slots_}) list->clear();
+        splits_.clear();
+    }
+
+    void make_pieces(std::span<const box> boxes, double longest) {
+        pieces_.assign(boxes.begin(), boxes.end());
+        pieces_.resize(boxes.size() + object_of_slot_.size(), box{});
+        auto slot = slots_.begin();
+        for (const auto& [object, pieces] : splits_) {
+            const box& whole = boxes[object];
+            std::array<cut_interval, 3> cuts;
+            for (int k = 0; k < 3; ++k) cuts[static_cast<std::size_t>(k)] = cut(whole.min[k], whole.max[k], longest);
+            for (std::size_t x = 0; x < pieces[0]; ++x)
+                for (std::size_t y = 0; y < pieces[1]; ++y)
+                    for (std::size_t z = 0; z < pieces[2]; ++z)
+                        pieces_[x + y + z == 0 ? object : first_slot_ + *slot++] = {
+                            {cuts[0].at[x], cuts[1].at[y], cuts[2].at[z]},
+                            {cuts[0].at[x + 1], cuts[1].at[y + 1], cuts[2].at[z + 1]}};
+        }
+    }
+
     /// Of two boxes of the search.
-    [[nodiscard]] bool counts(std::uint32_t piece_a, std::uint32_t piece_b) const;
-    [[nodiscard]] std::uint32_t object_of(std::uint32_t piece) const;
+    [[nodiscard]] bool counts(std::uint32_t piece_a, std::uint32_t piece_b) const {
+        const std::uint32_t a = object_of(piece_a);
+        const std::uint32_t b = object_of(piece_b);
+        if (a == b) return false;
+        for (int k = 0; k < 3; ++k) {
+            const float corner = std::max(boxes_[a].min[k], boxes_[b].min[k]);
+            for (const auto& [piece, object] : {std::pair{piece_a, a}, std::pair{piece_b, b}}) {
+                const bool is_last = pieces_[piece].max[k] == boxes_[object].max[k];
+                if (pieces_[piece].min[k] > corner || (!is_last && pieces_[piece].max[k] <= corner)) return false;
+            }
+        }
+        return true;
+    }
+
+    [[nodiscard]] std::uint32_t object_of(std::uint32_t piece) const {
+        return piece < first_slot_ ? piece : object_of_slot_[piece - first_slot_];
+    }
 
     std::unique_ptr<global_stage> search_;
     double size_;
@@ -79,185 +235,6 @@ private:
     std::vector<box> pieces_;                // what the search sees
     std::vector<index_pair> found_;
 };
-
-split_large_stage::split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
-    : search_(std::move(search)), size_(size), counted_(counted) {}
-
-void split_large_stage::insert(std::uint32_t id) {
-    objects_.insert(id);
-    frame_.change([&] {
-        if (id >= first_slot_) drop_pieces();
-        search_->insert(id);
-    });
-}
-
-void split_large_stage::remove(std::uint32_t id) {
-    objects_.remove(id);
-    search_->remove(id);
-}
-
-void split_large_stage::update(std::span<const box> boxes) {
-    frame_.begin();
-    objects_.require_boxes_for_all(boxes.size());
-    require_valid(boxes);
-    objects_.settle();
-    const double longest = mean_extents(size_, boxes, objects_);
-    find_splits(boxes, longest);
-    boxes_ = boxes;
-    frame_.change([&] {
-        if (first_slot_ != boxes.size()) drop_pieces();
-        first_slot_ = static_cast<std::uint32_t>(boxes.size());
-        assign_slots();
-    });
-    if (!splits_.empty()) make_pieces(boxes, longest);
-    if (counted_ == instrumentation::counters) pieces_counted_ += slots_.size() + splits_.size();
-    search_->update(splits_.empty() ? boxes : pieces_);
-    frame_.taken();
-}
-
-void split_large_stage::search(std::vector<index_pair>& pairs) {
-    frame_.require_taken();
-    if (splits_.empty()) return search_->search(pairs);
-    found_.clear();
-    search_->search(found_);
-    append_whole(pairs, [&] {
-        for (const auto [a, b] : found_)
-            if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
-    });
-}
-
-work_counters split_large_stage::counters() const {
-    work_counters all = search_->counters();
-    all.add(work::pieces, pieces_counted_);
-    return all;
-}
-
-std::vector<part_bytes> split_large_stage::bytes() const {
-    std::vector<part_bytes> parts = search_->bytes();
-    parts.push_back({"prepare", bytes_of(objects_) + bytes_of(splits_) + bytes_of(slots_) + bytes_of(splits_now_) +
-                                    bytes_of(slots_now_) + bytes_of(object_of_slot_) + bytes_of(free_slots_) +
-                                    bytes_of(left_slots_) + bytes_of(pieces_) + bytes_of(found_)});
-    return parts;
-}
-
-std::vector<omission> split_large_stage::left_out() const {
-    std::vector<omission> absent = search_->left_out();
-    if (splits_.empty()) absent.push_back({"no division of large objects", "none is large"});
-    return absent;
-}
-
-split_large_stage::cut_interval split_large_stage::cut(float lower, float upper, double longest) {
-    const double extent = double{upper} - double{lower};
-    cut_interval interval{1, {lower, upper}};
-    interval.pieces = piece_count(extent, longest);
-    const auto wanted = static_cast<double>(interval.pieces);
-    for (std::size_t i = 1; i < interval.pieces; ++i) {
-        interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
-        // Between floats that are this near each other there is no room for pieces.
-        if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper)) return {1, {lower, upper}};
-    }
-    interval.at[interval.pieces] = upper;
-    return interval;
-}
-
-void split_large_stage::find_splits(std::span<const box> boxes, double longest) {
-    splits_now_.clear();
-    std::size_t all = 0;
-    for (std::uint32_t id = 0; id < boxes.size(); ++id) {
-        if (!objects_.contains(id) || !is_longer(boxes[id], longest)) continue;
-        split found{id, {}};
-        for (int k = 0; k < 3; ++k)
-            found.pieces[static_cast<std::size_t>(k)] =
-                static_cast<std::uint8_t>(cut(boxes[id].min[k], boxes[id].max[k], longest).pieces);
-        if (found.further_pieces() == 0) continue;
-        all += found.further_pieces() + 1;
-        require_few_pieces(split_large_prepare::name, all, boxes.size());
-        splits_now_.push_back(found);
-    }
-}
-
-/// A split that stays the same keeps its slots.
-void split_large_stage::assign_slots() {
-    free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
-    left_slots_.clear();
-    slots_now_.clear();
-    std::size_t known = 0;
-    std::size_t first = 0;  // slot of the known split
-    const auto pass_known = [&](auto use) {
-        for (std::size_t end = first + splits_[known].further_pieces(); first < end; ++first) use(slots_[first]);
-        ++known;
-    };
-    const auto leave = [&](std::uint32_t slot) {
-        search_->remove(first_slot_ + slot);
-        left_slots_.push_back(slot);
-    };
-    for (const split& now : splits_now_) {
-        while (known < splits_.size() && splits_[known].object < now.object) pass_known(leave);
-        if (known < splits_.size() && splits_[known] == now) {
-            pass_known([&](std::uint32_t slot) { slots_now_.push_back(slot); });
-            continue;
-        }
-        for (std::size_t i = now.further_pieces(); i > 0; --i) {
-            slots_now_.push_back(take_slot());
-            object_of_slot_[slots_now_.back()] = now.object;
-            search_->insert(first_slot_ + slots_now_.back());
-        }
-    }
-    while (known < splits_.size()) pass_known(leave);
-    splits_.swap(splits_now_);
-    slots_.swap(slots_now_);
-}
-
-std::uint32_t split_large_stage::take_slot() {
-    if (free_slots_.empty()) {
-        object_of_slot_.push_back(0);
-        return static_cast<std::uint32_t>(object_of_slot_.size() - 1);
-    }
-    const std::uint32_t slot = free_slots_.back();
-    free_slots_.pop_back();
-    return slot;
-}
-
-void split_large_stage::drop_pieces() {
-    for (const std::uint32_t slot : slots_) search_->remove(first_slot_ + slot);
-    for (auto* list : {&slots_, &object_of_slot_, &free_slots_, &left_slots_}) list->clear();
-    splits_.clear();
-}
-
-void split_large_stage::make_pieces(std::span<const box> boxes, double longest) {
-    pieces_.assign(boxes.begin(), boxes.end());
-    pieces_.resize(boxes.size() + object_of_slot_.size(), box{});
-    auto slot = slots_.begin();
-    for (const auto& [object, pieces] : splits_) {
-        const box& whole = boxes[object];
-        std::array<cut_interval, 3> cuts;
-        for (int k = 0; k < 3; ++k) cuts[static_cast<std::size_t>(k)] = cut(whole.min[k], whole.max[k], longest);
-        for (std::size_t x = 0; x < pieces[0]; ++x)
-            for (std::size_t y = 0; y < pieces[1]; ++y)
-                for (std::size_t z = 0; z < pieces[2]; ++z)
-                    pieces_[x + y + z == 0 ? object : first_slot_ + *slot++] = {
-                        {cuts[0].at[x], cuts[1].at[y], cuts[2].at[z]},
-                        {cuts[0].at[x + 1], cuts[1].at[y + 1], cuts[2].at[z + 1]}};
-    }
-}
-
-bool split_large_stage::counts(std::uint32_t piece_a, std::uint32_t piece_b) const {
-    const std::uint32_t a = object_of(piece_a);
-    const std::uint32_t b = object_of(piece_b);
-    if (a == b) return false;
-    for (int k = 0; k < 3; ++k) {
-        const float corner = std::max(boxes_[a].min[k], boxes_[b].min[k]);
-        for (const auto& [piece, object] : {std::pair{piece_a, a}, std::pair{piece_b, b}}) {
-            const bool is_last = pieces_[piece].max[k] == boxes_[object].max[k];
-            if (pieces_[piece].min[k] > corner || (!is_last && pieces_[piece].max[k] <= corner)) return false;
-        }
-    }
-    return true;
-}
-
-std::uint32_t split_large_stage::object_of(std::uint32_t piece) const {
-    return piece < first_slot_ ? piece : object_of_slot_[piece - first_slot_];
-}
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 export module aabb.prepare.split_large;
 
 import aabb.pipeline;
-import aabb.policy;
+import aabb.prepare.pieces;
 import aabb.std;
 
 export namespace aabb {
@@ -15,26 +15,14 @@ export namespace aabb {
 /// exactly when some pieces do. Of those that do, one pair of pieces holds the corner of greater lower ends, half-open,
 /// and only that one counts: no set is needed to find duplicates. A frame in which nothing is split goes to the search
 /// as it is. When to use: claim C9 asks.
-struct split_large_prepare {
+struct split_large_prepare : dividing_prepare {
+    using dividing_prepare::dividing_prepare;
+
     static constexpr std::string_view name = "split_large";
     static constexpr std::string_view summary = "boxes much longer than the mean are divided into pieces";
-    static constexpr std::array leaves_out{std::string_view("no list of neighbours")};
-
-    struct config {
-        double size = 4;
-    };
-    static constexpr std::tuple parameters{number_parameter{"size", &config::size, 0.0,
-                                                            std::numeric_limits<double>::max(),
-                                                            "the longest extent that is not split, in mean extents"}};
-
-    split_large_prepare() = default;
-    explicit split_large_prepare(const config& c) : config_(c) {}
 
     [[nodiscard]] std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search,
                                                        instrumentation counted) const;
-
-private:
-    config config_;
 };
 
 static_assert(PreparePolicy<split_large_prepare>);

@@ -1,9 +1,5 @@
 module aabb.prepare.split_mesh;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.prepare.pieces;
 import aabb.split_mesh;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -62,7 +58,28 @@ public:
     split_mesh_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
-    [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override;
+    [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override {
+        std::vector<box> bounds;
+        for (const mesh& m : scene.meshes) {
+            require_valid(m);
+            bounds.push_back(bounds_of(m));
+        }
+        knows_meshes_ = true;
+        const std::size_t objects = scene.mesh_of.size();
+        if (objects == 0) return nullptr;
+        double extents = 0;
+        for (const std::uint32_t m : scene.mesh_of)
+            for (int k = 0; k < 3; ++k) extents += extent_of(bounds[m], k);
+        const double longest = size_ * extents / (3 * static_cast<double>(objects));
+        mesh_division division;
+        for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+            division.push_back(parts_of(scene.meshes[m], bounds[m], longest));
+        for (const std::uint32_t m : scene.mesh_of) pieces_ += division[m].size();
+        require_few_pieces(split_mesh_prepare::name, pieces_, objects);
+        if (std::ranges::all_of(division, [](const auto& parts) { return parts.empty(); })) return nullptr;
+        return divided(scene, std::move(division));
+    }
+
     void insert(std::uint32_t id) override { search_->insert(id); }
     void remove(std::uint32_t id) override { search_->remove(id); }
     void update(std::span<const box> boxes) override {
@@ -89,28 +106,6 @@ private:
     std::uint64_t pieces_ = 0;  // of objects that are divided
     std::uint64_t pieces_counted_ = 0;
 };
-
-std::unique_ptr<scene_parts> split_mesh_stage::divide(const mesh_scene& scene) {
-    std::vector<box> bounds;
-    for (const mesh& m : scene.meshes) {
-        require_valid(m);
-        bounds.push_back(bounds_of(m));
-    }
-    knows_meshes_ = true;
-    const std::size_t objects = scene.mesh_of.size();
-    if (objects == 0) return nullptr;
-    double extents = 0;
-    for (const std::uint32_t m : scene.mesh_of)
-        for (int k = 0; k < 3; ++k) extents += extent_of(bounds[m], k);
-    const double longest = size_ * extents / (3 * static_cast<double>(objects));
-    mesh_division division;
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-        division.push_back(parts_of(scene.meshes[m], bounds[m], longest));
-    for (const std::uint32_t m : scene.mesh_of) pieces_ += division[m].size();
-    require_few_pieces(split_mesh_prepare::name, pieces_, objects);
-    if (std::ranges::all_of(division, [](const auto& parts) { return parts.empty(); })) return nullptr;
-    return divided(scene, std::move(division));
-}
 
 }  // namespace
 

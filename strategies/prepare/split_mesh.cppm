@@ -1,7 +1,7 @@
 export module aabb.prepare.split_mesh;
 
 import aabb.pipeline;
-import aabb.policy;
+import aabb.prepare.pieces;
 import aabb.std;
 
 export namespace aabb {
@@ -13,29 +13,17 @@ export namespace aabb {
 /// A mesh that is longer, on an axis of its own frame, than `size` times the mean extent of all objects is cut as
 /// `split_large` cuts a box; a triangle belongs to the cell in which its centroid lies. Cells without triangles are no
 /// parts. All is decided before the first frame; parts follow a mesh that deforms. When to use: claim C9 asks.
-struct split_mesh_prepare {
+struct split_mesh_prepare : dividing_prepare {
+    using dividing_prepare::dividing_prepare;
+
     static constexpr std::string_view name = "split_mesh";
     static constexpr std::string_view summary =
         "meshes much longer than the mean are divided into parts with boxes and trees of their own";
-    static constexpr std::array leaves_out{std::string_view("no list of neighbours")};
     static constexpr std::string_view needs_meshes =
         "split_mesh divides meshes, and there are only boxes here; split_large divides boxes";
 
-    struct config {
-        double size = 4;
-    };
-    static constexpr std::tuple parameters{number_parameter{"size", &config::size, 0.0,
-                                                            std::numeric_limits<double>::max(),
-                                                            "the longest extent that is not split, in mean extents"}};
-
-    split_mesh_prepare() = default;
-    explicit split_mesh_prepare(const config& c) : config_(c) {}
-
     [[nodiscard]] std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search,
                                                        instrumentation counted) const;
-
-private:
-    config config_;
 };
 
 static_assert(PreparePolicy<split_mesh_prepare>);

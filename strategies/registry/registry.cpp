@@ -1,10 +1,6 @@
 module aabb.registry;
 
-import aabb.base;
-import aabb.local_detection;
 import aabb.composed;
-import aabb.composed.global_search;
-import aabb.composed.local_detection;
 
 namespace aabb {
 
@@ -12,27 +8,18 @@ namespace aabb {
 namespace registry {
 composed::global_search_rows all_global_rows();
 composed::local_detection_rows all_local_rows();
-std::vector<composed::entry> entries_of(strategy_kind kind);
+std::vector<strategy_info> infos_of(strategy_kind kind);
 std::unique_ptr<global_stage> prepared(const strategy_choice& choice, std::unique_ptr<global_stage> search,
                                        instrumentation counted);
-std::unique_ptr<tree_builder> builder_named(const strategy_choice& choice);
+tree_builder builder_named(const strategy_choice& choice);
 std::unique_ptr<triangle_test> triangle_test_named(const strategy_choice& choice);
 }  // namespace registry
 
 namespace {
 
-const std::vector<composed::entry>& entries(strategy_kind kind) {
-    static const by_kind<std::vector<composed::entry>> all = [] {
-        by_kind<std::vector<composed::entry>> made;
-        for (const strategy_kind one : strategy_kinds) made[one] = registry::entries_of(one);
-        return made;
-    }();
-    return all[kind];
-}
-
 /// Of a choice that is known.
-const composed::entry& entry_of(strategy_kind kind, const strategy_choice& choice) {
-    return *std::ranges::find(entries(kind), choice.name, [](const composed::entry& e) { return e.info.name; });
+const strategy_info& strategy_of(strategy_kind kind, const strategy_choice& choice) {
+    return *std::ranges::find(strategies(kind), choice.name, &strategy_info::name);
 }
 
 const composed::global_search_rows& global_rows() {
@@ -90,40 +77,16 @@ std::vector<composition> every_composition(const Rows& rows, stage of) {
     }
     // Those that stand apart, with the usual strategies and with the first ones.
     for (const strategy_kind kind : kinds_of(of, true))
-        for (const composed::entry& e : entries(kind)) {
-            if (e.info.name == info_of(kind).fallback) continue;
+        for (const strategy_info& info : strategies(kind)) {
+            if (info.name == info_of(kind).fallback) continue;
             composition c;
-            c[kind] = {e.info.name, {}};
+            c[kind] = {info.name, {}};
             all.push_back(c);
-            for (const strategy_kind other : kinds) c[other] = {entries(other).front().info.name, {}};
+            for (const strategy_kind other : kinds) c[other] = {strategies(other).front().name, {}};
             if (row_for(rows, c, of).make) all.push_back(c);
         }
     return all;
 }
-
-}  // namespace
-
-std::string_view name_of(strategy_kind kind) {
-    return info_of(kind).name;
-}
-
-std::span<const strategy_info> strategies(strategy_kind kind) {
-    static const by_kind<std::vector<strategy_info>> all = [] {
-        by_kind<std::vector<strategy_info>> made;
-        for (const strategy_kind one : strategy_kinds)
-            for (const composed::entry& e : entries(one)) made[one].push_back(e.info);
-        return made;
-    }();
-    return all[kind];
-}
-
-std::vector<std::string> strategy_names(strategy_kind kind) {
-    std::vector<std::string> names;
-    for (const strategy_info& info : strategies(kind)) names.push_back(info.name);
-    return names;
-}
-
-namespace {
 
 /// The one kind that has a strategy of this name.
 std::optional<strategy_kind> only_kind_of(const std::string& name) {
@@ -138,6 +101,25 @@ std::optional<strategy_kind> only_kind_of(const std::string& name) {
 
 }  // namespace
 
+std::string_view name_of(strategy_kind kind) {
+    return info_of(kind).name;
+}
+
+std::span<const strategy_info> strategies(strategy_kind kind) {
+    static const by_kind<std::vector<strategy_info>> all = [] {
+        by_kind<std::vector<strategy_info>> made;
+        for (const strategy_kind one : strategy_kinds) made[one] = registry::infos_of(one);
+        return made;
+    }();
+    return all[kind];
+}
+
+std::vector<std::string> strategy_names(strategy_kind kind) {
+    std::vector<std::string> names;
+    for (const strategy_info& info : strategies(kind)) names.push_back(info.name);
+    return names;
+}
+
 void require_known(strategy_kind kind, const strategy_choice& choice) {
     const std::vector<std::string> names = strategy_names(kind);
     if (std::ranges::find(names, choice.name) == names.end()) {
@@ -151,12 +133,12 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
         if (!seen.insert(s.name).second) throw input_error(choice.name + ": " + s.name + " is given twice");
         // What was a parameter once may be a kind by now.
         const auto same_name = std::ranges::find(strategy_kind_infos, s.name, &strategy_kind_info::name);
-        const auto own = std::ranges::find(entry_of(kind, choice).info.parameters, s.name, &parameter_info::name);
-        if (same_name != strategy_kind_infos.end() && own == entry_of(kind, choice).info.parameters.end())
+        const auto own = std::ranges::find(strategy_of(kind, choice).parameters, s.name, &parameter_info::name);
+        if (same_name != strategy_kind_infos.end() && own == strategy_of(kind, choice).parameters.end())
             throw input_error(choice.name + " has no parameter " + s.name + ", which is a kind of its own: write " +
                               s.name + " = \"" + s.value + "\" or --" + s.name + " " + s.value);
     }
-    entry_of(kind, choice).check(choice);
+    strategy_of(kind, choice).check(choice);
 }
 
 composition::composition(const named_strategies& named) {
@@ -197,7 +179,7 @@ std::string_view refusal_of(const composition& c, stage of) {
 bool is_exact(const composition& c, stage of) {
     require_known(c, of);
     return std::ranges::all_of(strategy_kinds, [&](strategy_kind kind) {
-        return info_of(kind).stage != of || entry_of(kind, c[kind]).exact(c[kind]);
+        return info_of(kind).stage != of || strategy_of(kind, c[kind]).is_exact_with(c[kind]);
     });
 }
 
@@ -205,7 +187,7 @@ std::string needs_meshes(const composition& c) {
     require_known(c, stage::global_search);
     for (const strategy_kind kind : strategy_kinds)
         if (info_of(kind).stage == stage::global_search)
-            if (const std::string& sentence = entry_of(kind, c[kind]).info.needs_meshes; !sentence.empty())
+            if (const std::string& sentence = strategy_of(kind, c[kind]).needs_meshes; !sentence.empty())
                 return sentence;
     return {};
 }
@@ -233,7 +215,7 @@ std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice)
 ordered_mesh in_leaf_order(const mesh& m, const strategy_choice& build) {
     require_known(strategy_kind::build, build);
     require_valid(m);
-    const balanced_order order = registry::builder_named(build)->order(m);
+    const balanced_order order = registry::builder_named(build).order(m);
     return {in_leaf_order(m, order), {order.triangles.begin(), order.triangles.end()}};
 }
 

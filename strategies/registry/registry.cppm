@@ -2,9 +2,7 @@
 /// when a strategy changes.
 export module aabb.registry;
 
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 export import :kinds;
 
@@ -21,13 +19,14 @@ struct strategy_info {
     std::vector<std::string> leaves_out;     ///< what a stage with it does without, as `left_out` of a stage has it
     std::string needs_meshes;                ///< why it has no use for boxes alone, a sentence; empty where it has
     std::vector<strategy_choice> contrasts;  ///< with settings by which it has what it or others leave out as it is
-    scene_fit (*fit)(const scene_outlook& scene);  ///< whether `auto` is to choose it; null where it never does
+    scene_fit (*fit)(const scene_outlook& scene);          ///< whether `auto` is to choose it; null where it never does
+    void (*check)(const strategy_choice& choice);          ///< throws input_error on settings that it has not
+    bool (*is_exact_with)(const strategy_choice& choice);  ///< whether it is with these settings
 };
 
 /// The strategies of a kind, in the order of `strategies/CMakeLists.txt`.
 [[nodiscard]] std::span<const strategy_info> strategies(strategy_kind kind);
 
-/// The same strategies by name only.
 [[nodiscard]] std::vector<std::string> strategy_names(strategy_kind kind);
 
 /// Refuses an unknown name, an unknown parameter, or a value that is not one.

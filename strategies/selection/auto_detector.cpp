@@ -1,7 +1,5 @@
 module aabb.auto_detector;
 
-import aabb.base;
-
 namespace aabb {
 
 namespace {

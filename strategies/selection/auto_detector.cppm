@@ -1,9 +1,7 @@
 /// `detector` for those who choose when the program runs, or let `auto` choose.
 export module aabb.auto_detector;
 
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.std;
@@ -27,8 +25,7 @@ public:
     explicit auto_detector(const std::vector<std::string>& named = {}, std::size_t frames = many_frames);
     /// Of meshes: builds the trees; every object is present.
     /// @param mesh_of the mesh of each object, by its place in `meshes`
-    /// @throws input_error as the other, on an object of a mesh that is not there, and on a mesh that `require_valid`
-    /// refuses.
+    /// @throws input_error as the other, on an object of a mesh that is not there, and as `require_valid`.
     auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
                   const std::vector<std::string>& named = {}, std::size_t frames = many_frames);
     // Its parts refer to each other.

@@ -1,7 +1,5 @@
 module aabb.selection;
 
-import aabb.base;
-
 namespace aabb {
 
 namespace {

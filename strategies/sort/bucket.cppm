@@ -1,7 +1,5 @@
 export module aabb.sort.bucket;
 
-import aabb.base;
-import aabb.counters;
 import aabb.global_search;
 import aabb.sort.inserting;
 import aabb.std;
@@ -37,7 +35,7 @@ public:
         mend(list, counters);
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_) + bytes_of(from_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, from_); }
 
 private:
     /// A bucket that took very many is sorted for itself: insertion sort would be quadratic there.

@@ -1,6 +1,5 @@
 export module aabb.sort.insertion;
 
-import aabb.counters;
 import aabb.global_search;
 import aabb.sort.inserting;
 import aabb.std;
@@ -15,8 +14,7 @@ struct insertion_sort {
     static constexpr std::string_view summary =
         "insertion sort, the traditional method: linear on almost sorted lists, else quadratic";
 
-    /// @param on_swap gets the entry that is passed and the one that moves before it; false ends the sort with that
-    /// swap
+    /// @param on_swap gets the entry that is passed and the one that moves before it; false ends the sort there
     template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
     static constexpr void sort(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
         insert_each(list, counters, on_swap);

@@ -1,7 +1,5 @@
 export module aabb.sort.radix;
 
-import aabb.base;
-import aabb.counters;
 import aabb.global_search;
 import aabb.sort.inserting;
 import aabb.std;
@@ -56,8 +54,7 @@ private:
     static constexpr std::size_t passes = 3;
     static constexpr std::size_t digits = std::size_t{1} << bits;
 
-    /// Of the key as a number whose order as a whole number is that of the floats; -0 and 0, which are equal keys, are
-    /// neighbours.
+    /// Of the key as a whole number in the order of the floats; -0 and 0, which are equal keys, are neighbours.
     [[nodiscard]] static constexpr std::size_t digit(const projection& p, std::size_t pass) noexcept {
         const auto pattern = std::bit_cast<std::uint32_t>(p.key);
         const std::uint32_t ordered = pattern ^ (pattern >> 31 ? ~std::uint32_t{0} : std::uint32_t{1} << 31);

@@ -1,8 +1,6 @@
 export module aabb.sort.shell;
 
-import aabb.counters;
 import aabb.global_search;
-import aabb.policy;
 import aabb.std;
 
 export namespace aabb {

@@ -1,6 +1,5 @@
 export module aabb.sort.std;
 
-import aabb.counters;
 import aabb.global_search;
 import aabb.std;
 

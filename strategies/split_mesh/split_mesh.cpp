@@ -3,9 +3,6 @@ module;
 
 module aabb.split_mesh;
 
-import aabb.base;
-import aabb.geometry;
-
 namespace aabb {
 
 namespace {
@@ -137,11 +134,8 @@ void divided_scene::follow() {
 
 void divided_scene::place(std::span<const pose> poses) {
     require_poses(scene_, poses);
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        boxes_[i] = world_bounds(models_[pieces_[i].model].bounds, poses[pieces_[i].object]);
-        if (!is_valid(boxes_[i]))
-            throw input_error("object " + std::to_string(pieces_[i].object) + " lies beyond the range of float");
-    }
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+        boxes_[i] = posed_box(models_[pieces_[i].model].bounds, poses[pieces_[i].object], pieces_[i].object);
 }
 
 void divided_scene::name_objects(std::vector<index_pair>& objects) {
@@ -158,10 +152,8 @@ void divided_scene::name_triangles(index_pair models, std::span<index_pair> tria
 }
 
 std::size_t divided_scene::bytes() const noexcept {
-    std::size_t all =
-        bytes_of(triangles_) + bytes_of(parts_) + bytes_of(models_) + bytes_of(pieces_) + bytes_of(boxes_);
-    for (const part& p : parts_)
-        all += bytes_of(p.own.vertices) + bytes_of(p.own.triangles) + bytes_of(p.vertices) + bytes_of(p.triangles);
+    std::size_t all = bytes_of(triangles_, parts_, models_, pieces_, boxes_);
+    for (const part& p : parts_) all += bytes_of(p.own.vertices, p.own.triangles, p.vertices, p.triangles);
     return all;
 }
 

@@ -3,9 +3,6 @@ module;
 
 export module aabb.sweep.all_axes;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.global_search;
 import aabb.std;
 
@@ -77,9 +74,7 @@ public:
         }
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(marks_) + bytes_of(rank_) + bytes_of(end_) + bytes_of(swept_) + bytes_of(within_);
-    }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(marks_, rank_, end_, swept_, within_); }
 
 private:
     static constexpr std::size_t most_words = (std::size_t{16} << 20) / sizeof(std::uint64_t);

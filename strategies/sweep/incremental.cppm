@@ -4,9 +4,6 @@ module;
 
 export module aabb.sweep.incremental;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.global_search;
 import aabb.std;
 
@@ -24,16 +21,11 @@ export namespace aabb {
 /// sorted does not matter then, and there is never a pair that overlaps neither now nor did in the frame before. Memory
 /// is 16 bytes an object and axis, 24 an object for the boxes of the frame before, up to 36 while arrivals are brought
 /// in or all is started anew, and 16 to 32 bytes a pair, of as many as there were at most.
-class incremental_sweep {
+class incremental_sweep : public kept_pairs {
 public:
     static constexpr std::string_view name = "incremental";
     static constexpr std::string_view summary =
         "keeps the overlapping pairs between frames and follows the swaps of insertion sort";
-
-    template <class... All>
-    static constexpr std::string_view refuses() {
-        return refusal_of_coherent_sweep<All...>();
-    }
 
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
@@ -63,15 +55,8 @@ public:
         assert(are_of_one_length());
     }
 
-    void search(std::vector<index_pair>& pairs) const {
-        pairs.insert(pairs.end(), pairs_.pairs().begin(), pairs_.pairs().end());
-    }
-
     [[nodiscard]] axis_set axes() const noexcept { return axes_; }
-    [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(ends_[0]) + bytes_of(ends_[1]) + bytes_of(ends_[2]) + bytes_of(arriving_) + bytes_of(before_) +
-               bytes_of(sweep_) + bytes_of(pairs_);
-    }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(ends_, arriving_, before_, sweep_, pairs_); }
 
 private:
     void forget_departures(const membership& objects) {
@@ -171,7 +156,6 @@ private:
                        [&](std::uint32_t id) { return objects.is_arrival(id); });
     }
 
-    /// Sweeps one list.
     template <CounterPolicy Counters>
     void find_pairs(std::span<const box> boxes, std::size_t axis, Counters& counters, auto is_new) {
         const std::uint64_t tests = sweep_.find(ends_[axis], boxes, pairs_, is_new);
@@ -182,9 +166,8 @@ private:
     axis_set axes_ = 0;                              // with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
     std::vector<box> before_;                        // by id, of the frame before
-    pair_set pairs_;
-    std::uint64_t swaps_left_ = 0;  // of this frame; 0 where it is started anew
-    std::uint64_t tests_anew_ = 0;  // that a sweep of a list took, at most, since all was started anew
+    std::uint64_t swaps_left_ = 0;                   // of this frame; 0 where it is started anew
+    std::uint64_t tests_anew_ = 0;                   // that a sweep of a list took, at most, since all was started anew
     // While arrivals are brought in, or all is started anew:
     std::vector<interval_end> arriving_;
     interval_sweep sweep_;

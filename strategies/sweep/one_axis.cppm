@@ -1,10 +1,6 @@
 export module aabb.sweep.one_axis;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.global_search;
-import aabb.policy;
 import aabb.std;
 
 export namespace aabb {

@@ -1,12 +1,6 @@
 export module aabb.sweep.simd;
 
-import aabb.base;
 import aabb.columns;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
-import aabb.policy;
-import aabb.simd;
 import aabb.std;
 
 export namespace aabb {
@@ -15,8 +9,7 @@ export namespace aabb {
 /// not ended. When to use: on a processor with wide vectors, always.
 ///
 /// The two axes across the list are tested in whole numbers of 16 bits, both in one word, so that a vector of 512 bits
-/// tests 16 boxes in five instructions. They only reject; what is left, little more than the pairs themselves, is
-/// tested again as it is.
+/// tests 16 boxes in five instructions. They only reject; what is left, little more than the pairs, is tested as it is.
 class simd_sweep {
 public:
     static constexpr std::string_view name = "simd";
@@ -69,8 +62,7 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(entries_) + bytes_of(list_ends_) + bytes_of(active_) + bytes_of(active_ends_) +
-               bytes_of(candidates_) + bytes_of(met_);
+        return bytes_of(entries_, list_ends_, active_, active_ends_, candidates_, met_);
     }
 
 private:

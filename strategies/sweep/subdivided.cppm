@@ -1,10 +1,6 @@
 export module aabb.sweep.subdivided;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.global_search;
-import aabb.policy;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -25,15 +21,14 @@ export namespace aabb {
 ///
 /// Memory is 48 bytes an object and region, 37 an object, 80 a region, and 16 to 32 bytes a pair, of as many as there
 /// were at most of each.
-class subdivided_sweep {
+class subdivided_sweep : public kept_pairs {
 public:
     static constexpr std::string_view name = "subdivided";
     static constexpr std::string_view summary =
         "a coarse grid of regions, each with lists that are kept between frames as those of incremental are";
 
     struct config {
-        /// Along each of the two axes that are cut. auto: as many as leave 16 objects in a region, and regions four
-        /// mean extents long.
+        /// Along each of the two axes that are cut. auto: as many as leave 16 objects a region of four mean extents.
         std::optional<std::uint32_t> regions;
     };
     static constexpr std::tuple parameters{
@@ -41,11 +36,6 @@ public:
 
     subdivided_sweep() = default;
     explicit subdivided_sweep(const config& c) : config_(c) {}
-
-    template <class... All>
-    static constexpr std::string_view refuses() {
-        return refusal_of_coherent_sweep<All...>();
-    }
 
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
@@ -68,14 +58,9 @@ public:
         before_.assign(boxes.begin(), boxes.end());
     }
 
-    void search(std::vector<index_pair>& pairs) const {
-        pairs.insert(pairs.end(), pairs_.pairs().begin(), pairs_.pairs().end());
-    }
-
     [[nodiscard]] static constexpr axis_set axes() noexcept { return every_axis; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(regions_) + bytes_of(touched_) + bytes_of(places_) + bytes_of(moved_) +
-                          bytes_of(before_) + bytes_of(sweep_) + bytes_of(pairs_);
+        std::size_t all = bytes_of(regions_, touched_, places_, moved_, before_, sweep_, pairs_);
         for (const region& r : regions_)
             for (const auto& list : r.ends) all += bytes_of(list);
         return all;
@@ -277,9 +262,8 @@ private:
     std::vector<region_range> places_;    // by id
     std::vector<std::uint8_t> moved_;     // by id, whether it did in this frame
     std::vector<box> before_;             // by id, of the frame before
-    pair_set pairs_;
-    std::uint64_t steps_left_ = 0;  // of this frame; 0 where it is started anew
-    std::uint64_t steps_anew_ = 1;  // that starting anew took the last time
+    std::uint64_t steps_left_ = 0;        // of this frame; 0 where it is started anew
+    std::uint64_t steps_anew_ = 1;        // that starting anew took the last time
     interval_sweep sweep_;
 };
 

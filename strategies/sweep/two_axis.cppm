@@ -1,8 +1,5 @@
 export module aabb.sweep.two_axis;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
 import aabb.global_search;
 import aabb.std;
 
@@ -52,8 +49,8 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(ranked_) + bytes_of(first_word_) + bytes_of(reached_) + bytes_of(rank_) + bytes_of(active_) +
-               bytes_of(word_begins_) + bytes_of(long_active_) + bytes_of(pairs_) + bytes_of(candidates_);
+        return bytes_of(ranked_, first_word_, reached_, rank_, active_, word_begins_, long_active_, pairs_,
+                        candidates_);
     }
 
 private:

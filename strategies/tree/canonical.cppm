@@ -1,6 +1,5 @@
 export module aabb.tree.canonical;
 
-import aabb.geometry;
 import aabb.local_detection;
 import aabb.std;
 

@@ -1,11 +1,7 @@
 export module aabb.tree.compressed_literal;
 
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
-import aabb.tree.box_cursor;
 import aabb.tree.leafless_config;
-import aabb.tree.sibling_planes;
 
 export namespace aabb {
 

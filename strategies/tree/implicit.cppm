@@ -1,10 +1,6 @@
 export module aabb.tree.implicit;
 
-import aabb.base;
 import aabb.costs;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.policy;
 import aabb.std;
 import aabb.wide_tree;
 

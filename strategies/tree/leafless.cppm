@@ -1,9 +1,6 @@
 export module aabb.tree.leafless;
 
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
-import aabb.tree.box_cursor;
 import aabb.tree.leafless_config;
 
 export namespace aabb {

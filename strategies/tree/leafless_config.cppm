@@ -1,14 +1,11 @@
 export module aabb.tree.leafless_config;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.policy;
+export import aabb.local_detection;
 import aabb.std;
-import aabb.tree.box_cursor;
+export import aabb.tree.sibling_planes;
 
 export namespace aabb {
 
-/// Parameters of a layout that keeps no leaf boxes.
 struct leafless_config {
     leaf_test_choice leaf_test = leaf_test_choice::none;
 

@@ -1,18 +1,11 @@
 export module aabb.tree.quantized;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.policy;
 import aabb.std;
-import aabb.tree.box_cursor;
 import aabb.tree.leafless_config;
 import aabb.tree.quantized_planes;
-import aabb.tree.sibling_planes;
 
 export namespace aabb {
 
-/// Parameters of `quantized_tree`.
 struct quantized_config : leafless_config {
     unsigned bits = 8;
 };

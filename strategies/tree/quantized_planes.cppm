@@ -1,8 +1,7 @@
 export module aabb.tree.quantized_planes;
 
-import aabb.geometry;
 import aabb.std;
-import aabb.tree.sibling_planes;
+export import aabb.tree.sibling_planes;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
@@ -10,8 +9,7 @@ import aabb.tree.sibling_planes;
 export namespace aabb {
 
 /// `sibling_planes` in so many bits a plane, rounded outward, relative to the parent's box as it is decoded. A plane
-/// that a child inherits is the decoded one: what rounding added to it stays, down to where it is that of no child any
-/// more.
+/// that a child inherits is the decoded one: what rounding added to it stays, down to where no child has it.
 ///
 /// A code q counts steps inward from the parent's plane, each 2^-bits of the parent's length on that axis: decoded(q) =
 /// plane + q * step, in float, product and sum rounded apart. Both are monotone in q, and decoded(0) is the parent's

@@ -1,9 +1,7 @@
 export module aabb.tree.shared_planes;
 
-import aabb.geometry;
 import aabb.local_detection;
 import aabb.std;
-import aabb.tree.box_cursor;
 import aabb.tree.sibling_planes;
 
 export namespace aabb {

@@ -1,9 +1,20 @@
 export module aabb.tree.sibling_planes;
 
-import aabb.geometry;
+export import aabb.geometry;
 import aabb.std;
 
 export namespace aabb {
+
+/// Place in a tree that does not store its nodes' boxes as they are: the box goes along.
+struct box_cursor {
+    static constexpr std::uint32_t leaf_bit = 0x80000000;
+
+    box bounds;
+    std::uint32_t index;  ///< of an internal node, or with the top bit set of a leaf or its triangle
+
+    [[nodiscard]] constexpr bool is_leaf() const noexcept { return index & leaf_bit; }
+    [[nodiscard]] constexpr std::uint32_t leaf() const noexcept { return index & ~leaf_bit; }
+};
 
 /// The boxes of two siblings without loss, in six floats and six bits (paper, section 3.2, read for both children of a
 /// node at once). Each plane of the parent's box is that of at least one child; the record holds the other child's.

@@ -1,7 +1,5 @@
 export module aabb.triangle.devillers_guigue;
 
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
 import aabb.triangle.precision;
 
@@ -13,25 +11,17 @@ export namespace aabb {
 /// Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with orientations in plain
 /// double, as it is commonly used, or float. Inexact: signs near zero are those of rounding, and triangles of zero area
 /// are not told from others. When to use: as the fastest well-known test, to hold `exact` against.
-class devillers_guigue_triangle {
+class devillers_guigue_triangle : public test_in_precision<precision_choice::float64> {
 public:
+    using test_in_precision::test_in_precision;
+
     static constexpr std::string_view name = "devillers_guigue";
     static constexpr std::string_view summary =
         "Devillers and Guigue's orientation signs in plain arithmetic: inexact, the fast baseline";
-    static constexpr bool exact = false;
-
-    struct config {
-        precision_choice precision = precision_choice::float64;
-    };
-    static constexpr std::tuple parameters{precision_parameter(&config::precision)};
-
-    devillers_guigue_triangle() = default;
-    explicit devillers_guigue_triangle(const config& c) : precision_(c.precision) {}
 
     template <class Real>
     [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
-        return in_precision(precision_, s, t,
-                            [](const auto& first, const auto& second) { return meet(first, second); });
+        return in_precision(s, t, [](const auto& first, const auto& second) { return meet(first, second); });
     }
 
 private:
@@ -120,8 +110,6 @@ private:
         }
         return false;
     }
-
-    precision_choice precision_ = precision_choice::float64;
 };
 
 static_assert(DoubleTrianglePolicy<devillers_guigue_triangle>);

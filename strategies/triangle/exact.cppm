@@ -1,6 +1,5 @@
 export module aabb.triangle.exact;
 
-import aabb.geometry;
 import aabb.local_detection;
 import aabb.std;
 import aabb.triangle.intersection;

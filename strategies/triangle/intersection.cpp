@@ -1,6 +1,5 @@
 module aabb.triangle.intersection;
 
-import aabb.base;
 import aabb.std;
 import aabb.triangle.orientation_test;
 
@@ -163,7 +162,6 @@ triangle_intersection flat_intersection(const hull& g, const hull& h, const view
     return made.by_size();
 }
 
-/// Both in one plane.
 triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
     if (g.size < 3 && h.size < 3) {
         // Along a line nothing can be seen edge-on but the line itself; two that cross span a plane.

@@ -1,7 +1,7 @@
 /// The geometry of a hit: what two triangles have in common, not only whether.
 export module aabb.triangle.intersection;
 
-import aabb.geometry;
+export import aabb.geometry;
 
 export namespace aabb {
 

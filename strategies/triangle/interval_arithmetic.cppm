@@ -1,8 +1,6 @@
 export module aabb.triangle.interval_arithmetic;
 
-import aabb.geometry;
 import aabb.local_detection;
-import aabb.policy;
 import aabb.std;
 import aabb.triangle.orientation_test;
 

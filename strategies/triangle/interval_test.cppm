@@ -1,7 +1,6 @@
 export module aabb.triangle.interval_test;
 
-import aabb.geometry;
-import aabb.policy;
+export import aabb.local_detection;
 import aabb.std;
 
 // Sums and products as they are written: see aabb.base:floating_point.
@@ -16,35 +15,37 @@ enum class epsilon_choice : std::uint8_t {
     scaled     ///< 1e-6 times the pair's longest extent and the length of the normal
 };
 
-/// The parameter `epsilon` of Möller's test.
-template <class Config>
-[[nodiscard]] constexpr auto epsilon_parameter(epsilon_choice Config::* field) {
-    return choice_parameter{"epsilon", field, std::array<std::string_view, 3>{"absolute", "none", "scaled"},
-                            "distances that count as zero: below 1e-6 as in the original, none, or below 1e-6 of the "
-                            "pair's extent"};
-}
-
 /// How the ends of two intervals are compared.
 enum class division_choice : std::uint8_t {
     yes,  ///< by quotients, as in the paper
     no    ///< by products with all denominators, as in the author's later code; they leave the range of Real sooner
 };
 
-/// The parameter `division` of Möller's test.
-template <class Config>
-[[nodiscard]] constexpr auto division_parameter(division_choice Config::* field) {
-    return choice_parameter{
-        "division", field, std::array<std::string_view, 2>{"yes", "no"},
-        "whether ends of intervals are quotients, or are compared as products with all denominators"};
-}
+struct interval_config {
+    epsilon_choice epsilon = epsilon_choice::absolute;
+    division_choice division = division_choice::yes;
+};
+
+inline constexpr std::tuple interval_parameters{
+    choice_parameter{"epsilon", &interval_config::epsilon,
+                     std::array<std::string_view, 3>{"absolute", "none", "scaled"},
+                     "distances that count as zero: below 1e-6 as in the original, none, or below 1e-6 of the "
+                     "pair's extent"},
+    choice_parameter{"division", &interval_config::division, std::array<std::string_view, 2>{"yes", "no"},
+                     "whether ends of intervals are quotients, or are compared as products with all denominators"}};
 
 /// Möller's interval test ("A fast triangle-triangle intersection test", 1997) in the arithmetic of Real. Sums keep the
 /// original's order, ties its choice of axis, and products that underflow or overflow its answers.
 template <class Real>
 class interval_test {
 public:
+    static constexpr bool exact = false;
+
+    using config = interval_config;
+    static constexpr auto parameters = interval_parameters;
+
     interval_test() = default;
-    interval_test(epsilon_choice epsilon, division_choice division) : epsilon_(epsilon), division_(division) {}
+    explicit interval_test(const config& c) : config_(c) {}
 
     [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
         const vec3<Real> normal_t = cross(t[1] - t[0], t[2] - t[0]);
@@ -61,9 +62,9 @@ public:
         const cut_edges of_s(s, s_to_t, axis);
         const cut_edges of_t(t, t_to_s, axis);
         const auto [s_low, s_high] =
-            division_ == division_choice::yes ? of_s.quotients() : of_s.products(of_t.denominators());
+            config_.division == division_choice::yes ? of_s.quotients() : of_s.products(of_t.denominators());
         const auto [t_low, t_high] =
-            division_ == division_choice::yes ? of_t.quotients() : of_t.products(of_s.denominators());
+            config_.division == division_choice::yes ? of_t.quotients() : of_t.products(of_s.denominators());
         return !(s_high < t_low || t_high < s_low);  // not `>=`: after an overflow to NaN the original says yes
     }
 
@@ -72,7 +73,7 @@ private:
     [[nodiscard]] double zero_below(const triangle3<Real>& s, const triangle3<Real>& t,
                                     const vec3<Real>& normal) const noexcept {
         constexpr double epsilon = 1e-6;
-        switch (epsilon_) {
+        switch (config_.epsilon) {
             case epsilon_choice::absolute: return epsilon;
             case epsilon_choice::none: return 0;
             case epsilon_choice::scaled: break;
@@ -205,8 +206,7 @@ private:
         return side[0] * side[1] > 0 && side[0] * side[2] > 0;
     }
 
-    epsilon_choice epsilon_ = epsilon_choice::absolute;
-    division_choice division_ = division_choice::yes;
+    config config_;
 };
 
 }  // namespace aabb

@@ -1,6 +1,6 @@
 export module aabb.triangle.orientation_test;
 
-import aabb.geometry;
+export import aabb.geometry;
 import aabb.std;
 
 export namespace aabb {

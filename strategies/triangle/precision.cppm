@@ -1,7 +1,6 @@
 export module aabb.triangle.precision;
 
-import aabb.geometry;
-import aabb.policy;
+export import aabb.local_detection;
 import aabb.std;
 
 export namespace aabb {
@@ -9,19 +8,35 @@ export namespace aabb {
 /// The numbers that an inexact test computes with.
 enum class precision_choice : std::uint8_t { float32, float64 };
 
-/// The parameter `precision`.
-template <class Config>
-[[nodiscard]] constexpr auto precision_parameter(precision_choice Config::* field) {
-    return choice_parameter{"precision", field, std::array<std::string_view, 2>{"float", "double"},
-                            "what it computes in; float rounds doubles that it is given"};
-}
+template <precision_choice Usual>
+struct precision_config {
+    precision_choice precision = Usual;
+};
 
-/// Calls `test` with both triangles in that precision.
-template <class Real, class Test>
-[[nodiscard]] inline bool in_precision(precision_choice precision, const triangle3<Real>& s, const triangle3<Real>& t,
-                                       Test test) {
-    if (precision == precision_choice::float32) return test(in_float(s), in_float(t));
-    return test(in_double(s), in_double(t));
-}
+/// Base of an inexact test in the precision that is chosen.
+template <precision_choice Usual>
+class test_in_precision {
+public:
+    static constexpr bool exact = false;
+
+    using config = precision_config<Usual>;
+    static constexpr auto parameters = std::make_tuple(
+        choice_parameter{"precision", &config::precision, std::array<std::string_view, 2>{"float", "double"},
+                         "what it computes in; float rounds doubles that it is given"});
+
+    test_in_precision() = default;
+    explicit test_in_precision(const config& c) : config_(c) {}
+
+protected:
+    /// Calls `test` with both triangles in that precision.
+    template <class Real, class Test>
+    [[nodiscard]] inline bool in_precision(const triangle3<Real>& s, const triangle3<Real>& t, Test test) const {
+        if (config_.precision == precision_choice::float32) return test(in_float(s), in_float(t));
+        return test(in_double(s), in_double(t));
+    }
+
+private:
+    config config_;
+};
 
 }  // namespace aabb

@@ -1,7 +1,5 @@
 export module aabb.triangle.separating_axes;
 
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
 import aabb.triangle.precision;
 
@@ -14,25 +12,17 @@ export namespace aabb {
 /// "Real-Time Collision Detection", 2005, section 5.2.10): the normals, the cross products of edges, and within a plane
 /// the normals of edges, 17 axes. Inexact: what touches is told from what is apart by rounded projections.
 /// When to use: as the test that most engines use, to hold others against.
-class separating_axes_triangle {
+class separating_axes_triangle : public test_in_precision<precision_choice::float32> {
 public:
+    using test_in_precision::test_in_precision;
+
     static constexpr std::string_view name = "separating_axes";
     static constexpr std::string_view summary =
         "projections on the 17 axes that can separate two triangles: inexact, what most engines use";
-    static constexpr bool exact = false;
-
-    struct config {
-        precision_choice precision = precision_choice::float32;
-    };
-    static constexpr std::tuple parameters{precision_parameter(&config::precision)};
-
-    separating_axes_triangle() = default;
-    explicit separating_axes_triangle(const config& c) : precision_(c.precision) {}
 
     template <class Real>
     [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
-        return in_precision(precision_, s, t,
-                            [](const auto& first, const auto& second) { return meet(first, second); });
+        return in_precision(s, t, [](const auto& first, const auto& second) { return meet(first, second); });
     }
 
 private:
@@ -67,8 +57,6 @@ private:
         const auto [t_low, t_high] = reach(t);
         return s_high < t_low || t_high < s_low;
     }
-
-    precision_choice precision_ = precision_choice::float32;
 };
 
 static_assert(DoubleTrianglePolicy<separating_axes_triangle>);

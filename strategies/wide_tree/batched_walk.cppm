@@ -1,22 +1,10 @@
 export module aabb.wide_tree.batched_walk;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.simd;
 import aabb.std;
 import aabb.wide_tree.child_pairs;
-import aabb.wide_tree.kernels;
-import aabb.wide_tree.leaf_front;
-import aabb.wide_tree.leaf_pairs;
-import aabb.wide_tree.leaf_reader;
-import aabb.wide_tree.level_steps;
+export import aabb.wide_tree.leaf_pairs;
 import aabb.wide_tree.nearest_walk;
-import aabb.wide_tree.policy;
 import aabb.wide_tree.triangle_batch;
-import aabb.wide_tree.triangle_block;
-import aabb.wide_tree.wide_node;
 
 export namespace aabb {
 
@@ -41,8 +29,7 @@ public:
         walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, emit);
     }
 
-    /// Appends the pairs of leaves with triangles within a margin of each other, less what rounding takes of it
-    /// (`most_rounding`).
+    /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`most_rounding`).
     /// @returns false when it stopped at more than so many
     [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
                             std::size_t most, std::vector<kept_pair>& pairs) {
@@ -78,7 +65,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept {
         std::size_t all =
             sizeof *this + bytes_of(pairs_) + steps_.bytes() + children_.bytes() + leaves_.bytes() + nearest_.bytes();
-        for (const node_pairs& p : pairs_) all += bytes_of(p.a) + bytes_of(p.b);
+        for (const node_pairs& p : pairs_) all += bytes_of(p.a, p.b);
         return all;
     }
 

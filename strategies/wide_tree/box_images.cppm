@@ -1,10 +1,7 @@
 export module aabb.wide_tree.box_images;
 
-import aabb.geometry;
-import aabb.simd;
 import aabb.std;
-import aabb.wide_tree.eight_boxes;
-import aabb.wide_tree.wide_node;
+export import aabb.wide_tree.wide_node;
 
 // Products may be fused into sums, which the bounds allow for; nothing else.
 #pragma clang fp reassociate(off) reciprocal(off)
@@ -61,6 +58,40 @@ private:
     std::array<std::array<double, 3>, 3> turn_{};  // by the axis there, then here
     std::array<double, 3> shift_{};
     std::array<double, 3> margin_{};
+};
+
+/// Images of the children of a tree's nodes, kept for those that come again: each node has a place, shared with others.
+class kept_images {
+public:
+    /// Forgets all, and takes few places where there are few nodes.
+    /// @param first of the nodes, which all lie in one array
+    void begin(const wide_node* first, std::size_t nodes, const box_motion& motion) {
+        first_ = first;
+        images_.begin(motion);
+        if (boxes_.size() < most && boxes_.size() < nodes) boxes_.resize(std::min(most, std::bit_ceil(nodes)));
+        made_.fill(nothing);
+    }
+
+    [[nodiscard]] inline const eight_boxes& operator()(const wide_node& n) {
+        const auto number = static_cast<std::uint32_t>(&n - first_);
+        const std::size_t place = number & (boxes_.size() - 1);
+        if (made_[place] != number) {
+            images_.store(n, boxes_[place]);
+            made_[place] = number;
+        }
+        return boxes_[place];
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(boxes_); }
+
+private:
+    static constexpr std::size_t most = 32;  // a power of two
+    static constexpr std::uint32_t nothing = 0xffffffff;
+
+    const wide_node* first_ = nullptr;
+    box_images images_;
+    std::array<std::uint32_t, most> made_{};
+    std::vector<eight_boxes> boxes_;
 };
 
 }  // namespace aabb

@@ -1,13 +1,8 @@
 export module aabb.wide_tree.child_pairs;
 
-import aabb.counters;
-import aabb.geometry;
 import aabb.std;
 import aabb.wide_tree.box_images;
-import aabb.wide_tree.eight_boxes;
-import aabb.wide_tree.policy;
-import aabb.wide_tree.recently_made;
-import aabb.wide_tree.wide_node;
+export import aabb.wide_tree.policy;
 
 export namespace aabb {
 
@@ -19,14 +14,9 @@ class child_pairs {
 public:
     /// @param margin within which children are said to meet
     void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, double margin) {
-        first_a_ = a.level(0);
-        first_b_ = b.level(0);
-        to_a_.begin(grown(to_a.to_boxes(), margin));
-        in_a_.begin(nodes_of(b));
+        in_a_.begin(b.level(0), nodes_of(b), grown(to_a.to_boxes(), margin));
         turned_ = to_a.growth() > least_growth;
-        if (!turned_) return;
-        to_b_.begin(grown(to_a.back_to_boxes(bounds_of_a), margin));
-        in_b_.begin(nodes_of(a));
+        if (turned_) in_b_.begin(a.level(0), nodes_of(a), grown(to_a.back_to_boxes(bounds_of_a), margin));
     }
 
     static constexpr std::size_t most_at_once = 64;
@@ -55,7 +45,7 @@ public:
             const wide_node& of_a = nodes_a[a[p]];
             const wide_node& of_b = nodes_b[b[p]];
             tests += pairs(of_a, of_b);
-            const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), in_a(of_b));
+            const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), in_a_(of_b));
             in_one_[left] = {p, met};
             left += met != 0;
         }
@@ -66,9 +56,7 @@ public:
                 const wide_node& of_a = nodes_a[a[p]];
                 const wide_node& of_b = nodes_b[b[p]];
                 tests += pairs(of_a, of_b);
-                const eight_boxes& boxes =
-                    in_b_.get(number(of_a, first_a_), [&](eight_boxes& made) { to_b_.store(of_a, made); });
-                const std::uint64_t met = met_in_a & transposed(of_b.planes.overlaps(of_b.grid(), boxes));
+                const std::uint64_t met = met_in_a & transposed(of_b.planes.overlaps(of_b.grid(), in_b_(of_a)));
                 in_both_[left] = {p, met};
                 left += met != 0;
             }
@@ -81,13 +69,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return in_a_.bytes() + in_b_.bytes(); }
 
 private:
-    static constexpr std::size_t most_kept = 32;
     static constexpr double least_growth = 1.2;  // from here on, the second test saves more than it costs
-
-    /// The boxes of the children of B's node in A's frame.
-    [[nodiscard]] inline const eight_boxes& in_a(const wide_node& b) {
-        return in_a_.get(number(b, first_b_), [&](eight_boxes& made) { to_a_.store(b, made); });
-    }
 
     /// A pose is a rotation within 1e-6, so that lengths in the other frame are the same within 2^-18.
     [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
@@ -96,9 +78,6 @@ private:
     }
     [[nodiscard]] static inline std::uint64_t pairs(const wide_node& a, const wide_node& b) noexcept {
         return std::uint64_t{a.children} * b.children;
-    }
-    [[nodiscard]] static inline std::uint32_t number(const wide_node& n, const wide_node* first) noexcept {
-        return static_cast<std::uint32_t>(&n - first);
     }
 
     /// Bit 8 i + j becomes bit 8 j + i.
@@ -113,12 +92,8 @@ private:
         return m;
     }
 
-    const wide_node* first_a_ = nullptr;
-    const wide_node* first_b_ = nullptr;
-    box_images to_a_;
-    box_images to_b_;
-    recently_made<eight_boxes, most_kept> in_a_;
-    recently_made<eight_boxes, most_kept> in_b_;
+    kept_images in_a_;  // nodes of B
+    kept_images in_b_;  // nodes of A
     bool turned_ = false;
     std::array<found, most_at_once> in_one_{};
     std::array<found, most_at_once> in_both_{};

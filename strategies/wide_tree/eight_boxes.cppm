@@ -1,9 +1,8 @@
 export module aabb.wide_tree.eight_boxes;
 
-import aabb.geometry;
-import aabb.simd;
+export import aabb.geometry;
 import aabb.std;
-import aabb.wide_tree.kernels;
+export import aabb.wide_tree.kernels;
 
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)

@@ -1,14 +1,7 @@
 export module aabb.wide_tree.front_walk;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
 import aabb.wide_tree.batched_walk;
-import aabb.wide_tree.leaf_front;
-import aabb.wide_tree.leaf_reader;
-import aabb.wide_tree.policy;
 
 export namespace aabb {
 
@@ -99,10 +92,7 @@ private:
 
     /// About: the area of the mesh's box, shared among its leaves.
     [[nodiscard]] static double area_of_leaf(const model<Tree>& m) {
-        const box& b = m.bounds();
-        std::array<double, 3> edge;
-        for (int k = 0; k < 3; ++k) edge[static_cast<std::size_t>(k)] = double{b.max[k]} - double{b.min[k]};
-        return 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]) / static_cast<double>(leaves_of(m));
+        return surface_area(m.bounds()) / static_cast<double>(leaves_of(m));
     }
 
     batched_walk<Tree, Triangle, Counters> walk_;

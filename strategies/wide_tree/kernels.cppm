@@ -6,7 +6,7 @@ module;
 /// What a walk over wide trees does with eight numbers at a time, beside what `aabb.simd` has.
 export module aabb.wide_tree.kernels;
 
-import aabb.simd;
+export import aabb.simd;
 import aabb.std;
 
 namespace aabb::simd::detail {
@@ -52,8 +52,7 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
     const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(places)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
 }
-#endif
-#if defined(__AVX512F__)
+
 /// Rows of `a` twice in a vector, against each number twice eight times of `b`.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_that_share(const void* a, const void* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
@@ -190,15 +189,13 @@ export namespace aabb::simd {
     std::uint64_t row = 0;
     std::memcpy(&row, a, sizeof row);
     const auto left = reinterpret_cast<bytes>(rows{} + row);
-    const bytes right = __builtin_shufflevector(b, b, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2,
-                                                2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5, 5,
-                                                5, 5, 6, 6, 6, 6, 6, 6, 6, 6, 7, 7, 7, 7, 7, 7, 7, 7);
+    constexpr auto eight_times = [](std::size_t i) { return i / 8; };
+    const auto right = shuffled<bytes, eight_times>(b, b, std::make_index_sequence<64>{});
     const signed_bytes held = left <= right;
     return __builtin_bit_cast(std::uint64_t, __builtin_convertvector(held, bools));
 }
 
-/// Bit 8 j + i where one of the three numbers in column i of `a` is one of those in column j of `b`; both are three
-/// rows of eight.
+/// Bit 8 j + i where one of the three numbers in column i of `a` is in column j of `b`; both are three rows of eight.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_of_eight_that_share(const std::uint32_t* a,
                                                                                    const std::uint32_t* b) noexcept {
 #if defined(__AVX512F__)
@@ -256,19 +253,14 @@ export namespace aabb::simd {
     // Rows of pairs with even j and those with odd j: differences, of which one is negative where two boxes lie apart.
     four_rows even{};
     four_rows odd{};
+    const auto all = std::make_index_sequence<32>{};
+    constexpr auto in_turn = [](std::size_t i) { return i % 8; };
+    constexpr auto even_ones = [](std::size_t i) { return i / 8 * 2; };
+    constexpr auto odd_ones = [](std::size_t i) { return i / 8 * 2 + 1; };
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto four_times = [](eight_halves v) {
-            return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7,
-                                           0, 1, 2, 3, 4, 5, 6, 7);
-        };
-        const auto each_even = [](eight_halves v) {
-            return __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0, 2, 2, 2, 2, 2, 2, 2, 2, 4, 4, 4, 4, 4, 4, 4, 4,
-                                           6, 6, 6, 6, 6, 6, 6, 6);
-        };
-        const auto each_odd = [](eight_halves v) {
-            return __builtin_shufflevector(v, v, 1, 1, 1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 5, 5, 5, 5, 5, 5, 5, 5,
-                                           7, 7, 7, 7, 7, 7, 7, 7);
-        };
+        const auto four_times = [&](eight_halves v) { return shuffled<four_rows, in_turn>(v, v, all); };
+        const auto each_even = [&](eight_halves v) { return shuffled<four_rows, even_ones>(v, v, all); };
+        const auto each_odd = [&](eight_halves v) { return shuffled<four_rows, odd_ones>(v, v, all); };
         const auto row = [k](const std::int16_t* of, std::size_t first) {
             return load_eight<eight_halves>(of + 8 * (first + k));
         };
@@ -291,12 +283,11 @@ export namespace aabb::simd {
     const auto bits = [](bytes v) {
         return std::uint64_t{__builtin_bit_cast(std::uint32_t, __builtin_convertvector(v, bools))};
     };
-    const std::uint64_t first =
-        bits(__builtin_shufflevector(apart_even, apart_odd, 0, 1, 2, 3, 4, 5, 6, 7, 32, 33, 34, 35, 36, 37, 38, 39, 8,
-                                     9, 10, 11, 12, 13, 14, 15, 40, 41, 42, 43, 44, 45, 46, 47));
-    const std::uint64_t last =
-        bits(__builtin_shufflevector(apart_even, apart_odd, 16, 17, 18, 19, 20, 21, 22, 23, 48, 49, 50, 51, 52, 53, 54,
-                                     55, 24, 25, 26, 27, 28, 29, 30, 31, 56, 57, 58, 59, 60, 61, 62, 63));
+    // Eights of the one and of the other in turn.
+    constexpr auto low_rows = [](std::size_t i) { return i / 16 * 8 + i % 8 + i / 8 % 2 * 32; };
+    constexpr auto high_rows = [](std::size_t i) { return 16 + i / 16 * 8 + i % 8 + i / 8 % 2 * 32; };
+    const std::uint64_t first = bits(shuffled<bytes, low_rows>(apart_even, apart_odd, all));
+    const std::uint64_t last = bits(shuffled<bytes, high_rows>(apart_even, apart_odd, all));
     return ~(first | last << 32U);
 #endif
 }

@@ -1,8 +1,7 @@
 export module aabb.wide_tree.leaf_front;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.simd;
+export import aabb.geometry;
+export import aabb.simd;
 import aabb.std;
 
 export namespace aabb {
@@ -147,7 +146,7 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(fronts_) + bytes_of(centres_);
+        std::size_t all = bytes_of(fronts_, centres_);
         for (const leaf_front& f : fronts_) all += f.bytes();
         return all;
     }

@@ -1,17 +1,8 @@
 export module aabb.wide_tree.leaf_pairs;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.simd;
 import aabb.std;
-import aabb.wide_tree.eight_boxes;
-import aabb.wide_tree.leaf_reader;
-import aabb.wide_tree.leaf_slab;
-import aabb.wide_tree.policy;
-import aabb.wide_tree.triangle_block;
-import aabb.wide_tree.vertex_lists;
+export import aabb.wide_tree.leaf_reader;
+export import aabb.wide_tree.leaf_slab;
 
 export namespace aabb {
 
@@ -102,7 +93,7 @@ public:
 
     [[nodiscard]] leaf_reader<Tree>& reader() noexcept { return reader_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return of_a_.bytes() + of_b_.bytes() + bytes_of(corners_of_a_) + bytes_of(corners_of_b_);
+        return of_a_.bytes() + of_b_.bytes() + bytes_of(corners_of_a_, corners_of_b_);
     }
 
 private:

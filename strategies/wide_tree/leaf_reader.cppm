@@ -1,13 +1,8 @@
 export module aabb.wide_tree.leaf_reader;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
-import aabb.wide_tree.leaf_front;
-import aabb.wide_tree.policy;
-import aabb.wide_tree.triangle_block;
-import aabb.wide_tree.vertex_lists;
+export import aabb.wide_tree.leaf_front;
+export import aabb.wide_tree.triangle_block;
 
 export namespace aabb {
 

@@ -1,10 +1,7 @@
 export module aabb.wide_tree.leaf_slab;
 
-import aabb.geometry;
-import aabb.simd;
 import aabb.std;
-import aabb.wide_tree.kernels;
-import aabb.wide_tree.triangle_block;
+export import aabb.wide_tree.triangle_block;
 
 // Products may be fused into sums, which the bounds allow for; nothing else.
 #pragma clang fp reassociate(off) reciprocal(off)

@@ -3,18 +3,10 @@ module;
 
 export module aabb.wide_tree.nearest_walk;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.simd;
 import aabb.std;
 import aabb.wide_tree.box_images;
-import aabb.wide_tree.eight_boxes;
-import aabb.wide_tree.level_steps;
-import aabb.wide_tree.policy;
-import aabb.wide_tree.recently_made;
-import aabb.wide_tree.wide_node;
+export import aabb.wide_tree.level_steps;
+export import aabb.wide_tree.policy;
 
 export namespace aabb {
 
@@ -109,7 +101,6 @@ public:
 
 private:
     static constexpr std::size_t children = wide_node::most_children;
-    static constexpr std::size_t most_kept = 32;
     static constexpr std::size_t least_back = 2;  // levels
 
     struct node_pair {
@@ -136,9 +127,7 @@ private:
         for (waiting& w : waiting_) w.size = 0;
         assert(steps_.size() <= 64);
         steps_waiting_ = 0;
-        to_a_.begin(to_a.to_boxes());
-        first_b_ = b.level(0);
-        in_a_.begin(nodes_of(b));
+        in_a_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
     }
 
     /// Goes on to the nearest pair of children, and leaves the others for later.
@@ -148,8 +137,7 @@ private:
         const wide_node& of_a = a.level(steps_[step].a - 1)[at.a];
         const wide_node& of_b = b.level(steps_[step].b - 1)[at.b];
         counters.add(work::box_tests, std::uint64_t{of_a.children} * of_b.children);
-        const eight_boxes& boxes = in_a_.get(static_cast<std::uint32_t>(&of_b - first_b_),
-                                             [&](eight_boxes& made) { to_a_.store(of_b, made); });
+        const eight_boxes& boxes = in_a_(of_b);
         const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), boxes);
         if (met == 0) return false;
         const auto [first, second] = two_nearest(met, of_a, boxes);
@@ -200,11 +188,9 @@ private:
     }
 
     level_steps steps_;
-    box_images to_a_;
-    const wide_node* first_b_ = nullptr;
-    recently_made<eight_boxes, most_kept> in_a_;  // the children of nodes of B
-    std::vector<waiting> waiting_;                // by step
-    std::uint64_t steps_waiting_ = 0;             // bit s where any wait at step s
+    kept_images in_a_;                 // nodes of B
+    std::vector<waiting> waiting_;     // by step
+    std::uint64_t steps_waiting_ = 0;  // bit s where any wait at step s
 };
 
 }  // namespace aabb

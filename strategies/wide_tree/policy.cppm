@@ -1,10 +1,8 @@
 export module aabb.wide_tree.policy;
 
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.std;
-import aabb.wide_tree.vertex_lists;
-import aabb.wide_tree.wide_node;
+export import aabb.wide_tree.vertex_lists;
+export import aabb.wide_tree.wide_node;
 
 export namespace aabb {
 

@@ -1,11 +1,7 @@
 export module aabb.wide_tree.triangle_batch;
 
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.simd;
 import aabb.std;
-import aabb.wide_tree.kernels;
-import aabb.wide_tree.triangle_block;
+export import aabb.wide_tree.triangle_block;
 import aabb.wide_tree.triangle_filter;
 
 export namespace aabb {

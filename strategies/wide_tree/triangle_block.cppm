@@ -1,12 +1,7 @@
 export module aabb.wide_tree.triangle_block;
 
-import aabb.geometry;
-import aabb.simd;
 import aabb.std;
-import aabb.wide_tree.eight_boxes;
-import aabb.wide_tree.kernels;
-import aabb.wide_tree.policy;
-import aabb.wide_tree.vertex_lists;
+export import aabb.wide_tree.policy;
 
 export namespace aabb {
 
@@ -91,8 +86,7 @@ private:
     }
 };
 
-/// Which vertices of the mesh are the corners of a leaf's triangles. Where there are fewer than eight, the last one
-/// fills the rest.
+/// Which vertices are the corners of a leaf's triangles. Where there are fewer than eight, the last one fills the rest.
 struct corner_numbers {
     static constexpr std::size_t width = eight_boxes::most;
 

@@ -1,11 +1,8 @@
 export module aabb.wide_tree.vertex_lists;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.simd;
+export import aabb.local_detection;
 import aabb.std;
-import aabb.wide_tree.kernels;
+export import aabb.wide_tree.kernels;
 
 export namespace aabb {
 
@@ -99,7 +96,7 @@ public:
         return same;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(begins_) + bytes_of(lists_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(begins_, lists_); }
 
 private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::places;

@@ -1,18 +1,14 @@
 export module aabb.wide_tree.wide_node;
 
-import aabb.geometry;
-import aabb.simd;
 import aabb.std;
-import aabb.wide_tree.eight_boxes;
+export import aabb.wide_tree.eight_boxes;
 
 export namespace aabb {
 
-/// Node of a tree with up to eight children a node: their boxes, rounded outward to a grid of the node's own, in 64
-/// bytes.
+/// Node of a tree with up to eight children: their boxes, rounded outward to a grid of the node's own, in 64 bytes.
 ///
 /// Along axis k the grid has planes at i * 2^exponent[k] for whole i, and code q, from 1 to 254, stands for i =
-/// origin[k] + q. Both are exact: |i| stays below 2^24, so that a plane is a float, unless it lies beyond the range of
-/// floats.
+/// origin[k] + q. Both are exact: |i| stays below 2^24, so that a plane is a float where it is in their range.
 struct wide_node {
     static constexpr std::size_t most_children = eight_boxes::most;
     static constexpr int last_code = 255;

@@ -1,27 +1,51 @@
 module aabb.engines:box_engine;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.global_search;
 import aabb.pipeline;
 import aabb.std;
 
 namespace aabb {
 
-/// What every engine of boxes does alike: who is present, and refusing what a composed stage refuses. None counts its
-/// work.
+/// What every engine of boxes does alike: who is present, and what a composed stage refuses. None counts its work.
 class box_engine : public global_stage {
 public:
     void insert(std::uint32_t id) final { objects_.insert(id); }
     void remove(std::uint32_t id) final { objects_.remove(id); }
-    void update(std::span<const box> boxes) final;
-    void search(std::vector<index_pair>& pairs) final;
+
+    void update(std::span<const box> boxes) final {
+        frame_.begin();
+        require_ieee_arithmetic();
+        objects_.require_boxes_for_all(boxes.size());
+        require_valid(boxes);
+        if (objects_.any_departures() || objects_.arrivals() > 0) {
+            ids_.clear();
+            for (std::uint32_t id = 0; id < boxes.size(); ++id)
+                if (is_present(id)) ids_.push_back(id);
+            objects_.settle();
+        }
+        frame_.change([&] { take(boxes, ids_); });
+        frame_.taken();
+    }
+
+    void search(std::vector<index_pair>& pairs) final {
+        frame_.require_taken();
+        require_ieee_arithmetic();
+        append_whole(pairs, [&] { find(pairs); });
+    }
+
     [[nodiscard]] work_counters counters() const final { return {}; }
     [[nodiscard]] std::vector<omission> left_out() const final { return {}; }
 
 protected:
     [[nodiscard]] inline bool is_present(std::uint32_t id) const { return objects_.contains(id); }
+
+    /// Calls `drop` with what there is of objects that are absent now, by id.
+    void drop_absent(auto& by_id, auto drop) const {
+        for (std::uint32_t id = 0; id < by_id.size(); ++id)
+            if (by_id[id] && !is_present(id)) {
+                drop(by_id[id]);
+                by_id[id] = nullptr;
+            }
+    }
 
     /// Takes the boxes of the present objects, whose ids are ascending.
     virtual void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;
@@ -32,6 +56,31 @@ private:
     membership objects_;
     std::vector<std::uint32_t> ids_;
     frame_state frame_;
+};
+
+/// What a library has found so far, which hands it over by a callback: no exception may pass through it.
+struct finding {
+    std::vector<index_pair>& pairs;
+    bool out_of_memory = false;
+
+    /// Calls `append`, which appends to the pairs.
+    void note(auto append) {
+        try {
+            append();
+        } catch (const std::bad_alloc&) {
+            out_of_memory = true;
+        }
+    }
+    /// When the library has returned.
+    /// @throws std::bad_alloc where memory ran out meanwhile.
+    void require_all() const {
+        if (out_of_memory) throw std::bad_alloc();
+    }
+    /// Drops those of the pairs from place `known` on that are not wanted.
+    void drop(std::size_t known, auto unwanted) const {
+        const auto from = pairs.begin() + static_cast<std::ptrdiff_t>(known);
+        pairs.erase(std::remove_if(from, pairs.end(), unwanted), pairs.end());
+    }
 };
 
 }  // namespace aabb

@@ -3,7 +3,6 @@ module;
 
 module aabb.engines;
 
-import :numbered_box;
 import :pairwise;
 
 namespace aabb {

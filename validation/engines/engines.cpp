@@ -1,8 +1,6 @@
 module aabb.engines;
 
-import aabb.base;
 import :engine;
-import :library_test;
 
 namespace aabb {
 

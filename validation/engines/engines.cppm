@@ -1,11 +1,8 @@
-/// Reference systems in place of our pipeline. Behind plain types: no header of CGAL or of any engine's library reaches
-/// an importer.
+/// Reference systems in place of our pipeline. Behind plain types: no header of any library reaches an importer.
 export module aabb.engines;
 
 export import aabb.exact_intersection;
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 
 export namespace aabb {
@@ -56,14 +53,12 @@ struct library_test_info {
     std::vector<parameter_info> parameters;
 };
 
-/// Those of this build's engines.
 [[nodiscard]] std::span<const library_test_info> library_tests();
 
 /// @throws input_error where there is none of this name, and on settings that it has not.
 [[nodiscard]] std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice);
 
-/// Do two closed triangles share a point? By CGAL's exact kernel; zero-area triangles as the segments or points they
-/// are.
+/// Do two closed triangles share a point? By CGAL's exact kernel; zero-area ones as the segments or points they are.
 [[nodiscard]] bool exactly_intersect(const triangle3f& s, const triangle3f& t);
 [[nodiscard]] bool exactly_intersect(const triangle3d& s, const triangle3d& t);
 

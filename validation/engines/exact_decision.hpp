@@ -28,4 +28,11 @@ template <class Kernel>
     });
 }
 
+/// Do two triangles, zero-area ones as the segments or points they are?
+template <class Kernel>
+[[nodiscard]] bool triangles_intersect(const auto& s, const auto& t) {
+    const auto point = [](const auto& p) { return typename Kernel::Point_3(p[0], p[1], p[2]); };
+    return hulls_intersect<Kernel>({point(s[0]), point(s[1]), point(s[2])}, {point(t[0]), point(t[1]), point(t[2])});
+}
+
 }  // namespace aabb

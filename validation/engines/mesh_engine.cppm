@@ -1,9 +1,5 @@
 module aabb.engines:mesh_engine;
 
-import aabb.base;
-import aabb.counters;
-import aabb.geometry;
-import aabb.local_detection;
 import aabb.pipeline;
 import aabb.std;
 
@@ -12,22 +8,57 @@ namespace aabb {
 /// The vertices of B seen from A, by number. Those outside B's box, which no triangle uses, stay as they are.
 /// @param bounds of B, in its own frame
 [[nodiscard]] std::vector<vec3f> moved_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
-                                                const box& bounds);
+                                                const box& bounds) {
+    const relative_pose to_a(pose_a, pose_b, bounds);
+    std::vector<vec3f> moved = b.vertices;
+    for (vec3f& v : moved)
+        if (contains(bounds, bounds_of(v))) v = to_a(v);
+    return moved;
+}
+
+/// The poses of two models at which something is built; none at first.
+class posed_pair {
+public:
+    void forget() { poses_.reset(); }
+    /// Builds it where they are others, or an earlier build broke off.
+    void renew(const pose& a, const pose& b, auto build) {
+        const std::array poses{a, b};
+        if (poses_ == poses) return;
+        forget();
+        build();
+        poses_ = poses;
+    }
+
+private:
+    std::optional<std::array<pose, 2>> poses_;
+};
 
 /// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.
 class mesh_engine : public local_stage {
 public:
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-                   std::vector<index_pair>& pairs) final;
+                   std::vector<index_pair>& pairs) final {
+        append_whole(pairs, [&] { find(model_a, pose_a, model_b, pose_b, pairs); });
+    }
     [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
-                                            const pose& pose_b) final;
-    void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final;
+                                            const pose& pose_b) final {
+        std::vector<index_pair> pairs;
+        all_pairs(model_a, pose_a, model_b, pose_b, pairs);
+        return pairs.size();
+    }
+    void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final {
+        std::vector<index_pair> both_ways;
+        all_pairs(model, {}, model, {}, both_ways);
+        append_whole(pairs, [&] {
+            for (const index_pair pair : both_ways)
+                if (pair.a < pair.b) pairs.push_back(pair);
+        });
+    }
     [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const final { return std::nullopt; }
     [[nodiscard]] work_counters counters() const final { return {}; }
     [[nodiscard]] std::vector<omission> left_out() const final { return {}; }
 
 protected:
-    /// Appends the intersecting pairs.
     virtual void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                       std::vector<index_pair>& pairs) = 0;
 };
@@ -48,7 +79,9 @@ public:
     std::uint32_t add_model(const mesh& m) final {
         require_ieee_arithmetic();
         require_valid(m);
-        models_.push_back(model_of({&m, m.triangles.size(), bounds_of(m)}));
+        Model made{{&m, m.triangles.size(), bounds_of(m)}};
+        follow(made);
+        models_.push_back(std::move(made));
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
@@ -82,10 +115,8 @@ protected:
         const pose& pose_b;
     };
 
-    [[nodiscard]] virtual Model model_of(const engine_model& base) = 0;
-    /// Goes where the vertices went.
+    /// Makes of the mesh what is made of it: at first, and where vertices went elsewhere.
     virtual void follow(Model& changed) = 0;
-    /// Appends the intersecting pairs.
     virtual void append_pairs(const asked& q, std::vector<index_pair>& pairs) = 0;
     [[nodiscard]] virtual std::optional<index_pair> any_pair(const asked& q) = 0;
 

@@ -1,10 +1,26 @@
 module aabb.engines:pairwise;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.std;
+import :mesh_engine;
 
 namespace aabb {
+
+/// A box as CGAL's algorithm takes it. Two boxes with one number count as the same box, which is never reported.
+/// Coordinates are handed over in double: the algorithm takes the greatest value of their type for infinity, and boxes
+/// may end at the greatest float.
+struct numbered_box {
+    using NT = double;         // NOLINT(readability-identifier-naming)
+    using ID = std::uint64_t;  // NOLINT(readability-identifier-naming)
+
+    box bounds;
+    ID number;
+
+    static inline int dimension() { return 3; }
+    [[nodiscard]] inline ID id() const { return number; }
+    [[nodiscard]] inline NT min_coord(int axis) const { return bounds.min[axis]; }
+    [[nodiscard]] inline NT max_coord(int axis) const { return bounds.max[axis]; }
+};
 
 /// Finds pairs of triangles whose boxes overlap: triangle i of `a` and t of `b` as {i, t}, in any order.
 using candidate_search = std::vector<index_pair>(std::span<const box> a, std::span<const box> b);
@@ -14,7 +30,57 @@ candidate_search candidates_by_cgal;
 /// Decides on two triangles in one frame.
 using triangle_decision = bool(const triangle3f&, const triangle3f&);
 
+struct boxed_model : engine_model {
+    std::vector<box> boxes{};  ///< by triangle
+
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(boxes); }
+};
+
+class pairwise_engine final : public model_engine<boxed_model> {
+public:
+    pairwise_engine(candidate_search& search, triangle_decision& decide) : search_(search), decide_(decide) {}
+
+private:
+    void follow(boxed_model& changed) override {
+        changed.boxes.clear();
+        for (std::uint32_t t = 0; t < changed.count; ++t)
+            changed.boxes.push_back(bounds_of(changed.source->triangle(t)));
+    }
+
+    void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
+        decide(q, [&](index_pair found) {
+            pairs.push_back(found);
+            return false;
+        });
+    }
+
+    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
+        std::optional<index_pair> first;
+        decide(q, [&](index_pair found) {
+            first = found;
+            return true;
+        });
+        return first;
+    }
+
+    /// `emit` takes an intersecting pair and says whether to stop.
+    template <class Emit>
+    void decide(const asked& q, Emit emit) const {
+        const mesh& b = *q.b.source;
+        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
+        std::vector<box> boxes_b;
+        for (std::uint32_t t = 0; t < b.triangle_count(); ++t) boxes_b.push_back(bounds_of(to_a(b.triangle(t))));
+        for (const index_pair near : search_(q.a.boxes, boxes_b))
+            if (decide_(q.a.source->triangle(near.a), to_a(b.triangle(near.b))) && emit(near)) return;
+    }
+
+    candidate_search& search_;
+    triangle_decision& decide_;
+};
+
 /// An engine that takes B's triangles into A's frame (`relative_pose`), finds candidates by boxes and decides them.
-std::unique_ptr<local_stage> make_pairwise_engine(candidate_search& search, triangle_decision& decide);
+std::unique_ptr<local_stage> make_pairwise_engine(candidate_search& search, triangle_decision& decide) {
+    return std::make_unique<pairwise_engine>(search, decide);
+}
 
 }  // namespace aabb

@@ -1,7 +1,5 @@
 module aabb.extreme;
 
-import aabb.geometry;
-import aabb.pipeline;
 import :making;
 
 namespace aabb {

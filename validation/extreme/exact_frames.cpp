@@ -1,8 +1,6 @@
 module aabb.extreme;
 
 import aabb.engines;
-import aabb.geometry;
-import aabb.pipeline;
 
 namespace aabb {
 

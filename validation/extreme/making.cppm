@@ -4,12 +4,19 @@ module;
 /// What lists of scenes are written with.
 module aabb.extreme:making;
 
-import aabb.geometry;
+import aabb.extreme;
 import aabb.pipeline;
 import aabb.std;
-import :scene;
 
 namespace aabb {
+
+// What the list of all is made of.
+[[nodiscard]] std::vector<extreme_scene> box_scenes();
+[[nodiscard]] std::vector<extreme_scene> bad_box_scenes();
+[[nodiscard]] std::vector<extreme_scene> mesh_scenes(extreme_size size);
+/// Poses at the limit of what is refused, too.
+[[nodiscard]] std::vector<extreme_scene> bad_mesh_scenes();
+[[nodiscard]] std::vector<extreme_scene> other_arithmetic_scenes();
 
 using box_frames = std::vector<std::vector<box>>;
 using pose_frames = std::vector<std::vector<pose>>;
@@ -29,6 +36,12 @@ using pose_frames = std::vector<std::vector<pose>>;
     extreme_scene made{.name = std::move(name), .summary = std::move(summary)};
     made.make_meshes = std::move(make);
     return made;
+}
+
+/// Meshes at these poses; of one mesh as many objects as there are poses.
+template <class Meshes>
+[[nodiscard]] std::unique_ptr<mesh_scene> posed(Meshes meshes, pose_frames frames) {
+    return std::make_unique<known_poses>(std::move(meshes), std::move(frames));
 }
 
 /// The same scene, to be refused by a sentence that says this.

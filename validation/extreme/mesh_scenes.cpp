@@ -1,7 +1,5 @@
 module aabb.extreme;
 
-import aabb.geometry;
-import aabb.pipeline;
 import :making;
 
 namespace aabb {
@@ -17,21 +15,19 @@ constexpr pose quarter_turn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {0, 0, 0}};
 /// space.
 std::unique_ptr<mesh_scene> two_cubes(const vec3d& between) {
     const pose turned_second{quarter_turn.rotation, {between[0] + 2 + 7, between[1] + 5, between[2] - 3}};
-    return std::make_unique<known_poses>(
-        cube(), pose_frames{{{}, shifted(between[0], between[1], between[2])}, {shifted(7, 5, -3), turned_second}});
+    return posed(cube(), {{{}, shifted(between[0], between[1], between[2])}, {shifted(7, 5, -3), turned_second}});
 }
 
 std::unique_ptr<mesh_scene> same_place() {
     const pose anywhere = turned(0.7, {0.3, -0.2, 0.1});
-    return std::make_unique<known_poses>(ball(4, 1), pose_frames{{{}, {}}, {anywhere, anywhere}});
+    return posed(ball(4, 1), {{{}, {}}, {anywhere, anywhere}});
 }
 
 /// A corner of one stands on a face of the other, then on an edge.
 std::unique_ptr<mesh_scene> corner_on_face() {
     const mesh corner = soup_of({{{{0, 0, 0}, {1, 1, 1}, {2, 1, 1}}}, {{{0, 0, 0}, {1, 1, 1}, {1, 2, 1}}}});
-    return std::make_unique<known_poses>(
-        std::vector{cube(), corner},
-        pose_frames{{{}, shifted(0.5, 0.75, 2)}, {{}, shifted(0.5, 2, 2)}, {{}, shifted(1, 1, 2)}});
+    return posed(std::vector{cube(), corner},
+                 {{{}, shifted(0.5, 0.75, 2)}, {{}, shifted(0.5, 2, 2)}, {{}, shifted(1, 1, 2)}});
 }
 
 // Triangles in one place.
@@ -49,8 +45,7 @@ std::unique_ptr<mesh_scene> same_centroid() {
         const vec3f q{whole(), whole(), whole()};
         triangles.push_back({{p, q, {-p[0] - q[0], -p[1] - q[1], -p[2] - q[2]}}});
     }
-    return std::make_unique<known_poses>(soup_of(triangles),
-                                         pose_frames{{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
+    return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
 }
 
 /// Each four times, one after the other, and once more with its corners in another order.
@@ -61,29 +56,18 @@ std::unique_ptr<mesh_scene> duplicates() {
     const auto once = m.triangles;
     for (int i = 0; i < 3; ++i) m.triangles.insert(m.triangles.end(), once.begin(), once.end());
     for (const auto& t : once) m.triangles.push_back({t[2], t[0], t[1]});
-    return std::make_unique<known_poses>(std::move(m),
-                                         pose_frames{{{}, shifted(1, 1, 1)}, {{}, turned(0.5, {1, 0, 1})}});
+    return posed(std::move(m), {{{}, shifted(1, 1, 1)}, {{}, turned(0.5, {1, 0, 1})}});
 }
 
 std::unique_ptr<mesh_scene> one_triangle_each() {
-    return std::make_unique<known_poses>(
-        std::vector{soup_of({one}), soup_of({across})},
-        pose_frames{{{}, {}}, {{}, shifted(0, 0, 1)}, {{}, shifted(0, 0, 1.5)}, {shifted(3, 3, 3), shifted(3, 3, 3)}});
+    return posed(std::vector{soup_of({one}), soup_of({across})},
+                 {{{}, {}}, {{}, shifted(0, 0, 1)}, {{}, shifted(0, 0, 1.5)}, {shifted(3, 3, 3), shifted(3, 3, 3)}});
 }
 
 mesh coincident(std::uint32_t count) {
     mesh m = soup_of({one});
     m.triangles.resize(count, m.triangles[0]);
     return m;
-}
-
-std::uint32_t many_at(extreme_size size) {
-    switch (size) {
-        case extreme_size::small: return 300;
-        case extreme_size::quick: return 20'000;
-        case extreme_size::full: break;
-    }
-    return 1'000'000;
 }
 
 // Triangles that are hardly any.
@@ -99,8 +83,7 @@ std::unique_ptr<mesh_scene> needles(float height) {
         for (int k = 0; k < 3; ++k) beside[k] = (from[k] + to[k]) / 2 + height * random.between(-1, 1);
         triangles.push_back({{from, to, beside}});
     }
-    return std::make_unique<known_poses>(
-        soup_of(triangles), pose_frames{{{}, {}}, {{}, shifted(1e-7, 0, 0)}, {{}, turned(1e-6, {0, 0, 0})}});
+    return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1e-7, 0, 0)}, {{}, turned(1e-6, {0, 0, 0})}});
 }
 
 /// Segments and points among triangles of whole numbers, so that they meet.
@@ -115,44 +98,40 @@ std::unique_ptr<mesh_scene> zero_areas() {
         if (i % 6 > 3) t[2] = t[0];
         triangles.push_back(t);
     }
-    return std::make_unique<known_poses>(soup_of(triangles), pose_frames{{{}, {}}, {{}, shifted(1, 0, 0)}});
+    return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}});
 }
 
 // Balls of every size, and far out.
 
 /// Two balls of that radius that pass through each other.
 std::unique_ptr<mesh_scene> balls_of(double radius) {
-    return std::make_unique<known_poses>(
-        ball(5, radius), pose_frames{{{}, turned(0.4, {0.8 * radius, 0.5 * radius, 0.1 * radius})},
-                                     {turned(-1, {radius, 0, 0}), turned(2, {0.5 * radius, 0, radius})}});
+    return posed(ball(5, radius), {{{}, turned(0.4, {0.8 * radius, 0.5 * radius, 0.1 * radius})},
+                                   {turned(-1, {radius, 0, 0}), turned(2, {0.5 * radius, 0, radius})}});
 }
 
 /// One of radius 1, the other of that radius, on the first one's surface.
 std::unique_ptr<mesh_scene> ball_on_ball(double radius) {
-    return std::make_unique<known_poses>(std::vector{ball(5, 1), ball(5, radius)},
-                                         pose_frames{{{}, shifted(0, 0, 1 + radius / 2)}, {{}, shifted(0, 1, 0)}});
+    return posed(std::vector{ball(5, 1), ball(5, radius)},
+                 {{{}, shifted(0, 0, 1 + radius / 2)}, {{}, shifted(0, 1, 0)}});
 }
 
 /// Both moved that far, and as much apart as ever.
 std::unique_ptr<mesh_scene> balls_moved(double far) {
-    return std::make_unique<known_poses>(ball(5, 1),
-                                         pose_frames{{shifted(far, -far, far), turned(0.4, {far + 1, -far, far + 0.5})},
-                                                     {shifted(-far, far, 0), shifted(-far, far, 0)}});
+    return posed(ball(5, 1), {{shifted(far, -far, far), turned(0.4, {far + 1, -far, far + 0.5})},
+                              {shifted(-far, far, 0), shifted(-far, far, 0)}});
 }
 
 }  // namespace
 
 std::vector<extreme_scene> mesh_scenes(extreme_size size) {
-    const std::uint32_t many = many_at(size);
+    const std::uint32_t many = size == extreme_size::small ? 300U : size == extreme_size::quick ? 20'000U : 1'000'000U;
     extreme_scene against_one =
-        scene_of_meshes("many_against_one", std::to_string(many) + " times the same triangle, against one", [many] {
-            return std::make_unique<known_poses>(std::vector{coincident(many), soup_of({across})},
-                                                 pose_frames{{{}, {}}});
-        });
+        scene_of_meshes("many_against_one", std::to_string(many) + " times the same triangle, against one",
+                        [many] { return posed(std::vector{coincident(many), soup_of({across})}, {{{}, {}}}); });
     against_one.asked = extreme_query::count_pairs;
-    extreme_scene against_itself = scene_of_meshes(
-        "many_against_many", "the same against itself: any one pair",
-        [many] { return std::make_unique<known_poses>(coincident(many), pose_frames{{{}, shifted(0.5, 0.5, 0)}}); });
+    extreme_scene against_itself =
+        scene_of_meshes("many_against_many", "the same against itself: any one pair",
+                        [many] { return posed(coincident(many), {{{}, shifted(0.5, 0.5, 0)}}); });
     against_itself.asked = extreme_query::first_pair;
     // The largest layout has an internal node of 32 bytes and a leaf of 28 for each triangle; the rest is for stacks.
     for (extreme_scene* scene : {&against_one, &against_itself}) scene->most_bytes = std::size_t{many} * 64 + 65'536;

@@ -1,7 +1,5 @@
 module aabb.extreme;
 
-import aabb.geometry;
-import aabb.pipeline;
 import :making;
 
 namespace aabb {
@@ -28,14 +26,14 @@ extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, cons
     const auto make = [spoil] {
         mesh bad = cube();
         spoil(bad);
-        return std::make_unique<known_poses>(std::vector{cube(), bad}, pose_frames{{{}, {}}});
+        return posed(std::vector{cube(), bad}, {{{}, {}}});
     };
     return refused(scene_of_meshes(name, summary, make), refusal);
 }
 
 /// @param refusal empty where the pose is good
 extreme_scene with_pose(const char* name, const char* summary, const pose& second, const std::string& refusal = {}) {
-    const auto make = [second] { return std::make_unique<known_poses>(ball(4, 1), pose_frames{{{}, second}}); };
+    const auto make = [second] { return posed(ball(4, 1), {{{}, second}}); };
     return refused(scene_of_meshes(name, summary, make), refusal);
 }
 
@@ -71,7 +69,7 @@ std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name,
     const auto boxes = [] {
         return box_frames{{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{3, 0, 0}, {4, 1, 1}}}};
     };
-    const auto meshes = [] { return std::make_unique<known_poses>(cube(), pose_frames{{{}, shifted(1, 1, 1)}}); };
+    const auto meshes = [] { return posed(cube(), {{{}, shifted(1, 1, 1)}}); };
     return {computed_in(kind, scene_of_boxes(name + "_boxes", summary, boxes), refusal),
             computed_in(kind, scene_of_meshes(name + "_meshes", summary, meshes), refusal)};
 }
@@ -129,6 +127,14 @@ std::vector<extreme_scene> other_arithmetic_scenes() {
         computed_in(arithmetic::denormals_flushed, "flushed", "a thread that takes denormal numbers for zero",
                     "this thread flushes denormal numbers to zero");
     all.insert(all.begin(), flushed.begin(), flushed.end());
+    return all;
+}
+
+std::vector<extreme_scene> extreme_scenes(extreme_size size) {
+    std::vector<extreme_scene> all;
+    for (const std::vector<extreme_scene>& some :
+         {box_scenes(), bad_box_scenes(), mesh_scenes(size), bad_mesh_scenes(), other_arithmetic_scenes()})
+        all.insert(all.end(), some.begin(), some.end());
     return all;
 }
 

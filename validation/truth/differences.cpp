@@ -1,12 +1,140 @@
-module aabb.truth;
+module;
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 
-import aabb.geometry;
+#include "../engines/exact_decision.hpp"
+
+module aabb.truth;
 
 namespace aabb {
 
-// Defined in difference_class.cpp.
+namespace {
+
+using kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using rational = kernel::FT;
+using exact_triangle = triangle3<rational>;
+
+template <class Real>
+triangle3<Real> converted(const triangle3f& t) {
+    triangle3<Real> all;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) all[i][k] = Real(double{t[i][k]});
+    return all;
+}
+
+/// The triangle in the world, where the pose puts it without any rounding.
+exact_triangle placed(const triangle3f& t, const pose& p) {
+    exact_triangle world;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            world[i][k] = rational(p.translation[k]);
+            for (int j = 0; j < 3; ++j)
+                world[i][k] += rational(p.rotation[static_cast<std::size_t>(3 * k + j)]) * rational(double{t[i][j]});
+        }
+    return world;
+}
+
+bool intersect(const exact_triangle& s, const exact_triangle& t) {
+    const auto point = [](const vec3<rational>& p) { return kernel::Point_3(p[0], p[1], p[2]); };
+    return hulls_intersect<kernel>({point(s[0]), point(s[1]), point(s[2])}, {point(t[0]), point(t[1]), point(t[2])});
+}
+
+template <class Real>
+vec3<Real> normal_of(const triangle3<Real>& t) {
+    return cross(t[1] - t[0], t[2] - t[0]);
+}
+
+template <class Real>
+bool is_zero(const vec3<Real>& v) {
+    return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+bool has_no_area(const triangle3f& t) {
+    return is_zero(normal_of(converted<rational>(t)));
+}
+
+bool are_coplanar(const exact_triangle& s, const exact_triangle& t) {
+    const vec3<rational> normal = normal_of(s);
+    for (int i = 0; i < 3; ++i)
+        if (dot(normal, t[i] - s[0]) != 0) return false;
+    return true;
+}
+
+/// Normals of the facets of the triangles' Minkowski difference: two triangles that do not lie in one plane come apart
+/// along one of these first. Zero vectors (parallel edges) are left out.
+template <class Real>
+std::vector<vec3<Real>> facet_axes(const triangle3<Real>& s, const triangle3<Real>& t) {
+    std::vector<vec3<Real>> axes = {normal_of(s), normal_of(t)};
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) axes.push_back(cross(s[(i + 1) % 3] - s[i], t[(j + 1) % 3] - t[j]));
+    std::erase_if(axes, is_zero<Real>);
+    return axes;
+}
+
+/// How far the projections on an axis are apart, times the axis' length; below zero the depth to which they overlap.
+template <class Real>
+Real gap(const triangle3<Real>& s, const triangle3<Real>& t, const vec3<Real>& axis) {
+    const Real on_s[3] = {dot(axis, s[0]), dot(axis, s[1]), dot(axis, s[2])};
+    const Real on_t[3] = {dot(axis, t[0]), dot(axis, t[1]), dot(axis, t[2])};
+    const Real t_above = *std::ranges::min_element(on_t) - *std::ranges::max_element(on_s);
+    const Real s_above = *std::ranges::min_element(on_s) - *std::ranges::max_element(on_t);
+    return std::max(t_above, s_above);
+}
+
+/// For triangles that share points and do not lie in one plane.
+bool only_touch(const exact_triangle& s, const exact_triangle& t) {
+    return std::ranges::any_of(facet_axes(s, t), [&](const auto& axis) { return gap(s, t, axis) == 0; });
+}
+
+/// The distance of two triangles, or below zero the depth to which they pass through each other: the greatest gap over
+/// all directions in which two of their corners, edges or faces can be nearest to each other.
+double separation(const triangle3d& s, const triangle3d& t) {
+    std::vector<vec3d> axes = facet_axes(s, t);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const vec3d between = t[j] - s[i];
+            axes.push_back(between);
+            for (const triangle3d* u : {&s, &t})
+                for (int k = 0; k < 3; ++k) {
+                    const vec3d edge = (*u)[(k + 1) % 3] - (*u)[k];
+                    axes.push_back(cross(edge, cross(between, edge)));
+                }
+        }
+    double greatest = -std::numeric_limits<double>::infinity();
+    for (const vec3d& axis : axes)
+        if (const double length = std::sqrt(dot(axis, axis)); length > 0)
+            greatest = std::max(greatest, gap(s, t, axis) / length);
+    return greatest;
+}
+
+bool are_near(const triangle3f& s, const triangle3f& t) {
+    const box both = merged(bounds_of(s), bounds_of(t));
+    const int axis = longest_axis(both);
+    const double extent = double{both.max[axis]} - double{both.min[axis]};
+    // Seen from a corner, so that far from the origin no digits are lost.
+    triangle3d s_here = converted<double>(s);
+    triangle3d t_here = converted<double>(t);
+    const vec3d origin = s_here[0];
+    for (int i = 0; i < 3; ++i) {
+        s_here[i] = s_here[i] - origin;
+        t_here[i] = t_here[i] - origin;
+    }
+    return std::abs(separation(s_here, t_here)) <= 1e-6 * extent;
+}
+
+/// @param engine_says the engine's answer on the two triangles, which the exact answer contradicts.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
-                                     const triangle3f& t_seen_from_s, bool engine_says);
+                                     const triangle3f& t_seen_from_s, bool engine_says) {
+    if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
+    if (intersect(placed(s, pose_s), placed(t, pose_t)) == engine_says) return difference_class::pose_rounding;
+    const exact_triangle exact_s = converted<rational>(s);
+    const exact_triangle exact_t = converted<rational>(t_seen_from_s);
+    if (are_coplanar(exact_s, exact_t)) return difference_class::coplanar;
+    if (!engine_says && only_touch(exact_s, exact_t)) return difference_class::touching;
+    if (are_near(s, t_seen_from_s)) return difference_class::near;
+    return difference_class::other;
+}
+
+}  // namespace
 
 differences& differences::operator+=(const differences& other) {
     for (std::size_t c = 0; c < missing.size(); ++c) {

@@ -1,7 +1,5 @@
 module aabb.truth;
 
-import aabb.geometry;
-import aabb.pipeline;
 import aabb.engines;
 
 namespace aabb {

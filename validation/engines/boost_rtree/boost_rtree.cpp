@@ -7,7 +7,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
 
@@ -88,7 +87,7 @@ engine boost_rtree_engine() {
     return {.name = "boost_rtree",
             .summary = "Boost.Geometry's R-tree, packed anew in each frame and asked for what meets each box",
             .exact = true,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<boost_rtree>(); }};
+            .boxes = made<global_stage, boost_rtree>};
 }
 
 }  // namespace aabb

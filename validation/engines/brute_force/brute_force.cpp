@@ -1,6 +1,5 @@
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
 import :pairwise;
@@ -12,11 +11,7 @@ namespace {
 /// Every pair, in the plainest loop that vectorises: no order of the boxes, no data structure to get wrong.
 class brute_force_boxes final : public box_engine {
 public:
-    [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t all = bytes_of(ids_);
-        for (std::size_t k = 0; k < 3; ++k) all += bytes_of(min_[k]) + bytes_of(max_[k]);
-        return {{"engine", all}};
-    }
+    [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(ids_, min_, max_)}}; }
 
 private:
     void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
@@ -76,7 +71,7 @@ engine brute_force_engine() {
     return {.name = "brute_force",
             .summary = "every pair of boxes; every pair of triangles whose boxes overlap, in CGAL's exact kernel",
             .exact = true,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<brute_force_boxes>(); },
+            .boxes = made<global_stage, brute_force_boxes>,
             .meshes = [] { return make_pairwise_engine(candidates_by_double_loop, exactly_intersect); }};
 }
 

@@ -3,7 +3,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
 
@@ -22,17 +21,12 @@ public:
         const auto leaves = static_cast<std::size_t>(tree_.m_leaves);
         const std::size_t nodes = leaves ? 2 * leaves - 1 : 0;
         const auto stack = static_cast<std::size_t>(tree_.m_stkStack.capacity());
-        return {{"engine",
-                 bytes_of(boxes_) + bytes_of(leaves_) + nodes * sizeof(btDbvtNode) + stack * sizeof(btDbvt::sStkNN)}};
+        return {{"engine", bytes_of(boxes_, leaves_) + nodes * sizeof(btDbvtNode) + stack * sizeof(btDbvt::sStkNN)}};
     }
 
 private:
     void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
-        for (std::uint32_t id = 0; id < leaves_.size(); ++id)
-            if (leaves_[id] && !is_present(id)) {
-                tree_.remove(leaves_[id]);
-                leaves_[id] = nullptr;
-            }
+        drop_absent(leaves_, [&](btDbvtNode* leaf) { tree_.remove(leaf); });
         boxes_.assign(boxes.begin(), boxes.end());
         if (leaves_.size() < boxes.size()) leaves_.resize(boxes.size());
         const btScalar margin = margin_for(ids);
@@ -87,7 +81,7 @@ engine bullet_dbvt_engine() {
     return {.name = "bullet_dbvt",
             .summary = "Bullet's dynamic tree of boxes, collided with itself",
             .exact = true,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<bullet_dbvt>(); }};
+            .boxes = made<global_stage, bullet_dbvt>};
 }
 
 }  // namespace aabb

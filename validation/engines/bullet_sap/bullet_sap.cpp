@@ -3,7 +3,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
 
@@ -42,7 +41,7 @@ btVector3 corner_of(const vec3f& v) {
 class bullet_sap final : public box_engine {
 public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t all = bytes_of(boxes_) + bytes_of(proxies_) + bytes_of(objects_);
+        std::size_t all = bytes_of(boxes_, proxies_, objects_);
         if (sweep_) {
             using handle = bt32BitAxisSweep3::Handle;
             using edge = bt32BitAxisSweep3::Edge;
@@ -59,11 +58,7 @@ private:
         box all = empty_box();
         for (const std::uint32_t id : ids) all = merged(all, in_reach(boxes[id]));
         if (proxies_.size() < boxes.size() || (!ids.empty() && !contains(world_, all))) begin(all, boxes.size());
-        for (std::uint32_t id = 0; id < proxies_.size(); ++id)
-            if (proxies_[id] && !is_present(id)) {
-                sweep_->destroyProxy(proxies_[id], nullptr);
-                proxies_[id] = nullptr;
-            }
+        drop_absent(proxies_, [&](btBroadphaseProxy* proxy) { sweep_->destroyProxy(proxy, nullptr); });
         for (const std::uint32_t id : ids) place(id, in_reach(boxes[id]));
     }
 
@@ -114,7 +109,7 @@ engine bullet_sap_engine() {
     return {.name = "bullet_sap",
             .summary = "Bullet's incremental sweep on three axes; quadratic in a first frame, and where much moves",
             .exact = true,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<bullet_sap>(); }};
+            .boxes = made<global_stage, bullet_sap>};
 }
 
 }  // namespace aabb

@@ -3,11 +3,8 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
-import :library_test;
-import :numbered_box;
 import :pairwise;
 
 namespace aabb {
@@ -46,7 +43,7 @@ engine cgal_engine() {
     return {.name = "cgal",
             .summary = "CGAL's intersection of box sequences, and its exact kernel for triangles",
             .exact = true,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<cgal_boxes>(); },
+            .boxes = made<global_stage, cgal_boxes>,
             .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); },
             .triangles = cgal_tests()};
 }

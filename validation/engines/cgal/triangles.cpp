@@ -5,7 +5,7 @@ module;
 
 module aabb.engines;
 
-import :library_test;
+import :engine;
 
 namespace aabb {
 
@@ -29,10 +29,7 @@ struct epeck_test {
 
     template <class Real>
     [[nodiscard]] static bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) {
-        using kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-        const auto point = [](const vec3<Real>& p) { return kernel::Point_3(p[0], p[1], p[2]); };
-        return hulls_intersect<kernel>({point(s[0]), point(s[1]), point(s[2])},
-                                       {point(t[0]), point(t[1]), point(t[2])});
+        return triangles_intersect<CGAL::Exact_predicates_exact_constructions_kernel>(s, t);
     }
 
     [[nodiscard]] static triangle_intersection intersection(const triangle3d& s, const triangle3d& t) {

@@ -8,8 +8,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
-import aabb.local_detection;
 import :engine;
 import :mesh_engine;
 
@@ -66,12 +64,6 @@ struct tree_model : engine_model {
 
 /// A tree of A's triangles is asked for each of B's. It knows no poses: B's vertices are moved.
 class cgal_tree final : public model_engine<tree_model> {
-    [[nodiscard]] tree_model model_of(const engine_model& base) override {
-        tree_model made{base};
-        follow(made);
-        return made;
-    }
-
     void follow(tree_model& changed) override {
         changed.triangles.clear();
         changed.triangles.reserve(changed.count);
@@ -110,7 +102,7 @@ engine cgal_tree_engine() {
     return {.name = "cgal_tree",
             .summary = "CGAL's AABB tree of the first mesh, asked for each triangle of the second; its exact kernel",
             .exact = true,
-            .meshes = []() -> std::unique_ptr<local_stage> { return std::make_unique<cgal_tree>(); }};
+            .meshes = made<local_stage, cgal_tree>};
 }
 
 }  // namespace aabb

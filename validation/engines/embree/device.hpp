@@ -57,6 +57,37 @@ inline RTCDevice the_device() {
     return made;
 }
 
+/// Boxes of the user's, alone in a scene.
+struct user_scene {
+    geometry_pointer geometry;
+    scene_pointer scene;
+
+    /// Anew, without boxes.
+    /// @param bounds of one of them
+    void begin(RTCBuildQuality quality, bool is_dynamic, RTCBoundsFunction bounds) {
+        scene.reset();
+        geometry.reset(rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_USER));
+        require_success(the_device());
+        rtcSetGeometryBuildQuality(geometry.get(), quality);
+        rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
+        scene.reset(rtcNewScene(the_device()));
+        require_success(the_device());
+        // Embree heeds the quality of a geometry in scenes of low quality only, and can refit it in dynamic ones.
+        rtcSetSceneBuildQuality(scene.get(), quality == RTC_BUILD_QUALITY_REFIT ? RTC_BUILD_QUALITY_LOW : quality);
+        if (is_dynamic) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_DYNAMIC);
+        rtcAttachGeometry(scene.get(), geometry.get());
+    }
+
+    /// @param data that the function of bounds is given
+    void commit(void* data, std::size_t boxes) {
+        rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes));
+        rtcSetGeometryUserData(geometry.get(), data);
+        rtcCommitGeometry(geometry.get());
+        rtcCommitScene(scene.get());
+        require_success(the_device());
+    }
+};
+
 /// Embree builds with denormals taken for zero, and leaves out what reaches beyond 1.844e18. Moved to what it can work
 /// with, all coordinates keep their order, if not strictly: what overlaps still does.
 inline float workable(float x) {

@@ -4,7 +4,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
 
@@ -41,11 +40,7 @@ public:
 
 private:
     void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
-        for (std::uint32_t id = 0; id < objects_.size(); ++id)
-            if (objects_[id] && !is_present(id)) {
-                manager_.unregisterObject(objects_[id].get());
-                objects_[id].reset();
-            }
+        drop_absent(objects_, [&](const auto& object) { manager_.unregisterObject(object.get()); });
         if (!ids.empty() && objects_.size() <= ids.back()) objects_.resize(std::size_t{ids.back()} + 1);
         std::vector<fcl::CollisionObjectd*> arrivals;
         for (const std::uint32_t id : ids) {
@@ -79,8 +74,7 @@ std::unique_ptr<local_stage> make_fcl_meshes();
 engine fcl_engine() {
     return {.name = "fcl",
             .summary = "FCL's dynamic AABB tree for boxes, and its trees of oriented boxes in double for meshes",
-            .exact = false,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<fcl_boxes>(); },
+            .boxes = made<global_stage, fcl_boxes>,
             .meshes = make_fcl_meshes};
 }
 

@@ -6,8 +6,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
-import aabb.local_detection;
 import :engine;
 import :mesh_engine;
 
@@ -21,8 +19,7 @@ class fcl_tree {
 public:
     /// Refitted where there is one already of these triangles.
     void build(const mesh& m, std::span<const vec3f> vertices) {
-        // Gone meanwhile: a tree whose refit broke off FCL would take for one in the midst of it, and write beyond its
-        // vertices.
+        // Gone meanwhile: a tree whose refit broke off FCL would take for one amid it, and write beyond its vertices.
         std::unique_ptr<tree> made = std::move(tree_);
         if (made && is_of(*made, m)) {
             require_done(made->beginReplaceModel());
@@ -76,10 +73,10 @@ private:
 template <class Volume>
 struct fcl_model : engine_model {
     fcl_tree<Volume> still{};
-    fcl_tree<Volume> moved{};                    ///< in the frame of another model, where FCL takes no poses
-    std::optional<std::array<pose, 2>> poses{};  ///< of that model and this one there; none where nothing is built
+    fcl_tree<Volume> moved{};  ///< in the frame of another model, where FCL takes no poses
+    posed_pair poses{};        ///< of that model and this one there
 
-    [[nodiscard]] std::size_t bytes() const { return bytes_of(still) + bytes_of(moved); }
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(still, moved); }
 };
 
 /// What the engines do alike.
@@ -93,14 +90,8 @@ protected:
     virtual void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) = 0;
 
 private:
-    [[nodiscard]] model model_of(const engine_model& base) final {
-        model made{base};
-        follow(made);
-        return made;
-    }
-
     void follow(model& changed) final {
-        changed.poses.reset();
+        changed.poses.forget();
         changed.still.build(*changed.source, changed.source->vertices);
     }
 
@@ -150,11 +141,9 @@ class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
 /// every query, so its parts are called one by one: B's tree is refitted for each new pose, and kept while that stays.
 class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
     void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
-        if (const std::array poses{q.pose_a, q.pose_b}; q.b.poses != poses) {
-            q.b.poses.reset();
+        q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.moved.build(*q.b.source, moved_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
-            q.b.poses = poses;
-        }
+        });
         fcl::Transform3d still = fcl::Transform3d::Identity();
         fcl::detail::MeshCollisionTraversalNode<fcl::AABBd> node;
         fcl::detail::initialize(node, q.a.still.get(), still, q.b.moved.get(), still, request, result);
@@ -173,8 +162,7 @@ engine fcl_aabb_engine() {
             .summary =
                 "FCL's trees of axis-aligned boxes, the second mesh's refitted for each new pose, with vertices "
                 "rounded to float in the first one's frame",
-            .exact = false,
-            .meshes = []() -> std::unique_ptr<local_stage> { return std::make_unique<fcl_axis_aligned>(); }};
+            .meshes = made<local_stage, fcl_axis_aligned>};
 }
 
 }  // namespace aabb

@@ -4,7 +4,6 @@ module;
 module aabb.engines;
 
 import :engine;
-import :library_test;
 import :pairwise;
 
 namespace aabb {
@@ -138,7 +137,6 @@ engine libccd_engine() {
             .summary =
                 "libccd's GJK in double on triangles whose boxes overlap; its tolerances are absolute, so small scales "
                 "go wrong",
-            .exact = false,
             .meshes = [] { return make_pairwise_engine(candidates_by_cgal, gjk_intersect); },
             .triangles = {library_test_of<gjk_test>(), library_test_of<mpr_test>()}};
 }

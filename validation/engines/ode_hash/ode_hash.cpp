@@ -3,7 +3,6 @@ module;
 
 module aabb.engines;
 
-import aabb.base;
 import :box_engine;
 import :engine;
 
@@ -51,7 +50,7 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const final {
         constexpr std::size_t one = sizeof(dVector3) + sizeof(dMatrix3) + 6 * sizeof(dReal) + sizeof(numbered);
         const std::size_t all = space_ ? static_cast<std::size_t>(dSpaceGetNumGeoms(space_.get())) : 0;
-        return {{"engine", bytes_of(boxes_) + bytes_of(geoms_) + all * one}};
+        return {{"engine", bytes_of(boxes_, geoms_) + all * one}};
     }
 
 protected:
@@ -69,8 +68,7 @@ private:
                                unit_ * b.max[2]},
                               id});
         }
-        for (std::uint32_t id = 0; id < geoms_.size(); ++id)
-            if (geoms_[id] && !is_present(id)) geoms_[id].reset();
+        drop_absent(geoms_, [](const auto&) {});
         fill();
     }
 
@@ -95,12 +93,6 @@ private:
         prepare(space_.get(), boxes_);
     }
 
-    /// What a search has found so far. No exception may pass through ODE, which would stay locked.
-    struct finding {
-        std::vector<index_pair>& pairs;
-        bool out_of_memory = false;
-    };
-
     void find(std::vector<index_pair>& pairs) final {
         if (!space_) fill();
         if (boxes_.size() < 2) return;
@@ -111,16 +103,13 @@ private:
             abandon();
             throw;
         }
-        if (found.out_of_memory) throw std::bad_alloc();
+        found.require_all();
     }
 
+    /// Where an exception passed through it, ODE would stay locked.
     static void collect(void* to, dGeomID a, dGeomID b) {
         finding& found = *static_cast<finding*>(to);
-        try {
-            found.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id));
-        } catch (const std::bad_alloc&) {
-            found.out_of_memory = true;
-        }
+        found.note([&] { found.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id)); });
     }
 
     /// A space that ran out of memory while it searched stays locked, and ODE ends the process of who touches it or its
@@ -206,14 +195,14 @@ engine ode_hash_engine() {
         .name = "ode_hash",
         .summary = "ODE's hashed grid with cells of several sizes; with a bit for each pair, for 131,071 boxes at most",
         .exact = true,
-        .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<ode_hash>(); }};
+        .boxes = made<global_stage, ode_hash>};
 }
 
 engine ode_sap_engine() {
     return {.name = "ode_sap",
             .summary = "ODE's sweep along one axis, sorted by radix in each frame",
             .exact = true,
-            .boxes = []() -> std::unique_ptr<global_stage> { return std::make_unique<ode_sap>(); }};
+            .boxes = made<global_stage, ode_sap>};
 }
 
 }  // namespace aabb

@@ -1,0 +1,109 @@
+export module aabb.geometry:points;
+
+import aabb.std;
+
+// Sums and products as they are written: see aabb.base:floating_point.
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+
+export namespace aabb {
+
+/// Point or vector in 3-space; an aggregate, indexed by axis (0 = x, 1 = y, 2 = z).
+template <class Real>
+struct vec3 {
+    Real at[3];
+
+    constexpr Real& operator[](int axis) noexcept { return at[axis]; }
+    constexpr const Real& operator[](int axis) const noexcept { return at[axis]; }
+    friend bool operator==(const vec3&, const vec3&) = default;
+};
+
+using vec3f = vec3<float>;
+using vec3d = vec3<double>;
+
+template <class Real>
+[[nodiscard]] constexpr vec3<Real> operator-(const vec3<Real>& p, const vec3<Real>& q) noexcept {
+    return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
+template <class Real>
+[[nodiscard]] constexpr vec3<Real> operator+(const vec3<Real>& p, const vec3<Real>& q) noexcept {
+    return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
+}
+
+/// Scalar product, summed left to right.
+template <class Real>
+[[nodiscard]] constexpr Real dot(const vec3<Real>& p, const vec3<Real>& q) noexcept {
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+template <class Real>
+[[nodiscard]] constexpr vec3<Real> cross(const vec3<Real>& p, const vec3<Real>& q) noexcept {
+    return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+[[nodiscard]] inline bool is_finite(const vec3f& p) noexcept {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+/// A triangle by its three corners; may have zero area.
+template <class Real>
+struct triangle3 {
+    vec3<Real> corner[3];
+
+    constexpr const vec3<Real>& operator[](int i) const noexcept { return corner[i]; }
+    constexpr vec3<Real>& operator[](int i) noexcept { return corner[i]; }
+    friend bool operator==(const triangle3&, const triangle3&) = default;
+};
+
+using triangle3f = triangle3<float>;
+using triangle3d = triangle3<double>;
+
+/// What a triangle test decides on.
+template <class Real>
+struct triangle_pair {
+    triangle3<Real> a;
+    triangle3<Real> b;
+};
+
+/// Without rounding.
+[[nodiscard]] constexpr triangle3d in_double(const triangle3d& t) noexcept {
+    return t;
+}
+[[nodiscard]] constexpr triangle3d in_double(const triangle3f& t) noexcept {
+    return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
+}
+
+/// Rounded to nearest, where there is anything to round.
+[[nodiscard]] constexpr triangle3f in_float(const triangle3f& t) noexcept {
+    return t;
+}
+[[nodiscard]] constexpr triangle3f in_float(const triangle3d& t) noexcept {
+    const auto rounded = [](const vec3d& p) {
+        return vec3f{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+    };
+    return {{rounded(t[0]), rounded(t[1]), rounded(t[2])}};
+}
+
+/// Three numbers, and a copy of the last one that does not count.
+template <class Real>
+using lanes = Real __attribute__((vector_size(4 * sizeof(Real))));
+
+template <class Real>
+[[nodiscard]] inline lanes<Real> coordinates(const vec3<Real>& p) noexcept {
+    return lanes<Real>{p[0], p[1], p[2], p[2]};
+}
+
+/// One coordinate of all corners.
+template <class Real>
+[[nodiscard]] inline lanes<Real> corners_along(const triangle3<Real>& t, int axis) noexcept {
+    return lanes<Real>{t[0][axis], t[1][axis], t[2][axis], t[2][axis]};
+}
+
+/// Of a comparison of lanes: bit i is set where it holds in lane i.
+template <class Mask>
+[[nodiscard]] inline unsigned bits(const Mask& mask) noexcept {
+    using flags = bool __attribute__((ext_vector_type(4)));
+    return __builtin_bit_cast(std::uint8_t, __builtin_convertvector(mask, flags)) & 7U;
+}
+
+}  // namespace aabb
