@@ -8,7 +8,7 @@
 #include <clang/Lex/Preprocessor.h>
 #include <clang/Serialization/ASTReader.h>
 
-import aabb.std;
+#include <vector>
 
 namespace {
 

@@ -4,7 +4,6 @@
 
 #include <csignal>
 
-#include "commands/command_line.hpp"
 #include "commands/command_parser.hpp"
 #include "commands/kept_costs.hpp"
 

@@ -25,14 +25,6 @@ double number_in(const std::string& text) {
 
 }  // namespace
 
-const std::vector<double>& atlas_line::times(span_of_time of) const {
-    return of == span_of_time::frame ? frame_ms : whole_ms;
-}
-
-double atlas_line::ms(span_of_time of) const {
-    return quartiles_of(times(of)).median;
-}
-
 const atlas_line* atlas_scene::find(std::string_view label) const {
     const auto found = std::ranges::find(lines, label, &atlas_line::label);
     return found != lines.end() ? &*found : nullptr;

@@ -26,9 +26,11 @@ struct atlas_line {
     std::vector<double> frame_ms;
     std::vector<double> whole_ms;
 
-    [[nodiscard]] const std::vector<double>& times(span_of_time of) const;
+    [[nodiscard]] const std::vector<double>& times(span_of_time of) const {
+        return of == span_of_time::frame ? frame_ms : whole_ms;
+    }
     /// The median over repeats.
-    [[nodiscard]] double ms(span_of_time of) const;
+    [[nodiscard]] double ms(span_of_time of) const { return quartiles_of(times(of)).median; }
 };
 
 struct atlas_scene {

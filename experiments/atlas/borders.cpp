@@ -1,13 +1,12 @@
 module;
-#include <fmt/format.h>
 
 #include <random>
 
 module aabblab.atlas;
 
 import :labels;
-import :noise;
 import aabb.policy;
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
@@ -118,15 +117,7 @@ table borders_summary(const std::vector<border>& all) {
     std::vector<std::vector<const border*>> groups;
     for (const auto& [what, group] : alike) groups.push_back(group);
     std::ranges::stable_sort(groups, [](const auto& a, const auto& b) { return a.size() > b.size(); });
-    table t{{{"along", false},
-             {"fastest before", false},
-             {"fastest after", false},
-             {"borders"},
-             {"at"},
-             {"95 %"},
-             {"from"},
-             {"to"}},
-            {}};
+    table t = empty_table({"along", "fastest before", "fastest after"}, {"borders", "at", "95 %", "from", "to"});
     for (const std::vector<const border*>& group : groups) {
         std::vector<estimate> places;
         for (const border* one : group) places.push_back(log_place_of(*one));

@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.atlas;
 
+import aabblab.fmt;
 import :labels;
 
 namespace aabblab {
@@ -13,9 +11,6 @@ constexpr span_of_time frame = span_of_time::frame;
 
 /// The map's scenes are those of this kind.
 constexpr const char* kind_of_map = "cloud";
-
-/// The parameters that a panel shares.
-using panel_key = std::tuple<double, double, double>;  // clouds, density, ratio
 
 /// So many are told apart in a figure; the others are "another".
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
@@ -32,15 +27,15 @@ std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& a
 /// A series a winner, all winners in every panel, so that they look the same in all.
 std::vector<series> empty_series(const std::vector<std::string>& winners) {
     std::vector<series> all;
-    for (const std::string& label : winners) all.push_back({label, series_style::points, {}});
-    all.push_back({"another", series_style::points, {}});
+    for (const std::string& label : winners) all.push_back({label, series_style::points});
+    all.push_back({"another", series_style::points});
     return all;
 }
 
 void add_point(std::vector<series>& to, const std::string& winner, double x, double y) {
     const auto found = std::ranges::find(to, winner, &series::label);
     series& one = found != to.end() ? *found : to.back();
-    one.points.push_back({x, y, y, y});
+    one.points.push_back({x, y});
 }
 
 /// @param among "", or those among whom the fastest is looked for
@@ -51,20 +46,17 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
         .caption = fmt::format("The fastest{} in a frame after the first, in {}: each point is a scene, of so many "
                                "objects that move by so much a frame.",
                                among, clouds > 1 ? fmt::format("{:g} clouds apart", clouds) : "one cloud"),
-        .x = {"objects", true, {}},
-        .y = {"displacement a frame (mean extents)", true, {}},
-        .lines = {},
-        .marks = {}};
-    std::map<panel_key, figure_panel> panels;
+        .x = {"objects", true},
+        .y = {"displacement a frame (mean extents)", true}};
+    std::map<std::pair<double, double>, figure_panel> panels;  // by density and ratio
     for (const atlas_scene& scene : atlas) {
         if (scene.scene.kind != kind_of_map || scene.number("clouds") != clouds || scene.number("moving") != 1)
             continue;
-        const panel_key key{clouds, scene.number("density"), scene.number("ratio")};
+        const std::pair key{scene.number("density"), scene.number("ratio")};
         const auto [place, is_new] = panels.try_emplace(key);
         if (is_new)
-            place->second = {fmt::format("density {:g}, sizes 1 to {:g}", std::get<1>(key), std::get<2>(key)),
-                             empty_series(winners),
-                             {}};
+            place->second = {fmt::format("density {:g}, sizes 1 to {:g}", key.first, key.second),
+                             empty_series(winners)};
         add_point(place->second.lines, family_of(scene.fastest(frame).label), scene.number("objects"),
                   scene.number("displacement"));
     }
@@ -79,10 +71,9 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
              .caption = "The fastest" + among +
                         " in a frame after the first, of all scenes in which anything moves: objects, and "
                         "inversions an object and frame on the axis on which boxes overlap least.",
-             .x = {"objects", true, {}},
-             .y = {"inversions an object and frame", true, {}},
-             .lines = empty_series(winners),
-             .marks = {}};
+             .x = {"objects", true},
+             .y = {"inversions an object and frame", true},
+             .lines = empty_series(winners)};
     for (const atlas_scene& scene : atlas)
         if (scene.measures.motion && scene.measures.motion->inversions > 0)
             add_point(f.lines, family_of(scene.fastest(frame).label), static_cast<double>(scene.measures.objects),
@@ -98,17 +89,14 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
              .caption =
                  "Time of a frame over that of the fastest, scene by scene in ascending order: what it costs to "
                  "use one composition or engine everywhere.",
-             .x = {"share of the scenes", false, {}},
-             .y = {"regret", true, {}},
-             .lines = {},
-             .marks = {}};
+             .x = {"share of the scenes", false},
+             .y = {"regret", true}};
     for (const std::string& label : labels_of(atlas)) {
         const std::vector<double> regrets = regrets_of(atlas, label, frame);
         if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;
-        series one{label, series_style::line, {}};
+        series one{label};
         for (std::size_t i = 0; i < regrets.size(); ++i)
-            one.points.push_back({(static_cast<double>(i) + 0.5) / static_cast<double>(regrets.size()), regrets[i],
-                                  regrets[i], regrets[i]});
+            one.points.push_back({(static_cast<double>(i) + 0.5) / static_cast<double>(regrets.size()), regrets[i]});
         f.lines.push_back(std::move(one));
     }
     std::ranges::stable_sort(f.lines, {}, [](const series& s) { return s.points[s.points.size() / 2].y; });

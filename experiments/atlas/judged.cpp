@@ -1,15 +1,222 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.atlas;
 
-import :noise;
-import :statement;
+import :labels;
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
 
 namespace {
+
+// Statements as they are written down.
+
+using scene_filter = std::function<bool(const atlas_scene&)>;
+
+/// A time over another, over some scenes.
+struct stated_ratio {
+    std::string where;
+    std::string arm;
+    std::string base;
+    scene_filter in;
+    expectation expected = expectation::less;
+    double band = equivalence_band;
+    /// Where it is set, the ratio is over the same in these scenes: how much more it is here than there.
+    scene_filter over = nullptr;
+};
+
+struct statement {
+    std::string id;
+    std::string source;
+    std::string says;
+    std::vector<stated_ratio> ratios;
+};
+
+// Who plays, as it is labelled.
+const std::string columns = "bucket + columns + simd";
+const std::string kept_list = "neighbour_list:margin=0.1 + bucket + columns + simd";
+const std::string incremental = "insertion + incremental";
+const std::string in_regions = "insertion + subdivided";
+const std::string one_axis = "insertion + one_axis";
+const std::string simd_sweep = "insertion + simd";
+const std::string two_axis = "insertion + two_axis";
+const std::string grid = "std + uniform_grid + simd";
+const std::string kd_tree = "radix + kd_tree + simd";
+const std::string grids = "ode_hash";
+const std::string dynamic_tree = "bullet_dbvt";
+const std::string bullet_sap = "bullet_sap";
+
+/// In the map, where a parameter has a value.
+struct setting_is {
+    std::string_view parameter;
+    double value;
+};
+scene_filter map_with(std::vector<setting_is> settings, bool all_move = true) {
+    return [settings = std::move(settings), all_move](const atlas_scene& s) {
+        if (s.scene.kind != "cloud" || (all_move && s.number("moving") != 1)) return false;
+        for (const setting_is& one : settings)
+            if (s.number(one.parameter) != one.value) return false;
+        return true;
+    };
+}
+
+/// All move by so much a frame.
+scene_filter moved(double objects, double displacement) {
+    return map_with({{"objects", objects}, {"displacement", displacement}});
+}
+
+scene_filter so_many(double objects) {
+    return map_with({{"objects", objects}});
+}
+
+scene_filter sizes_to(double ratio, double objects) {
+    return map_with({{"objects", objects}, {"ratio", ratio}});
+}
+
+/// How many times more it is here than there.
+stated_ratio compared(std::string where, std::string arm, std::string base, scene_filter here, scene_filter there) {
+    stated_ratio one{std::move(where), std::move(arm), std::move(base), std::move(here)};
+    one.over = std::move(there);
+    return one;
+}
+
+scene_filter resting(double objects, double moving) {
+    return map_with({{"objects", objects}, {"moving", moving}}, false);
+}
+
+scene_filter kind_is(std::string kind) {
+    return [kind = std::move(kind)](const atlas_scene& s) { return s.scene.kind == kind; };
+}
+
+/// The same two where so many move by so much.
+std::vector<stated_ratio> moves(const std::string& arm, const std::string& base,
+                                std::initializer_list<std::pair<double, double>> cases) {
+    std::vector<stated_ratio> all;
+    for (const auto& [objects, displacement] : cases)
+        all.push_back({fmt::format("{} boxes, by {:g}", grouped(static_cast<std::uint64_t>(objects)), displacement),
+                       arm, base, moved(objects, displacement)});
+    return all;
+}
+
+/// The same two with so many boxes.
+std::vector<stated_ratio> of_sizes(const std::string& arm, const std::string& base, std::initializer_list<double> sizes,
+                                   expectation expected = expectation::less, double band = equivalence_band) {
+    std::vector<stated_ratio> all;
+    for (const double objects : sizes)
+        all.push_back(
+            {grouped(static_cast<std::uint64_t>(objects)) + " boxes", arm, base, so_many(objects), expected, band});
+    return all;
+}
+
+const std::vector<statement>& statements() {
+    static const std::vector<statement> all{
+        {"B1",
+         "Bullet's manual and wiki, \"Broadphase\"",
+         "Sweep and prune is fastest where most objects rest; the dynamic tree where many move.",
+         {{"10,000 boxes, a hundredth move", bullet_sap, dynamic_tree, resting(10000, 0.01)},
+          {"10,000 boxes, a tenth moves", bullet_sap, dynamic_tree, resting(10000, 0.1)},
+          {"1,000 boxes, all move by 1", dynamic_tree, bullet_sap, moved(1000, 1)},
+          {"10,000 boxes, all move by 1", dynamic_tree, bullet_sap, moved(10000, 1)}}},
+        {"B2",
+         "P. Terdiman, PhysX issue 96, and PhysX's manual, PxBroadPhaseType",
+         "With everything asleep nothing beats incremental sweep and prune; with everything moving pruning in "
+         "boxes is much faster.",
+         {{"1,000 boxes at rest", incremental, columns, resting(1000, 0)},
+          {"10,000 boxes at rest", incremental, columns, resting(10000, 0)},
+          {"10,000 boxes at rest", incremental, kept_list, resting(10000, 0)},
+          {"1,000 boxes, all move by 1", columns, incremental, moved(1000, 1)},
+          {"10,000 boxes, all move by 1", columns, incremental, moved(10000, 1)}}},
+        {"B3", "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract",
+         "Sweep and prune that is subdivided is faster than sweep and prune before it.",
+         moves(in_regions, incremental,
+               {{1000, 0.001}, {10000, 0.001}, {1000, 0.1}, {10000, 0.1}, {1000, 1}, {10000, 1}})},
+        {"B4",
+         "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract (of octrees)",
+         "With coherence, subdivided sweep and prune beats hierarchies.",
+         {{"1,000 boxes, by 0.01", in_regions, dynamic_tree, moved(1000, 0.01)},
+          {"10,000 boxes, by 0.01", in_regions, dynamic_tree, moved(10000, 0.01)},
+          {"10,000 boxes, by 0.01", in_regions, "embree_refit", moved(10000, 0.01)},
+          {"10,000 boxes, a hundredth moves", in_regions, dynamic_tree, resting(10000, 0.01)}}},
+        {"B5",
+         "C. Ericson, Real-Time Collision Detection, 7.1 and 7.2",
+         "A uniform grid suits boxes of similar size; where sizes vary greatly it does not, and a hierarchy of grids "
+         "does.",
+         {{"10,000 boxes of one size", grid, grids, sizes_to(1, 10000)},
+          {"10,000 boxes, sizes 1 to 100", grids, grid, sizes_to(100, 10000)},
+          compared("the lead of the hierarchy, sizes 1 to 100 over one size", grids, grid, sizes_to(100, 10000),
+                   sizes_to(1, 10000))}},
+        {"B6",
+         "C. Ericson, Real-Time Collision Detection, 7.5; the manual of BEPUphysics",
+         "Sweep and prune suffers where boxes are clustered, which a hierarchy does not.",
+         {compared("1,000 boxes, 20 clouds over one", dynamic_tree, one_axis,
+                   map_with({{"objects", 1000}, {"clouds", 20}}), map_with({{"objects", 1000}, {"clouds", 1}})),
+          compared("10,000 boxes, 20 clouds over one", dynamic_tree, one_axis,
+                   map_with({{"objects", 10000}, {"clouds", 20}}), map_with({{"objects", 10000}, {"clouds", 1}}))}},
+        {"B7",
+         "Benchmark of BEPUphysics 0.16, 2011",
+         "A sweep along one axis is the fastest of all with 100 boxes; with many, a grid of two axes with a sweep "
+         "along the third beats a dynamic hierarchy.",
+         {{"100 boxes", simd_sweep, dynamic_tree, so_many(100)},
+          {"100 boxes", simd_sweep, columns, so_many(100)},
+          {"10,000 boxes", columns, dynamic_tree, so_many(10000)},
+          {"30,000 boxes", columns, dynamic_tree, so_many(30000)}}},
+        {"B8",
+         "The manual of Nape; comments of Box2D 2.0, b2BroadPhase",
+         "Sweep and prune is poor at fast motion and at many sizes; a dynamic tree suffers from neither.",
+         {compared("1,000 boxes, by 1 over by 0.001", dynamic_tree, incremental, moved(1000, 1), moved(1000, 0.001)),
+          compared("10,000 boxes, by 1 over by 0.001", dynamic_tree, incremental, moved(10000, 1), moved(10000, 0.001)),
+          compared("10,000 boxes, sizes 1 to 100 over one size", dynamic_tree, incremental, sizes_to(100, 10000),
+                   sizes_to(1, 10000))}},
+        {"B9", "F. Chitalu, C. Dubach, T. Komura, Computer Graphics Forum 2020, abstract (of a tree on a GPU)",
+         "To build a hierarchy anew in every frame is faster than to refit it.",
+         moves("embree", "embree_refit",
+               {{1000, 0.001}, {1000, 0.1}, {1000, 1}, {10000, 0.001}, {10000, 0.1}, {10000, 1}})},
+        {"B10", "The manual of dyn4j",
+         "A sweep along one axis and a dynamic tree take about the same time: the slower of them, which is the "
+         "tree, at most twice.",
+         of_sizes(dynamic_tree, one_axis, {100, 1000, 10000}, expectation::not_more, 1.0)},
+        {"B11",
+         "The manual of Unity, Physics, broadphase type",
+         "In large flat worlds sweep and prune finds many false overlaps, and a grid over it helps.",
+         {{"flat", columns, simd_sweep, kind_is("flat")},
+          compared("more than in a cube", columns, simd_sweep, kind_is("flat"), kind_is("brownian"))}},
+        {"B12",
+         "Y. Serpa, M. Rodrigues, Computer Graphics Forum 38, 2019, title",
+         "A kd-tree that makes use of where boxes were before is fast and scales.",
+         {{"10,000 boxes", kd_tree, simd_sweep, so_many(10000)},
+          {"10,000 boxes", kd_tree, grid, so_many(10000)},
+          {"10,000 boxes", kd_tree, dynamic_tree, so_many(10000)},
+          compared("its lead over a sweep, 10,000 boxes over 1,000", kd_tree, simd_sweep, so_many(10000),
+                   so_many(1000))}},
+        {"B13", "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
+         "Of sweeps the one that tests by vectors is the best.", of_sizes(simd_sweep, one_axis, {100, 1000, 10000})},
+        {"B14",
+         "G. Capannini, T. Larsson, SCCG 2016 and IEEE TVCG 2018, titles (the latter on several threads)",
+         "A sweep of two axes is efficient, and for massive scenes.",
+         {{"1,000 boxes", two_axis, one_axis, so_many(1000)},
+          {"30,000 boxes", two_axis, one_axis, so_many(30000)},
+          compared("30,000 boxes over 1,000", two_axis, one_axis, so_many(30000), so_many(1000))}},
+        {"B15",
+         "G. Capannini, T. Larsson, SIGRAD 2016, abstract (of a form for boxes of one size alone)",
+         "A sweep of two axes gains where all boxes have one size.",
+         {compared("1,000 boxes, one size over sizes 1 to 100", two_axis, one_axis, sizes_to(1, 1000),
+                   sizes_to(100, 1000)),
+          compared("10,000 boxes, one size over sizes 1 to 100", two_axis, one_axis, sizes_to(1, 10000),
+                   sizes_to(100, 10000))}},
+        {"B16",
+         "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract",
+         "Subdivided sweep and prune suits large environments in which few objects move at a time.",
+         {{"10,000 boxes, a hundredth moves", in_regions, incremental, resting(10000, 0.01)},
+          {"10,000 boxes, a tenth moves", in_regions, incremental, resting(10000, 0.1)},
+          {"10,000 boxes, a hundredth moves", in_regions, one_axis, resting(10000, 0.01)},
+          compared("its lead, 10,000 boxes over 1,000, a tenth moves", in_regions, incremental, resting(10000, 0.1),
+                   resting(1000, 0.1))}},
+        {"B17", "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
+         "Of grids with a sweep in their cells the one over three axes is better than the one over two.",
+         of_sizes(grid, columns, {1000, 10000, 30000})}};
+    return all;
+}
+
+// What was found of them.
 
 struct measured_ratio {
     std::size_t scenes = 0;
@@ -85,14 +292,7 @@ table statements_table(const std::vector<judged_statement>& all) {
 }
 
 table ratios_table(const std::vector<judged_statement>& all) {
-    table t{{{"statement", false},
-             {"where", false},
-             {"time of a frame", false},
-             {"scenes"},
-             {"ratio"},
-             {"95 %"},
-             {"found", false}},
-            {}};
+    table t = empty_table({"statement", "where", "time of a frame"}, {"scenes", "ratio", "95 %"}, {"found"});
     for (const judged_statement& s : all)
         for (const judged_ratio& r : s.ratios)
             t.rows.push_back({s.id, r.where, r.what, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),

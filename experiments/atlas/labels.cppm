@@ -1,8 +1,9 @@
-/// Who plays in an atlas, and what it costs to use one of them everywhere.
+/// Who plays in an atlas, what it costs to use one of them everywhere, and how sure ratios are.
 module aabblab.atlas:labels;
 
 import aabb.std;
 import aabblab.atlas;
+import aabblab.statistics;
 
 namespace aabblab {
 
@@ -33,6 +34,26 @@ namespace aabblab {
         if (const atlas_line* line = scene.find(label)) regrets.push_back(line->ms(of) / scene.least_ms(of));
     std::ranges::sort(regrets);
     return regrets;
+}
+
+/// Of two lines of a scene. Where both have one repeat, repeats of others say how much they differ; nothing is known
+/// where those have one too.
+[[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_line& arm, const atlas_line& base,
+                                           span_of_time of) {
+    const estimate one = log_ratio(arm, base, of);
+    if (one.error > 0) return one;
+    double squares = 0;
+    double degrees = 0;
+    for (const atlas_line& line : scene.lines) {
+        const std::vector<double>& times = line.times(of);
+        const auto count = static_cast<double>(times.size());
+        double mean = 0;
+        for (const double ms : times) mean += std::log(ms) / count;
+        for (const double ms : times) squares += (std::log(ms) - mean) * (std::log(ms) - mean);
+        degrees += count - 1;
+    }
+    if (degrees == 0) return {std::nan(""), 0, 1};
+    return {one.value, std::sqrt(2 * squares / degrees), degrees};
 }
 
 }  // namespace aabblab

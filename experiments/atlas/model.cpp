@@ -1,9 +1,7 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.atlas;
 
 import :labels;
+import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.progress;
 
@@ -91,8 +89,7 @@ std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
 }
 
 table models_table(const std::vector<line_model>& models) {
-    table t{{{"who", false}, {"scenes"}, {"off by"}, {"worst"}, {"unseen scenes"}, {"off by there"}, {"worst there"}},
-            {}};
+    table t = empty_table({"who"}, {"scenes", "off by", "worst", "unseen scenes", "off by there", "worst there"});
     for (const line_model& m : models)
         t.rows.push_back({m.label, grouped(m.seen.observations), fmt::format("{:.2f}", m.seen.median),
                           fmt::format("{:.1f}", m.seen.worst), grouped(m.unseen.observations),

@@ -1,9 +1,7 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.atlas;
 
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.page;
 

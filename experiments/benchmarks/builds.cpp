@@ -2,9 +2,7 @@
 
 #include "stages.hpp"
 
-import aabb.geometry;
 import aabb.local_detection;
-import aabb.policy;
 import aabb.std;
 import aabb.strategies;
 import aabb.tree.implicit;

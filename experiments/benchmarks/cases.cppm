@@ -1,10 +1,7 @@
 /// What benchmarks are run on: every strategy of a kind with the values of its parameters, and frames of a scene.
 export module aabblab.cases;
 
-import aabb.geometry;
-import aabb.global_search;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 import aabblab.scenes;
 

@@ -19,7 +19,7 @@ void add_partition_benchmarks();
 /// includes the sorting of its lists. Behind `sweep_columns`: one over the columns of a frame.
 void add_sweep_benchmarks();
 
-// The tests of local detection, one an iteration. The pairs are those that a walk tests (walked_pairs.cppm), which
+// The tests of local detection, one an iteration. The pairs are those that a walk tests (`walked_pairs`), which
 // includes that it reads a box from its tree and a triangle from its mesh. A name is the test: "test/box". There what
 // is tested of B is carried into A's frame as a part of the test; behind the same name and "/frame:a" nothing is. The
 // counter `hits` is the share of pairs to which the test says yes.

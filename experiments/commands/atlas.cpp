@@ -1,11 +1,6 @@
-#include <fmt/format.h>
-
 #include "command_parser.hpp"
 
-import aabb.base;
-import aabb.std;
 import aabblab.atlas;
-import aabblab.output;
 import aabblab.record;
 import aabblab.statistics;
 import aabblab.suites;

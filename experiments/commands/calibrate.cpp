@@ -1,16 +1,11 @@
-#include <fmt/format.h>
-
 #include "command_parser.hpp"
 #include "kept_costs.hpp"
 
-import aabb.base;
 import aabb.costs;
-import aabb.std;
 import aabblab.calibrate;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.machine;
-import aabblab.output;
 import aabblab.processor;
 import aabblab.statistics;
 import aabblab.stopwatch;
@@ -31,11 +26,6 @@ std::filesystem::path file_of(const calibrate_request& request) {
     if (file.empty())
         throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; --out FILE says where costs go");
     return file;
-}
-
-void reset(const std::filesystem::path& file) {
-    print(std::filesystem::remove(file) ? "removed " + file.string() + ": costs are as shipped\n"
-                                        : file.string() + " is not there: costs are as shipped\n");
 }
 
 table table_of(const calibration& found) {
@@ -60,7 +50,9 @@ table checks_of(const calibration& found) {
 
 void calibrate(const calibrate_request& request) {
     const std::filesystem::path file = file_of(request);
-    if (request.reset) return reset(file);
+    if (request.reset)
+        return print(std::filesystem::remove(file) ? "removed " + file.string() + ": costs are as shipped\n"
+                                                   : file.string() + " is not there: costs are as shipped\n");
     require_fine_clock();
     // What is no file of costs is somebody's else.
     if (request.out && std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) > 0)

@@ -1,18 +1,12 @@
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include "command_parser.hpp"
 
-import aabb.base;
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.registry;
-import aabb.std;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.inputs;
-import aabblab.output;
 import aabblab.pair_output;
 import aabblab.progress;
 import aabblab.queries;

@@ -1,22 +1,13 @@
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "command_parser.hpp"
-
-// Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb.base;
 import aabb.geometry;
-import aabb.pipeline;
-import aabb.policy;
-import aabb.std;
 import aabblab.configs;
 import aabblab.inputs;
 import aabblab.numbers;
-import aabblab.output;
 import aabblab.pair_output;
-import aabblab.queries;
 
 namespace aabblab {
 
@@ -121,7 +112,6 @@ void print_text(const collide_request& request, const mesh_result& result) {
     print("\nbytes:" + bytes + "\n");
 }
 
-/// What does not go together.
 void require_sense(const collide_request& request) {
     const auto refuse_if = [](bool is_so, const char* sentence) {
         if (is_so) throw aabb::input_error(sentence);
@@ -146,7 +136,6 @@ void require_sense(const collide_request& request) {
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
 
-/// The file of the pairs.
 std::optional<number_table> rows_of(const collide_request& request) {
     if (!request.out) return std::nullopt;
     require_no_mesh(*request.out, request.meshes());
@@ -156,12 +145,9 @@ std::optional<number_table> rows_of(const collide_request& request) {
     return std::optional<number_table>(std::in_place, *request.out, columns);
 }
 
-/// @returns the exit status
 int collide(const collide_request& request) {
     require_sense(request);
     const search_choice who = request.who.choice(request.geometry);
-    // What makes no sense is refused before anything is read.
-    static_cast<void>(method_of(who, {}));
     const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
     given_poses of_b{{pose_of(request.poses[1], "--pose-b")}, {}, {}};
     if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);

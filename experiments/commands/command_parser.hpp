@@ -1,17 +1,17 @@
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
-#include <type_traits>
-#include <variant>
-#include <vector>
+
+// What every command uses. Headers that are no imports come before this one.
+import aabb.base;
+import aabb.std;
+import aabblab.fmt;
+import aabblab.output;
 
 namespace CLI {
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI
 
 namespace aabblab {
@@ -29,7 +29,6 @@ public:
     parsed_option excludes(parsed_option other) const;
     /// Takes one value each time that it is given.
     parsed_option one_value_at_a_time() const;
-    /// Left out of the help.
     parsed_option hidden() const;
 
 private:
@@ -83,5 +82,14 @@ private:
 
 /// Adds every command of the program, in the order of its help.
 void add_commands(const command_parser& program);
+
+/// The help of the program, and of the commands that are added to it later, fits the terminal.
+void wrap_help(CLI::App& program);
+
+/// The sentence for a command line that was refused, with the nearest command or option for an unknown one.
+[[nodiscard]] std::string refusal_of(const CLI::App& program, const CLI::ParseError& error);
+
+/// @throws aabb::input_error when the command line, accepted otherwise, names no command.
+void require_command(const CLI::App& program);
 
 }  // namespace aabblab

@@ -1,10 +1,6 @@
-#include <fmt/format.h>
-
 #include "command_parser.hpp"
 
-import aabb.std;
 import aabblab.comparison;
-import aabblab.output;
 import aabblab.record;
 import aabblab.scenes;
 import aabblab.statistics;
@@ -20,15 +16,8 @@ struct compare_request {
     bool all = false;
 };
 
-constexpr std::string_view text_of(outcome found) {
-    switch (found) {
-        case outcome::less: return "less";
-        case outcome::same: return "same";
-        case outcome::more: return "more";
-        case outcome::undecided: break;
-    }
-    return "undecided";
-}
+/// By the number of each `outcome`.
+constexpr std::array<std::string_view, 4> outcome_names{"less", "same", "more", "undecided"};
 
 std::string heading_of(const compared_scene& s) {
     return fmt::format("{}: {}, {}", s.experiment, s.scene.kind, settings_text(s.scene));
@@ -54,58 +43,35 @@ table table_of(std::span<const compared_time> times, const std::string& unit, bo
             t.rows.push_back({time.label, fmt::format("{:.3f}", time.in_a), fmt::format("{:.3f}", time.in_b),
                               fmt::format("{:.3f}", time.change),
                               time.too_few ? "-" : fmt::format("{:.3f}-{:.3f}", time.around.low, time.around.high),
-                              std::string(text_of(time.found))});
+                              std::string(outcome_names[static_cast<std::size_t>(time.found)])});
     return t;
 }
 
-/// "24 ratios compared: 2 changed beyond noise, …".
-class tally {
-public:
-    void add(std::span<const compared_time> times) {
-        for (const compared_time& time : times) {
-            ++compared_;
-            changed_ += time.found == outcome::less || time.found == outcome::more;
-            same_ += time.found == outcome::same;
-            undecided_ += time.found == outcome::undecided;
-            too_few_ += time.found == outcome::undecided && time.too_few;
+/// Prints those of each scene, and in a line how many there are: "24 ratios compared: 2 changed beyond noise, …".
+/// @param heading what is said of them behind the scene
+/// @param all are listed
+void print_compared(const comparison& found, std::vector<compared_time> compared_scene::* times, std::string_view what,
+                    const std::string& unit, auto heading, bool all) {
+    std::size_t count = 0, changed = 0, same = 0, undecided = 0, too_few = 0;
+    for (const compared_scene& s : found.scenes) {
+        for (const compared_time& time : s.*times) {
+            ++count;
+            changed += time.found == outcome::less || time.found == outcome::more;
+            same += time.found == outcome::same;
+            undecided += time.found == outcome::undecided;
+            too_few += time.found == outcome::undecided && time.too_few;
         }
+        print_block(heading_of(s) + heading(s), table_of(s.*times, unit, all));
     }
-
-    /// @param all are listed
-    [[nodiscard]] std::string text(std::string_view what, bool all) const {
-        std::string text =
-            fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided",
-                        compared_, what, changed_, same_, 100 * equivalence_band, undecided_);
-        if (too_few_ > 0) text += fmt::format(", {} of them for too few repeats", too_few_);
-        text += "\n";
-        if (undecided_ > 0)
-            text += fmt::format(
-                "undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's correction for "
-                "all {}{}\n",
-                100 * equivalence_band, what, all ? "" : "; --all lists them");
-        return text;
-    }
-
-private:
-    std::size_t compared_ = 0, changed_ = 0, same_ = 0, undecided_ = 0, too_few_ = 0;
-};
-
-void print_ratios(const comparison& found, bool all) {
-    tally count;
-    for (const compared_scene& s : found.scenes) {
-        count.add(s.ratios);
-        print_block(heading_of(s) + "; time over that of '" + s.base + "'", table_of(s.ratios, "ratio", all));
-    }
-    print(count.text("ratios", all));
-}
-
-void print_times(const comparison& found, bool all) {
-    tally count;
-    for (const compared_scene& s : found.scenes) {
-        count.add(s.times);
-        print_block(heading_of(s) + "; milliseconds a frame", table_of(s.times, "ms", all));
-    }
-    print(count.text("times", all));
+    print(fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided", count,
+                      what, changed, same, 100 * equivalence_band, undecided));
+    if (too_few > 0) print(fmt::format(", {} of them for too few repeats", too_few));
+    print("\n");
+    if (undecided > 0)
+        print(
+            fmt::format("undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's "
+                        "correction for all {}{}\n",
+                        100 * equivalence_band, what, all ? "" : "; --all lists them"));
 }
 
 std::string percents(std::uint64_t before, std::uint64_t after) {
@@ -138,8 +104,13 @@ int compare_folders(const compare_request& request) {
     const comparison found = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
     print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
     print_answers(found);
-    print_ratios(found, request.all);
-    if (request.times) print_times(found, request.all);
+    print_compared(
+        found, &compared_scene::ratios, "ratios", "ratio",
+        [](const compared_scene& s) { return "; time over that of '" + s.base + "'"; }, request.all);
+    if (request.times)
+        print_compared(
+            found, &compared_scene::times, "times", "ms",
+            [](const compared_scene&) { return "; milliseconds a frame"; }, request.all);
     print_numbers(found);
     if (found.only_in_a + found.only_in_b > 0)
         print(fmt::format("left out is what only one of them has: {} compositions in a scene of A, {} of B\n",

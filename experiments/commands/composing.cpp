@@ -1,17 +1,9 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "command_parser.hpp"
 
-// Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb.base;
-import aabb.policy;
-import aabb.registry;
 import aabb.selection;
-import aabb.std;
-import aabblab.queries;
+import aabblab.fmt;
 
 namespace aabblab {
 
@@ -69,6 +61,7 @@ search_choice method_options::choice(bool geometry) const {
                     fmt::format("--{} auto: leave it out, since what is not named is selected", name_of(kind)));
             choice.named[kind] = aabb::parse_strategy(*given_[kind]);
         }
+    static_cast<void>(method_of(choice, {}));
     return choice;
 }
 

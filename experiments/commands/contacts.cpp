@@ -1,22 +1,13 @@
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "command_parser.hpp"
-
-// Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb.base;
-import aabb.pipeline;
-import aabb.policy;
-import aabb.std;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;
-import aabblab.output;
 import aabblab.pair_output;
 import aabblab.trials;
-import aabblab.queries;
 
 namespace aabblab {
 
@@ -54,8 +45,6 @@ void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
     const search_choice who = request.who.choice(request.geometry);
-    // What makes no sense is refused before anything is read.
-    static_cast<void>(method_of(who, {}));
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.motion);

@@ -1,10 +1,8 @@
 #include "command_parser.hpp"
 
-import aabb.std;
 import aabblab.configs;
 import aabblab.errors;
 import aabblab.figures;
-import aabblab.output;
 import aabblab.results;
 import aabblab.suites;
 import aabblab.tables;

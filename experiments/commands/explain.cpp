@@ -1,31 +1,16 @@
-#include <fmt/format.h>
-
 #include "command_parser.hpp"
-
-// Import, so they come last.
-#include "explain_omissions.hpp"
 #include "explain_savings.hpp"
 #include "kept_costs.hpp"
 #include "scene_texts.hpp"
 
-import aabb.base;
-import aabb.pipeline;
 import aabb.policy;
-import aabb.registry;
 import aabb.selection;
-import aabb.std;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.inputs;
-import aabblab.measures;
 import aabblab.numbers;
-import aabblab.output;
-import aabblab.trials;
-import aabblab.race;
-import aabblab.scenes;
 import aabblab.stopwatch;
 import aabblab.suites;
-import aabblab.tables;
 
 namespace aabblab {
 
@@ -56,7 +41,6 @@ std::string reason_of(const work_apart& work) {
     return text_of(attempt{work.end, {}, work.reason, work.seconds});
 }
 
-/// What the stage is made of.
 std::string text_of(const contender_name& name, aabb::stage stage) {
     std::string text;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)

@@ -1,22 +1,13 @@
-#include <fmt/format.h>
+#include <cassert>
 
 // Imports, so they come last.
-#include "explain_omissions.hpp"
 #include "explain_savings.hpp"
 #include "scene_texts.hpp"
 
-import aabb.base;
-import aabb.pipeline;
 import aabb.policy;
-import aabb.registry;
-import aabb.std;
+import aabblab.fmt;
 import aabblab.numbers;
-import aabblab.output;
-import aabblab.trials;
-import aabblab.race;
-import aabblab.scenes;
 import aabblab.statistics;
-import aabblab.tables;
 
 namespace aabblab {
 
@@ -26,6 +17,21 @@ constexpr std::size_t most_frames = 40;
 constexpr std::size_t rounds = 5;
 /// With more objects, what sorts or sweeps all of them slowly would take minutes.
 constexpr std::size_t most_objects_of_any = 20'000;
+
+/// A way of playing the scene, played in the same rounds as the others.
+struct other_way {
+    std::string kind;  ///< in which it differs from what is selected; empty where it does not
+    std::string name;  ///< of what stands in its place
+    contender who;
+    std::vector<observation> times;     ///< none where no play came to its end
+    std::optional<attempt> broken_off;  ///< its first play, where that did not
+    bool is_hopeless;                   ///< it takes far longer than what is selected
+};
+
+/// What it is called where its kind does not stand beside it.
+std::string called(const other_way& one) {
+    return one.name == "none" ? one.kind + " none" : one.name;
+}
 
 /// Compositions that differ from the selected one in this kind, make sense in the scene and are exact.
 std::vector<other_way> others(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
@@ -41,6 +47,73 @@ std::vector<other_way> others(const aabb::composition& selected, aabb::strategy_
     return all;
 }
 
+/// Those that have what the selected one leaves out for the sake of this kind's settings, not of its strategy.
+std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
+    std::vector<other_way> all;
+    for (const aabb::strategy_info& info : aabb::strategies(kind))
+        for (const aabb::strategy_choice& choice : info.contrasts) {
+            aabb::composition c = selected;
+            c[kind] = choice;
+            if (c != selected && refusal_of(c, info_of(kind).stage).empty())
+                all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}, {}, false});
+        }
+    return all;
+}
+
+double median_ms(std::span<const observation> times) {
+    return quartiles_of(frame_ms_of(times)).median;
+}
+
+/// What is left out, without reasons.
+std::vector<std::string> omitted_by(const other_way& one) {
+    std::vector<std::string> all;
+    for (const aabb::omission& absent : omissions_of(one.who.name, one.times.back().left_out))
+        if (std::ranges::find(all, absent.what) == all.end()) all.push_back(absent.what);
+    return all;
+}
+
+/// Of those that leave it out not, the one that takes least time a frame; null where all do.
+const other_way* fastest_with(const std::string& what, std::span<const other_way> all) {
+    const other_way* fastest = nullptr;
+    for (const other_way& one : all)
+        if (!one.times.empty() && std::ranges::count(omitted_by(one), what) == 0 &&
+            (!fastest || median_ms(one.times) < median_ms(fastest->times)))
+            fastest = &one;
+    return fastest;
+}
+
+std::string more(std::uint64_t bytes, std::uint64_t than) {
+    return bytes < than ? "-" + grouped(than - bytes) : grouped(bytes - than);
+}
+
+/// Prints for all that the first one leaves out which of the others has it and takes the least time, and how much more.
+void print_omissions(std::span<const other_way> all) {
+    const std::vector<observation>& times = all[0].times;
+    const std::vector<std::string> heads{"left out", "is had with", "ms/frame", "bytes"};
+    std::vector<std::vector<std::string>> rows;
+    for (const std::string& what : omitted_by(all[0])) {
+        rows.push_back({what, "-", "-", "-"});
+        const other_way* with = fastest_with(what, all.subspan(1));
+        if (!with) continue;
+        const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
+        rows.back() = {what, called(*with),
+                       fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
+                       more(with->times.back().bytes, times.back().bytes)};
+    }
+    std::size_t beside = 0;
+    for (std::size_t column = 1; column < heads.size(); ++column) {
+        std::size_t widest = heads[column].size();
+        for (const std::vector<std::string>& row : rows) widest = std::max(widest, row[column].size());
+        beside += 2 + widest;
+    }
+    const std::size_t room = std::max(output_width(), beside + 20) - beside;
+    table t{{{heads[0], false}, {heads[1], false}, {heads[2]}, {heads[3]}}, {}};
+    for (const std::vector<std::string>& cells : rows) add_wrapped_row(t, cells, 0, room);
+    print("what is left out saves, against the fastest way of having it\n");
+    print(to_text(t) + "\n");
+    print(wrapped("-: none that was played has it. Below 0: having it takes less. ?: as above.") + "\n");
+}
+
 /// The same with counters in its stages.
 contender with_counters(contender who) {
     who.make_global = [make = who.make_global](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
@@ -51,7 +124,6 @@ contender with_counters(contender who) {
     return who;
 }
 
-/// Ratio and range.
 std::vector<std::string> ratio_cells(const other_way& one, std::span<const observation> selected) {
     if (one.is_hopeless) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
     if (one.times.empty()) return {"-", "-"};
@@ -69,11 +141,10 @@ void add_row(table& t, const other_way& one, const other_way& selected) {
     }
     std::vector<double> build_ms;
     for (const observation& time : one.times) build_ms.push_back(time.build.wall_ms);
-    t.rows.push_back({one.kind, one.name, fmt::format("{:.4g}", quartiles_of(frame_ms_of(one.times)).median), ratio[0],
-                      ratio[1], fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
+    t.rows.push_back({one.kind, one.name, fmt::format("{:.4g}", median_ms(one.times)), ratio[0], ratio[1],
+                      fmt::format("{:.3g}", quartiles_of(build_ms).median), grouped(one.times.back().bytes)});
 }
 
-/// The compositions that did not finish a run, and why.
 void print_unfinished(const std::vector<other_way>& all) {
     table t{{{"not finished", false}, {"", false}}, {}};
     for (const other_way& one : all)
@@ -94,6 +165,18 @@ bool print_disagreements(const std::vector<other_way>& all) {
 }
 
 }  // namespace
+
+std::vector<aabb::omission> omissions_of(const contender_name& who, std::vector<aabb::omission> by_stages) {
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        // Stages say the rest themselves.
+        if (!info_of(kind).apart || who[kind].empty()) continue;
+        const std::span<const aabb::strategy_info> all = aabb::strategies(kind);
+        const auto found = std::ranges::find(all, aabb::parse_strategy(who[kind]).name, &aabb::strategy_info::name);
+        assert(found != all.end());
+        for (const std::string& what : found->leaves_out) by_stages.push_back({what, {}});
+    }
+    return by_stages;
+}
 
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_play& scene = staged.scene();

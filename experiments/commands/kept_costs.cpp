@@ -2,7 +2,6 @@
 
 import aabb.base;
 import aabb.costs;
-import aabb.std;
 import aabblab.configs;
 import aabblab.machine;
 import aabblab.output;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
+import aabb.std;
 
 /// Costs that `calibrate` keeps for the user, and the program takes in place of those that it was shipped with.
 namespace aabblab {
@@ -10,8 +9,7 @@ namespace aabblab {
 /// @returns an empty path where the environment names neither folder.
 [[nodiscard]] std::filesystem::path kept_costs_file();
 
-/// Takes them, where there are any, for the whole process. Those of another processor, instruction set or version are
-/// left alone, and a note says so.
+/// Takes them, where there are any, for the whole process; a note says so of those that are of another machine.
 /// @throws aabb::input_error as `read_costs`.
 void use_kept_costs();
 

@@ -1,16 +1,12 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "command_parser.hpp"
 
-import aabb.base;
 import aabb.policy;
 import aabb.registry;
-import aabb.std;
 import aabb.validation;
+import aabblab.fmt;
 import aabblab.metrics;
-import aabblab.output;
 import aabblab.scenes;
 import aabblab.stepping;
 
@@ -66,8 +62,7 @@ std::string said_of(const metric& m) {
 }
 
 /// What scripts may want to know, of what has it.
-template <class Info>
-listed listed_of(const Info& info) {
+listed listed_of(const auto& info) {
     listed one{std::string(info.name), said_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
     json& members = one.members;
     if constexpr (requires { info.engine; }) members["engine"] = info.engine;

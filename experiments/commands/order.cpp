@@ -1,18 +1,9 @@
-#include <fmt/format.h>
-
 #include "command_parser.hpp"
-
-// Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb.base;
-import aabb.policy;
-import aabb.registry;
-import aabb.std;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;
-import aabblab.output;
 import aabblab.pair_output;
 
 namespace aabblab {

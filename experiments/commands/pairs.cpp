@@ -1,21 +1,13 @@
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "command_parser.hpp"
-
-// Imports, so it comes last.
 #include "composing.hpp"
 
-import aabb.pipeline;
-import aabb.policy;
-import aabb.std;
 import aabblab.files;
 import aabblab.inputs;
 import aabblab.numbers;
-import aabblab.output;
 import aabblab.pair_output;
 import aabblab.trials;
-import aabblab.queries;
 
 namespace aabblab {
 
@@ -46,8 +38,6 @@ void print_text(const pairs_request& request, const search_method& method, const
 
 void find_pairs(const pairs_request& request) {
     const search_choice who = request.who.choice();
-    // What makes no sense is refused before anything is read.
-    static_cast<void>(method_of(who, {}));
     scene_play scene(open_recording(request.recording));
     search_method method = method_of(who, outlook_of(scene));
     std::optional<number_table> rows;

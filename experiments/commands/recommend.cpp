@@ -1,27 +1,18 @@
-#include <fmt/format.h>
-
 #include "command_parser.hpp"
-
-// Imports, so it comes last.
 #include "scene_texts.hpp"
 
-import aabb.base;
 import aabb.costs;
-import aabb.std;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.inputs;
 import aabblab.machine;
-import aabblab.measures;
 import aabblab.numbers;
-import aabblab.output;
 import aabblab.page;
 import aabblab.trials;
 import aabblab.race;
 import aabblab.results;
-import aabblab.scenes;
 import aabblab.stopwatch;
-import aabblab.tables;
 
 namespace aabblab {
 
@@ -77,7 +68,6 @@ table unfinished_table_of(const race_result& race) {
     return t;
 }
 
-/// What the columns of the finalists mean.
 std::vector<std::string> legend() {
     return {"all ms: build ms, first ms, which is frame 0, and all further frames; of the plays the median.",
             "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %; -: of "
@@ -85,13 +75,6 @@ std::vector<std::string> legend() {
             ms_a_frame_text, build_ms_text};
 }
 
-std::string joined(const std::vector<std::string>& sentences) {
-    std::string text;
-    for (const std::string& one : sentences) text += (text.empty() ? "" : " ") + one;
-    return text;
-}
-
-/// By what, when and where it was measured.
 std::string origin() {
     const kept_costs here = costs_of(this_machine().processor, aabb::machine_costs());
     return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
@@ -100,9 +83,9 @@ std::string origin() {
 std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
     page out(scene);
     out.title(scene);
-    out.paragraph(joined(advice_of(race)));
+    out.paragraph(fmt::format("{}", fmt::join(advice_of(race), " ")));
     out.add(table_of(race));
-    out.paragraph(joined(legend()));
+    out.paragraph(fmt::format("{}", fmt::join(legend(), " ")));
     out.add_html(measured);
     out.add(dropped_table_of(race));
     out.paragraph(

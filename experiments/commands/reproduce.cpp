@@ -1,6 +1,5 @@
 #include "command_parser.hpp"
 
-import aabb.std;
 import aabblab.measuring;
 
 namespace aabblab {

@@ -1,8 +1,6 @@
 #include "command_parser.hpp"
 
-import aabb.std;
 import aabblab.configs;
-import aabblab.output;
 import aabblab.results;
 import aabblab.suites;
 

@@ -1,19 +1,12 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "command_parser.hpp"
 
-import aabb.base;
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.registry;
-import aabb.std;
 import aabblab.configs;
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.inputs;
 import aabblab.numbers;
-import aabblab.output;
 import aabblab.picture;
 import aabblab.trials;
 import aabblab.progress;
@@ -67,7 +60,6 @@ private:
     std::optional<player> finder_;  // of contacts, where the scene must be told
 };
 
-/// A scene that is looked at while it is played.
 class surveyed_scene final : public aabb::box_scene {
 public:
     explicit surveyed_scene(std::unique_ptr<aabb::box_scene> scene)

@@ -1,26 +1,18 @@
 #include "command_parser.hpp"
-
-// Imports, so it comes last.
 #include "scene_texts.hpp"
 
-import aabb.base;
 import aabb.registry;
-import aabb.std;
 import aabb.validation;
 import aabblab.configs;
-import aabblab.output;
 import aabblab.trials;
 import aabblab.results;
-import aabblab.scenes;
 import aabblab.suites;
-import aabblab.tables;
 
 namespace aabblab {
 
 namespace {
 
-/// Every global search once and every local detection once. The stages know nothing of each other, so that combinations
-/// of both would show nothing new.
+/// Every global search and every local detection once: stages know nothing of each other, so pairs show nothing new.
 std::vector<aabb::composition> every_composition() {
     std::vector<aabb::composition> all = aabb::every_composition(aabb::stage::global_search);
     for (const aabb::composition& c : aabb::every_composition(aabb::stage::local_detection))

@@ -1,9 +1,7 @@
 #include "command_parser.hpp"
 
 import aabb.extreme;
-import aabb.std;
 import aabblab.extreme;
-import aabblab.output;
 import aabblab.suites;
 
 namespace aabblab {

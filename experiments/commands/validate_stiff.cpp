@@ -1,7 +1,5 @@
 #include "command_parser.hpp"
 
-import aabb.std;
-import aabblab.output;
 import aabblab.stiff;
 import aabblab.suites;
 

@@ -1,22 +1,58 @@
 module aabblab.configs;
 
-import :choices;
 import :document;
-import aabb.base;
 import aabb.selection;
+import aabb.validation;
 
 namespace aabblab {
 
 namespace {
 
-/// What a config says of a kind.
+/// @throws aabb::input_error where there is no such choice.
+using choice_check = std::function<void(const aabb::strategy_choice&)>;
+
+/// One entry of a list: a name, or a table with a name and parameters, whose lists multiply.
+void add_strategies(const document& doc, const std::string& key, const node& value, const std::string& example,
+                    const choice_check& require, each_once<aabb::strategy_choice>& choices) {
+    const auto add = [&](const aabb::strategy_choice& choice) {
+        doc.at(value.line, [&] { require(choice); });
+        if (!choices.add(choice, to_text(choice))) doc.fail(value.line, key + " lists '" + to_text(choice) + "' twice");
+    };
+    if (value.kind == node_kind::text) return add(doc.at(value.line, [&] { return aabb::parse_strategy(value.text); }));
+    if (value.kind != node_kind::table) doc.fail_type(key, value, "a name, a table with a name, or a list of them");
+    const node& name = doc.needed(value, "name", key + " has no name; expected { name = \"" + example + "\", … }");
+    std::vector<alternatives> parameters;
+    for (const node& entry : value.items)
+        if (entry.key != "name") parameters.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
+    const std::vector<located_text> names = doc.alternatives_of("name", name);
+    for (const located_text& one : names) doc.at(one.line, [&] { require({one.text, {}}); });
+    std::vector<std::size_t> factors = sizes_of(parameters);
+    factors.push_back(names.size());
+    doc.require_few(value.line, "choices of " + key, factors, choices.all().size());
+    for (const located_text& one : names)
+        for (const std::vector<aabb::setting>& settings : multiplied(parameters)) add({one.text, settings});
+}
+
+/// A name, a table of a name and parameters, whose lists multiply, or a list of both.
+/// @param example a name that there is
+std::vector<aabb::strategy_choice> choices_of(const document& doc, const node& value, const std::string& example,
+                                              const choice_check& require) {
+    each_once<aabb::strategy_choice> choices;
+    if (value.kind != node_kind::list) {
+        add_strategies(doc, value.key, value, example, require, choices);
+        return choices.all();
+    }
+    if (value.items.empty()) doc.fail(value.line, value.key + " is an empty list; expected at least one name");
+    for (const node& item : value.items) add_strategies(doc, value.key, item, example, require, choices);
+    return choices.all();
+}
+
 struct listed_strategies {
     std::vector<std::optional<aabb::strategy_choice>> choices;  ///< one that is not there where it says nothing
     std::vector<std::string> others;                            ///< names of those that it plays without naming them
 };
 
-/// Adds those of a kind that { others_but = […] } in its list stands for: whatever is named neither there nor in the
-/// list.
+/// Adds what { others_but = […] } in the list of a kind stands for: whatever is named neither there nor in the list.
 void add_others(const document& doc, aabb::strategy_kind kind, const node& but, listed_strategies& listed) {
     std::set<std::string> named;
     for (const located_text& name : doc.texts_of(but.key, but)) {
@@ -74,7 +110,6 @@ void require_kinds(const document& doc, const node& compose) {
         if (std::ranges::find(known, entry.key) == known.end()) fail_key(doc, entry, known);
 }
 
-/// What tells it from others.
 std::string text_of(const aabb::composition& c) {
     return to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection);
 }
@@ -90,10 +125,7 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
     if (!list.add(c, text_of(c))) doc.fail(line, "this composition is listed twice: " + text_of(c));
 }
 
-}  // namespace
-
-/// What the kinds name, every combination; the last kind varies fastest. Those with strategies that are not named are
-/// left out where they are refused.
+/// What the kinds name, every combination, the last kind fastest; without those refused that have what is not named.
 std::vector<aabb::named_strategies> named_by(const document& doc, const node& compose, std::size_t listed) {
     aabb::by_kind<listed_strategies> of;
     std::vector<std::size_t> factors;
@@ -124,12 +156,9 @@ void add_compositions(const document& doc, const node& compose, each_once<aabb::
         add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
-namespace {
-
 bool is_automatic(const document& doc, const node& compose) {
     const node* value = compose.find("auto");
-    if (value && value->kind != node_kind::boolean) doc.fail_type("auto", *value, "true or false");
-    return value && value->text == "true";
+    return value && doc.flag_of("auto", *value);
 }
 
 /// What is refused with what is named is refused whatever the scene.
@@ -140,6 +169,33 @@ void add_automatic(const document& doc, const node& compose, std::vector<aabb::n
         if (std::ranges::find(automatic, named) != automatic.end()) doc.fail(compose.line, "this auto is listed twice");
         automatic.push_back(named);
     }
+}
+
+/// What choices have in common: their names, and the settings that they share.
+std::string common_text(std::span<const aabb::strategy_choice> choices) {
+    std::string text;
+    std::set<std::string> names;
+    for (const aabb::strategy_choice& choice : choices)
+        if (names.insert(choice.name).second) text += (text.empty() ? "" : ", ") + choice.name;
+    for (const aabb::setting& s : choices[0].settings)
+        if (std::ranges::all_of(choices, [&](const aabb::strategy_choice& choice) {
+                return std::ranges::find(choice.settings, s) != choice.settings.end();
+            }))
+            text += " " + s.name + "=" + s.value;
+    return text;
+}
+
+/// Of the kinds that the config names.
+std::string label_of(const node& methods, const error_curve& curve) {
+    if (!curve.triangles.empty()) return common_text(curve.triangles);
+    std::string label;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        if (!methods.find(name_of(kind))) continue;
+        std::vector<aabb::strategy_choice> choices;
+        for (const aabb::composition& c : curve.compositions) choices.push_back(c[kind]);
+        label += (label.empty() ? "" : " + ") + common_text(choices);
+    }
+    return label;
 }
 
 }  // namespace
@@ -169,6 +225,51 @@ void read_compositions(const document& doc, const node* compose, experiment& e) 
     e.compositions = list.all();
     if (e.compositions.empty() && e.automatic.empty())
         doc.fail(compose->line, "compose is an empty list; expected a table");
+}
+
+/// A triangle test alone is held against pairs of triangles; anything else is a composition, which plays scenes whole.
+error_curve curve_of(const document& doc, const node& written) {
+    doc.require_table("curve", written);
+    std::vector<std::string> known{"label"};
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) known.emplace_back(name_of(kind));
+    doc.require_keys(written, " of [[curve]]", known);
+    node methods = written;
+    std::erase_if(methods.items, [](const node& entry) { return entry.key == "label"; });
+    if (methods.items.empty())
+        doc.fail(written.line,
+                 "this curve has no method; expected triangle = \"exact\" or another test, or strategies "
+                 "of other kinds");
+    error_curve curve;
+    if (methods.items.size() == 1 && methods.items[0].key == name_of(aabb::strategy_kind::triangle)) {
+        curve.triangles = choices_of(doc, methods.items[0], "moller", [](const aabb::strategy_choice& choice) {
+            static_cast<void>(triangle_test_named(choice));
+        });
+    } else {
+        each_once<aabb::composition> list;
+        add_compositions(doc, methods, list);
+        curve.compositions = list.all();
+    }
+    const node* label = written.find("label");
+    curve.label = label ? doc.text_of("label", *label) : label_of(methods, curve);
+    if (curve.label.empty()) doc.fail(written.line, "the label of this curve is empty");
+    return curve;
+}
+
+std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice) {
+    std::vector<std::string> names = aabb::strategy_names(aabb::strategy_kind::triangle);
+    if (std::ranges::find(names, choice.name) != names.end()) return aabb::make_triangle_test(choice);
+    for (const aabb::library_test_info& test : aabb::library_tests()) {
+        if (test.name == choice.name) return aabb::make_library_test(choice);
+        names.push_back(test.name);
+    }
+    throw aabb::input_error(aabb::unknown_name("triangle", choice.name, names));
+}
+
+std::vector<std::string> constructing_tests() {
+    std::vector<std::string> names = aabb::strategy_names(aabb::strategy_kind::triangle);
+    for (const aabb::library_test_info& test : aabb::library_tests()) names.push_back(test.name);
+    std::erase_if(names, [](const std::string& name) { return !triangle_test_named({name, {}})->constructs(); });
+    return names;
 }
 
 }  // namespace aabblab

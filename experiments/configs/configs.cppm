@@ -4,7 +4,6 @@ export module aabblab.configs;
 import aabb.costs;
 import aabb.extreme;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.registry;
 import aabb.std;
 import aabblab.metrics;
@@ -13,8 +12,7 @@ import aabblab.scenes;
 
 export namespace aabblab {
 
-/// A program of others that finds pairs of boxes, in a process of its own: it is given a recording, and writes what it
-/// found and how long it took.
+/// A program of others, in a process of its own: it is given a recording, and writes pairs of boxes and its times.
 struct external_engine {
     std::string name;
     std::vector<std::string> command;  ///< as it is written; the names of three files are added
@@ -88,7 +86,6 @@ enum class experiment_size { full, quick };
 /// Those that construct what two triangles have in common too: strategies, then tests of libraries.
 [[nodiscard]] std::vector<std::string> constructing_tests();
 
-/// Generated pairs of triangles of one class.
 struct pair_set {
     std::string pair_class;
     bool in_double = false;
@@ -128,8 +125,7 @@ struct error_study {
 [[nodiscard]] error_study read_error_study(const std::filesystem::path& file, experiment_size size);
 [[nodiscard]] error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size);
 
-/// Pairs of triangles with their answers: `[[case]]` with name, source, about, class, first, second, intersect and,
-/// where doubles differ, intersect_double.
+/// `[[case]]`s with name, source, about, class, first, second, intersect and, where doubles differ, intersect_double.
 /// @throws aabb::input_error with file and line on malformed TOML, an unknown or missing key, a name that stands twice,
 /// what is no triangle, or a coordinate beyond the range of float.
 [[nodiscard]] std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file);
@@ -164,7 +160,6 @@ struct kept_costs {
 /// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
 
-/// The experiment as its results folder remembers it.
 [[nodiscard]] experiment_record record_of(const experiment& e);
 
 }  // namespace aabblab

@@ -1,7 +1,6 @@
 module aabblab.configs;
 
 import :document;
-import aabb.base;
 import aabb.simd;
 import aabblab.files;
 
@@ -17,7 +16,6 @@ std::string_view instructions() {
     return aabb::simd::width == of_avx512 ? "AVX-512" : aabb::simd::width == of_avx2 ? "AVX2" : "128 bits";
 }
 
-/// As TOML quotes it.
 std::string toml_string(std::string_view text) {
     std::string all = "\"";
     for (const char c : text) {
@@ -28,32 +26,28 @@ std::string toml_string(std::string_view text) {
 }
 
 std::string head_of(const document& doc, const std::string& key) {
-    const node* value = doc.root().find(key);
-    if (!value) doc.fail(1, "there is no " + key + "; aabblab calibrate writes it");
-    return doc.text_of(key, *value);
+    return doc.text_of(key, doc.needed(doc.root(), key, "there is no " + key + "; aabblab calibrate writes it"));
 }
 
 double cost_of(const document& doc, const node& table, const aabb::cost_info& cost) {
     const std::string key(cost.name);
-    const node* value = table.find(key);
-    if (!value) doc.fail(table.line, "[costs] has no " + key + "; aabblab calibrate writes all");
+    const node& value = doc.needed(table, key, "[costs] has no " + key + "; aabblab calibrate writes all");
     double number = 0;
-    if (value->kind == node_kind::integer || value->kind == node_kind::real)
-        std::from_chars(value->text.data(), value->text.data() + value->text.size(), number);
+    if (value.kind == node_kind::integer || value.kind == node_kind::real)
+        std::from_chars(value.text.data(), value.text.data() + value.text.size(), number);
     if (!(number > 0) || !std::isfinite(number))
-        doc.fail(value->line, key + " must be a number above 0" + (value->is_scalar() ? ", not " + value->text : ""));
+        doc.fail(value.line, key + " must be a number above 0" + (value.is_scalar() ? ", not " + value.text : ""));
     return number;
 }
 
 aabb::cost_model costs_in(const document& doc) {
-    const node* table = doc.root().find("costs");
-    if (!table) doc.fail(1, "there is no [costs]; aabblab calibrate writes it");
-    doc.require_table("costs", *table);
+    const node& table = doc.needed(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
+    doc.require_table("costs", table);
     std::vector<std::string> names;
     for (const aabb::cost_info& cost : aabb::cost_infos) names.emplace_back(cost.name);
-    doc.require_keys(*table, " of [costs]", names);
+    doc.require_keys(table, " of [costs]", names);
     aabb::cost_model costs;
-    for (const aabb::cost_info& cost : aabb::cost_infos) costs.*cost.value = cost_of(doc, *table, cost);
+    for (const aabb::cost_info& cost : aabb::cost_infos) costs.*cost.value = cost_of(doc, table, cost);
     return costs;
 }
 

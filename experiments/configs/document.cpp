@@ -5,7 +5,6 @@ module;
 module aabblab.configs;
 
 import :document;
-import aabb.base;
 import aabblab.files;
 
 namespace aabblab {
@@ -152,6 +151,7 @@ document::document(const std::string& as_written, std::string file, std::size_t 
         fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
         root_ = converted(toml::parse(text, file_));
+        root_.line = 1;
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
         if (error.description().find("redefine existing string 'compose'") != std::string_view::npos)
@@ -181,6 +181,24 @@ void document::require_keys(const node& table, const std::string& of, const std:
 
 void document::require_table(const std::string& key, const node& value) const {
     if (value.kind != node_kind::table) fail_type(key, value, "a table");
+}
+
+const node& document::needed(const node& table, std::string_view key, const std::string& sentence) const {
+    const node* value = table.find(key);
+    if (!value) fail(table.line, sentence);
+    return *value;
+}
+
+std::span<const node> document::tables_of(const std::string& key) const {
+    const node* list = root_.find(key);
+    if (!list) return {};
+    if (list->kind != node_kind::list) fail(list->line, key + " must stand in double brackets: [[" + key + "]]");
+    return list->items;
+}
+
+bool document::flag_of(const std::string& key, const node& value) const {
+    if (value.kind != node_kind::boolean) fail_type(key, value, "true or false");
+    return value.text == "true";
 }
 
 const std::string& document::text_of(const std::string& key, const node& value) const {

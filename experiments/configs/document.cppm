@@ -1,7 +1,6 @@
 /// A TOML document as plain values that know their line, so that the rest of the config reader is free of TOML.
 module aabblab.configs:document;
 
-import aabb.base;
 import aabb.policy;
 import aabb.std;
 
@@ -24,7 +23,6 @@ struct node {
     [[nodiscard]] bool is_scalar() const { return kind < node_kind::date; }
 };
 
-/// A scalar and where it stands.
 struct located_text {
     std::string text;
     int line;
@@ -40,7 +38,6 @@ public:
              std::string_view what = "a config");
 
     [[nodiscard]] const node& root() const { return root_; }
-    /// Of the config.
     [[nodiscard]] std::filesystem::path folder() const { return std::filesystem::path(file_).parent_path(); }
 
     /// "FILE:LINE"
@@ -50,8 +47,7 @@ public:
     [[noreturn]] void fail_type(const std::string& key, const node& value, std::string_view expected) const;
 
     /// Calls a function whose input_error lacks the place.
-    template <class Function>
-    decltype(auto) at(int line, Function function) const {
+    decltype(auto) at(int line, auto function) const {
         try {
             return function();
         } catch (const aabb::input_error& error) {
@@ -62,14 +58,18 @@ public:
     /// Refuses keys of a table that are not known. `of` is what the keys belong to, as in " of [measure]".
     void require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const;
     void require_table(const std::string& key, const node& value) const;
+    /// Refuses a table without this key by the sentence.
+    [[nodiscard]] const node& needed(const node& table, std::string_view key, const std::string& sentence) const;
+    /// Those of [[key]]; none where there is no such key.
+    [[nodiscard]] std::span<const node> tables_of(const std::string& key) const;
+    [[nodiscard]] bool flag_of(const std::string& key, const node& value) const;
     [[nodiscard]] const std::string& text_of(const std::string& key, const node& value) const;
     [[nodiscard]] std::uint64_t integer_of(const std::string& key, const node& value, std::uint64_t least) const;
     /// A text or a list of texts.
     [[nodiscard]] std::vector<located_text> texts_of(const std::string& key, const node& value) const;
     /// What a key multiplies by: a scalar, or the scalars of a list.
     [[nodiscard]] std::vector<located_text> alternatives_of(const std::string& key, const node& value) const;
-    /// Refuses lists that multiply to more than an experiment may have, before anything is made of them: a short text
-    /// can ask for more than any machine holds.
+    /// Refuses lists that multiply to too much, before anything is made of them: a short text can ask for anything.
     /// @param of what they multiply to, as in "compositions"
     /// @param factors how long the lists are
     /// @param more that are there already
@@ -106,7 +106,6 @@ using alternatives = std::pair<std::string, std::vector<located_text>>;
 /// @throws aabb::input_error where it is not there, is a folder or cannot be read.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what);
 
-/// How many alternatives each key has.
 [[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys);
 /// Every choice of one alternative a key; the first key varies slowest.
 [[nodiscard]] std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys);

@@ -1,11 +1,10 @@
 module aabblab.configs;
 
 import :document;
-import aabb.base;
 
 namespace aabblab {
 
-// Defined in curves.cpp, experiment.cpp and scenes.cpp.
+// Defined in compose.cpp, experiment.cpp and scenes.cpp.
 error_curve curve_of(const document& doc, const node& written);
 std::string name_of(const document& doc);
 std::string text_of_config(const std::filesystem::path& file);
@@ -18,7 +17,6 @@ namespace {
 const std::vector<std::string> known_precisions = {"float", "double"};
 constexpr std::uint64_t quick_share = 20;  // of the pairs, unless the config says how many
 
-/// How many pairs at this size of the study.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
@@ -83,18 +81,11 @@ void require_meshes(const document& doc, const node& scene) {
     }
 }
 
-std::vector<node> tables_of(const document& doc, const std::string& key) {
-    const node* list = doc.root().find(key);
-    if (!list) return {};
-    if (list->kind != node_kind::list) doc.fail(list->line, key + " must stand in double brackets: [[" + key + "]]");
-    return list->items;
-}
-
 /// All of one sort, each method in one of them.
 std::vector<error_curve> curves_of(const document& doc) {
     std::vector<error_curve> curves;
     each_once<bool> methods;
-    for (const node& one : tables_of(doc, "curve")) {
+    for (const node& one : doc.tables_of("curve")) {
         curves.push_back(curve_of(doc, one));
         const error_curve& curve = curves.back();
         if (std::ranges::count(curves, curve.label, &error_curve::label) > 1)
@@ -124,14 +115,14 @@ void refuse_keys(const document& doc, std::initializer_list<std::string_view> ke
 
 std::vector<metric_plot> plots_of(const document& doc) {
     std::vector<metric_plot> plots;
-    for (const node& one : tables_of(doc, "plot")) {
+    for (const node& one : doc.tables_of("plot")) {
         doc.require_table("plot", one);
         doc.require_keys(one, " of [[plot]]", {"x", "y"});
         const auto metric_of = [&](const char* key) {
-            const node* value = one.find(key);
-            if (!value) doc.fail(one.line, std::string("this plot has no ") + key + "; expected the name of a metric");
-            const std::string& name = doc.text_of(key, *value);
-            doc.at(value->line, [&] { static_cast<void>(metric_named(name)); });
+            const node& value =
+                doc.needed(one, key, std::string("this plot has no ") + key + "; expected the name of a metric");
+            const std::string& name = doc.text_of(key, value);
+            doc.at(value.line, [&] { static_cast<void>(metric_named(name)); });
             return name;
         };
         plots.push_back({metric_of("x"), metric_of("y")});
@@ -162,7 +153,7 @@ experiment whole_of(const document& doc, const error_study& study, const std::st
 }
 
 std::vector<pair_set> pairs_of(const document& doc, const std::string& key, experiment_size size) {
-    const std::vector<node> tables = tables_of(doc, key);
+    const std::span<const node> tables = doc.tables_of(key);
     if (tables.empty()) return {};
     const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
@@ -175,7 +166,7 @@ std::vector<pair_set> pairs_of(const document& doc, const std::string& key, expe
 void read_triangles(const document& doc, experiment_size size, error_study& study) {
     study.pairs = pairs_of(doc, "pairs", size);
     require_doubles_taken(doc, study);
-    for (const node& one : tables_of(doc, "scene")) require_meshes(doc, one);
+    for (const node& one : doc.tables_of("scene")) require_meshes(doc, one);
     if (doc.root().find("scene")) {
         experiment played;
         read_scenes(doc, size, played);

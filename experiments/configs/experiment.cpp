@@ -1,13 +1,6 @@
-module;
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
-#include <ios>
-
 module aabblab.configs;
 
 import :document;
-import aabb.base;
 import aabb.selection;
 import aabb.validation;
 
@@ -27,18 +20,6 @@ void require_plain_name(const document& doc, const node& name) {
         doc.fail(name.line, "the name '" + text + "' must consist of letters, digits, - and _");
 }
 
-}  // namespace
-
-/// Results stand in a folder of this name.
-std::string name_of(const document& doc) {
-    const node* name = doc.root().find("name");
-    if (!name) doc.fail(1, "this config has no name; expected name = \"…\"");
-    require_plain_name(doc, *name);
-    return doc.text_of("name", *name);
-}
-
-namespace {
-
 constexpr std::size_t quick_repeats = 3;
 constexpr std::size_t most_repeats = 1'000'000;
 
@@ -56,8 +37,7 @@ std::vector<std::string> engines_of(const document& doc) {
     return names;
 }
 
-/// A program as it is named, or, as files are, from the folder of the config. One without a slash is looked for in
-/// PATH.
+/// A program as it is named, or, as files are, from the folder of the config; without a slash one in PATH.
 std::string found_program(const document& doc, const std::string& name) {
     if (name.find('/') == std::string::npos) return name;
     const std::filesystem::path found = found_file(name, doc.folder());
@@ -69,25 +49,21 @@ external_engine external_of(const document& doc, const node& table) {
     doc.require_table("external", table);
     doc.require_keys(table, " of [[external]]", {"name", "command", "exact", "timeout_s"});
     external_engine engine;
-    const node* name = table.find("name");
-    if (!name) doc.fail(table.line, "this [[external]] has no name; expected name = \"…\"");
-    engine.name = doc.text_of("name", *name);
-    require_plain_name(doc, *name);
+    const node& name = doc.needed(table, "name", "this [[external]] has no name; expected name = \"…\"");
+    engine.name = doc.text_of("name", name);
+    require_plain_name(doc, name);
     if (engine.name == contender_name::automatic ||
         std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
         std::ranges::count(aabb::left_out_engines(), engine.name, &aabb::left_out_engine::name) > 0)
-        doc.fail(name->line, "there is an engine '" + engine.name + "' already; give this one another name");
-    const node* command = table.find("command");
-    if (!command) doc.fail(table.line, "'" + engine.name + "' has no command; expected command = [\"…\"]");
-    for (const located_text& word : doc.texts_of("command", *command)) engine.command.push_back(word.text);
+        doc.fail(name.line, "there is an engine '" + engine.name + "' already; give this one another name");
+    const node& command =
+        doc.needed(table, "command", "'" + engine.name + "' has no command; expected command = [\"…\"]");
+    for (const located_text& word : doc.texts_of("command", command)) engine.command.push_back(word.text);
     if (engine.command.empty() || engine.command[0].empty())
-        doc.fail(command->line, "the command of '" + engine.name + "' is empty; expected a program");
-    doc.at(command->line, [&] { engine.program = found_program(doc, engine.command[0]); });
-    engine.place = doc.place(command->line);
-    if (const node* exact = table.find("exact")) {
-        if (exact->kind != node_kind::boolean) doc.fail_type("exact", *exact, "true or false");
-        engine.exact = exact->text == "true";
-    }
+        doc.fail(command.line, "the command of '" + engine.name + "' is empty; expected a program");
+    doc.at(command.line, [&] { engine.program = found_program(doc, engine.command[0]); });
+    engine.place = doc.place(command.line);
+    if (const node* exact = table.find("exact")) engine.exact = doc.flag_of("exact", *exact);
     if (const node* timeout = table.find("timeout_s")) {
         constexpr std::uint64_t most = 1'000'000;
         engine.timeout_s = doc.integer_of("timeout_s", *timeout, 1);
@@ -98,11 +74,7 @@ external_engine external_of(const document& doc, const node& table) {
 
 std::vector<external_engine> externals_of(const document& doc) {
     std::vector<external_engine> all;
-    const node* externals = doc.root().find("external");
-    if (!externals) return all;
-    if (externals->kind != node_kind::list)
-        doc.fail(externals->line, "external must stand in double brackets: [[external]]");
-    for (const node& table : externals->items) {
+    for (const node& table : doc.tables_of("external")) {
         external_engine engine = external_of(doc, table);
         if (std::ranges::find(all, engine.name, &external_engine::name) != all.end())
             doc.fail(table.line, "two [[external]] have the name '" + engine.name + "'");
@@ -185,6 +157,13 @@ void read_processes(const document& doc, experiment& e) {
 
 }  // namespace
 
+/// Results stand in a folder of this name.
+std::string name_of(const document& doc) {
+    const node& name = doc.needed(doc.root(), "name", "this config has no name; expected name = \"…\"");
+    require_plain_name(doc, name);
+    return doc.text_of("name", name);
+}
+
 void read_measure(const document& doc, experiment_size size, experiment& e) {
     const bool quick = size == experiment_size::quick;
     if (quick) e.repeats = quick_repeats;
@@ -227,7 +206,6 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     return e;
 }
 
-/// What stands in a config.
 std::string text_of_config(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         for (const char* folder : {AABBLAB_CONFIGS, AABBLAB_CONFIGS "/errors"})
@@ -275,11 +253,7 @@ std::string hash_of(const experiment& e) {
     if (e.how != asking{})
         all +=
             "\n" + std::string(question_names[static_cast<std::size_t>(e.how.ask)]) + (e.how.cold ? " cold" : " warm");
-    all += "\n" + e.content_digest;
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx",
-                  static_cast<unsigned long long>(XXH3_64bits(all.data(), all.size())));
-    return digits.data();
+    return hash_of_text(all + "\n" + e.content_digest);
 }
 
 experiment_record record_of(const experiment& e) {

@@ -1,9 +1,7 @@
 module aabblab.configs;
 
 import :document;
-import aabb.base;
 import aabb.digest;
-import aabb.geometry;
 
 namespace aabblab {
 
@@ -114,16 +112,12 @@ void add_meshes(aabb::digest& digest, std::span<const aabb::mesh> meshes) {
 }
 
 /// What a file makes a scene play. Played to its end, a file that is malformed anywhere is refused now.
-void add_frames(aabb::digest& digest, aabb::box_scene& scene) {
-    digest.add(std::array{static_cast<std::uint32_t>(scene.objects()), static_cast<std::uint32_t>(scene.frames())});
-    for (std::vector<aabb::box> boxes; scene.next(boxes);)
-        for (const aabb::box& b : boxes) digest.add(std::bit_cast<std::array<std::uint32_t, 6>>(b));
-}
-void add_frames(aabb::digest& digest, aabb::mesh_scene& scene) {
-    digest.add(
-        std::array{static_cast<std::uint32_t>(scene.mesh_of.size()), static_cast<std::uint32_t>(scene.frames())});
-    for (std::vector<aabb::pose> poses; scene.next(poses);)
-        for (const aabb::pose& p : poses) digest.add(std::bit_cast<std::array<std::uint32_t, 24>>(p));
+/// @tparam Placed what a frame has of each object, a box or a pose
+template <class Placed>
+void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
+    digest.add(std::array{static_cast<std::uint32_t>(objects), static_cast<std::uint32_t>(scene.frames())});
+    for (std::vector<Placed> frame; scene.next(frame);)
+        for (const Placed& p : frame) digest.add(std::bit_cast<std::array<std::uint32_t, sizeof(Placed) / 4>>(p));
 }
 
 /// Makes the scene once and digests what stands in its meshes and its file.
@@ -131,10 +125,10 @@ void add_content(aabb::digest& digest, const scene_choice& choice, const scene_i
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
         add_meshes(digest, scene->meshes);
-        if (info.plays_file) add_frames(digest, *scene);
+        if (info.plays_file) add_frames<aabb::pose>(digest, *scene, scene->mesh_of.size());
     } else {
         const std::unique_ptr<aabb::box_scene> scene = make_box_scene(choice);
-        if (info.plays_file) add_frames(digest, *scene);
+        if (info.plays_file) add_frames<aabb::box>(digest, *scene, scene->objects());
     }
 }
 
@@ -192,10 +186,9 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
                 std::vector<std::string>& notes, each_once<written_scene>& scenes) {
     doc.require_table("scene", written);
     const node scene = sized(doc, written, size);
-    const node* kinds = scene.find("kind");
-    if (!kinds)
-        doc.fail(written.line, "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
-    const std::vector<located_text> names = doc.alternatives_of("kind", *kinds);
+    const node& kinds =
+        doc.needed(scene, "kind", "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
+    const std::vector<located_text> names = doc.alternatives_of("kind", kinds);
     for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
     const node* own_seed = scene.find("seed");
     const std::vector<std::optional<std::uint64_t>> all_seeds = seeds_of(doc, own_seed ? own_seed : seed);
@@ -233,15 +226,14 @@ const node* seed_of(const document& doc, experiment_size size) {
 }
 
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
-    const node* scenes = doc.root().find("scene");
-    if (!scenes) doc.fail(1, "this config has no scene; expected at least one [[scene]]");
-    if (scenes->kind != node_kind::list) doc.fail(scenes->line, "scene must stand in double brackets: [[scene]]");
+    const node& scenes = doc.needed(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
+    const std::span<const node> tables = doc.tables_of("scene");
     const node* seed = seed_of(doc, size);
     each_once<written_scene> written;
-    for (const node& scene : scenes->items) add_scenes(doc, scene, seed, size, e.notes, written);
+    for (const node& scene : tables) add_scenes(doc, scene, seed, size, e.notes, written);
     if (written.all().empty())
-        doc.fail(scenes->line, scenes->items.empty() ? "this config has no scene; expected at least one [[scene]]"
-                                                     : "every scene of this config is left out by quick = false");
+        doc.fail(scenes.line, tables.empty() ? "this config has no scene; expected at least one [[scene]]"
+                                             : "every scene of this config is left out by quick = false");
     aabb::digest content;
     for (const written_scene& scene : written.all()) {
         require_playable(doc, scene, e);

@@ -1,8 +1,6 @@
 module aabblab.configs;
 
 import :document;
-import aabb.base;
-import aabb.geometry;
 
 namespace aabblab {
 
@@ -11,15 +9,11 @@ namespace {
 constexpr std::size_t longest_file = 16'777'216;
 
 const node& entry_of(const document& doc, const node& one, std::string_view key) {
-    const node* found = one.find(key);
-    if (!found) doc.fail(one.line, "this case has no " + std::string(key));
-    return *found;
+    return doc.needed(one, key, "this case has no " + std::string(key));
 }
 
 bool truth_of(const document& doc, const node& one, const std::string& key) {
-    const node& value = entry_of(doc, one, key);
-    if (value.kind != node_kind::boolean) doc.fail_type(key, value, "true or false");
-    return value.text == "true";
+    return doc.flag_of(key, entry_of(doc, one, key));
 }
 
 double coordinate_of(const document& doc, const std::string& key, const node& value) {
@@ -70,11 +64,9 @@ aabb::triangle_case case_of(const document& doc, const node& one) {
 std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of cases");
     doc.require_keys(doc.root(), "", {"case"});
-    const node* list = doc.root().find("case");
-    if (!list) throw aabb::input_error(file + " has no cases; expected [[case]]");
-    if (list->kind != node_kind::list) doc.fail(list->line, "case must stand in double brackets: [[case]]");
+    if (!doc.root().find("case")) throw aabb::input_error(file + " has no cases; expected [[case]]");
     each_once<aabb::triangle_case> cases;
-    for (const node& one : list->items) {
+    for (const node& one : doc.tables_of("case")) {
         const aabb::triangle_case made = case_of(doc, one);
         if (!cases.add(made, made.name)) doc.fail(one.line, "two cases have the name '" + made.name + "'");
     }

@@ -34,10 +34,6 @@ struct error_point {
 std::vector<error_point> measure_errors(const error_study& study,
                                         const std::function<void(std::span<const error_point>)>& finished = {});
 
-/// The pairs of triangles whose boxes overlap, of objects whose boxes do, over all frames: the second triangle carried
-/// into the frame of the first one's mesh, as a tree's leaves are.
-[[nodiscard]] std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& scene);
-
 /// The table of an errors.csv: a row for each method and set of pairs, every number in full.
 [[nodiscard]] table error_rows(std::span<const error_point> points);
 /// The inverse.

@@ -3,17 +3,64 @@ module;
 
 module aabblab.errors;
 
-import :turns;
-import aabb.base;
 import aabb.pipeline;
+import aabb.registry;
+import aabblab.fmt;
+import aabblab.numbers;
 import aabblab.progress;
+import aabblab.stopwatch;
 
 namespace aabblab {
 
 namespace {
 
+/// Triangle tests that take turns with batches of pairs. Each batch begins with another test, so that none always finds
+/// the cache as the same one left it.
+/// @tparam Point what is found of a test
+template <class Point>
+class tests_in_turn {
+public:
+    struct one {
+        Point point;
+        std::unique_ptr<aabb::triangle_test> test;
+        std::size_t share = 1;   ///< of how many batches it takes part in one
+        std::vector<double> ns;  ///< a pair, of each batch
+    };
+
+    void add(one added) { all_.push_back(std::move(added)); }
+
+    /// @param pairs in the batch
+    /// @param work is timed, for each test
+    /// @param judge follows it, untimed
+    template <class Work, class Judge>
+    void play(std::size_t pairs, Work work, Judge judge) {
+        for (std::size_t i = 0; i < all_.size(); ++i) {
+            one& turn = all_[(i + batches_) % all_.size()];
+            if (batches_ % turn.share != 0) continue;
+            const double ms = milliseconds_of([&] { work(*turn.test); });
+            turn.ns.push_back(ms * 1e6 / static_cast<double>(pairs));
+            judge(turn.point);
+        }
+        ++batches_;
+    }
+
+    /// @param time the member of a point that gets the quartiles of its times
+    [[nodiscard]] std::vector<Point> points(quartiles Point::* time) {
+        std::vector<Point> points;
+        for (one& o : all_) {
+            if (!o.ns.empty()) o.point.*time = quartiles_of(o.ns);
+            points.push_back(std::move(o.point));
+        }
+        return points;
+    }
+
+private:
+    std::vector<one> all_;
+    std::size_t batches_ = 0;
+};
+
 /// As many pairs as stay in the processor's cache with their answers.
-constexpr std::size_t batch_size = 4096;
+constexpr std::size_t pairs_in_batch = 4096;
 
 /// The methods of a study on their way through one set of pairs.
 class one_set {
@@ -62,12 +109,48 @@ std::vector<error_point> points_of(const error_study& study, const pair_set& set
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<Real>> batch;
     for (std::uint64_t left = set.count; left > 0; left -= batch.size()) {
-        batch.resize(std::min<std::uint64_t>(left, batch_size));
+        batch.resize(std::min<std::uint64_t>(left, pairs_in_batch));
         source.next(batch);
         all.play(std::span<const aabb::triangle_pair<Real>>(batch));
         shown.at(done += batch.size());
     }
     return all.points();
+}
+
+/// Appends the pairs of two objects.
+void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
+                    std::vector<aabb::triangle_pair<float>>& candidates) {
+    const aabb::box bounds_b = aabb::bounds_of(b);
+    const aabb::relative_pose to_a(pose_a, pose_b, bounds_b);
+    if (!aabb::overlaps(aabb::bounds_of(a), to_a(bounds_b))) return;
+    std::vector<aabb::box> boxes;
+    std::vector<aabb::triangle3f> carried;
+    for (std::uint32_t t = 0; t < a.triangle_count(); ++t) boxes.push_back(aabb::bounds_of(a.triangle(t)));
+    for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
+        carried.push_back(to_a(b.triangle(t)));
+        boxes.push_back(aabb::bounds_of(carried.back()));
+    }
+    const auto search = aabb::compose_global_search({}, aabb::instrumentation::none);
+    for (std::uint32_t id = 0; id < boxes.size(); ++id) search->insert(id);
+    search->update(boxes);
+    std::vector<aabb::index_pair> pairs;
+    search->search(pairs);
+    for (const aabb::index_pair p : pairs)
+        if (p.a < a.triangle_count() && p.b >= a.triangle_count())
+            candidates.push_back({a.triangle(p.a), carried[p.b - a.triangle_count()]});
+}
+
+/// The pairs of triangles whose boxes overlap, of objects whose boxes do, over all frames: the second triangle carried
+/// into the frame of the first one's mesh, as a tree's leaves are.
+std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& choice) {
+    const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
+    std::vector<aabb::triangle_pair<float>> candidates;
+    const auto mesh_of = [&](std::size_t object) -> const aabb::mesh& { return scene->meshes[scene->mesh_of[object]]; };
+    for (std::vector<aabb::pose> poses; scene->next(poses);)
+        for (std::size_t a = 0; a < poses.size(); ++a)
+            for (std::size_t b = a + 1; b < poses.size(); ++b)
+                add_candidates(mesh_of(a), poses[a], mesh_of(b), poses[b], candidates);
+    return candidates;
 }
 
 std::vector<error_point> points_of(const error_study& study, const scene_choice& scene) {
@@ -78,9 +161,94 @@ std::vector<error_point> points_of(const error_study& study, const scene_choice&
     // A walk meets them in an order that no processor can guess; a search finds them row by row.
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
     const std::span<const aabb::triangle_pair<float>> rest(pairs);
-    for (std::size_t at = 0; at < pairs.size(); at += batch_size)
-        all.play(rest.subspan(at, std::min(batch_size, pairs.size() - at)));
+    for (std::size_t at = 0; at < pairs.size(); at += pairs_in_batch)
+        all.play(rest.subspan(at, std::min(pairs_in_batch, pairs.size() - at)));
     return all.points();
+}
+
+constexpr std::size_t hits_in_batch = 1024;
+constexpr std::uint64_t most_pairs_a_hit = 1000;
+/// Tests of libraries take part in one batch of so many: CGAL's takes a hundred times as long as ours.
+constexpr std::size_t library_share = 16;
+
+void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
+    greatest.of_bound = std::max(greatest.of_bound, errors.of_bound);
+    if (errors.greatest <= greatest.greatest) return;
+    greatest.greatest = errors.greatest;
+    greatest.bound = errors.bound;
+}
+
+/// The tests that construct on their way through the hits of one class.
+class one_class {
+public:
+    explicit one_class(const pair_set& set) {
+        const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
+        for (const std::string& name : constructing_tests()) {
+            const bool of_library = std::ranges::find(strategies, name) == strategies.end();
+            tests_.add({{.pairs = set.pair_class, .in_double = set.in_double, .triangle = name},
+                        triangle_test_named({name, {}}),
+                        of_library ? library_share : 1,
+                        {}});
+        }
+    }
+
+    void play(std::span<const aabb::triangle_pair<double>> hits) {
+        std::deque<aabb::exact_intersection> exact;
+        for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);
+        std::vector<aabb::triangle_intersection> made(hits.size());
+        const auto construct = [&](aabb::triangle_test& test) {
+            for (std::size_t k = 0; k < hits.size(); ++k) made[k] = test.intersection(hits[k].a, hits[k].b);
+        };
+        tests_.play(hits.size(), construct, [&](hit_point& point) {
+            point.count += hits.size();
+            for (std::size_t k = 0; k < hits.size(); ++k) {
+                const aabb::corner_errors errors = exact[k].errors_of(made[k]);
+                ++point.kinds[static_cast<std::size_t>(exact[k].kind())];
+                point.different += static_cast<std::uint64_t>(!errors.same);
+                point.outside += static_cast<std::uint64_t>(errors.same && !errors.within);
+                take(point.greatest, errors);
+            }
+        });
+    }
+
+    [[nodiscard]] std::vector<hit_point> points(std::uint64_t tried) {
+        std::vector<hit_point> points = tests_.points(&hit_point::ns_a_hit);
+        for (hit_point& p : points) p.tried = tried;
+        return points;
+    }
+
+private:
+    tests_in_turn<hit_point> tests_;
+};
+
+template <class Real>
+std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint64_t done) {
+    one_class all(set);
+    pair_source<Real> source(set.pair_class, set.seed);
+    std::vector<aabb::triangle_pair<double>> batch;
+    std::uint64_t tried = 0;
+    std::uint64_t hits = 0;
+    const auto play = [&] {
+        all.play(batch);
+        batch.clear();
+        shown.at(done + hits);
+    };
+    while (hits < set.count && tried / most_pairs_a_hit < set.count) {
+        aabb::triangle_pair<Real> p{};
+        source.next({&p, 1});
+        ++tried;
+        if (!aabb::exactly_intersect(p.a, p.b)) continue;
+        ++hits;
+        batch.push_back({in_double(p.a), in_double(p.b)});
+        if (batch.size() == hits_in_batch) play();
+    }
+    if (!batch.empty()) play();
+    return all.points(tried);
+}
+
+/// "0", "0.53", "4.4e-16".
+std::string number_text(double number) {
+    return fmt::format("{:.2g}", number);
 }
 
 }  // namespace
@@ -106,6 +274,33 @@ std::vector<error_point> measure_errors(const error_study& study,
         shown.at(i + 1);
     }
     return points;
+}
+
+std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
+                                    const std::function<void(std::span<const hit_point>)>& finished) {
+    std::uint64_t all = 0;
+    for (const pair_set& set : sets) all += set.count;
+    progress shown("hits", all);
+    std::vector<hit_point> points;
+    std::uint64_t done = 0;
+    for (const pair_set& set : sets) {
+        for (hit_point& p : set.in_double ? points_of<double>(set, shown, done) : points_of<float>(set, shown, done))
+            points.push_back(std::move(p));
+        if (finished) finished(points);
+        shown.at(done += set.count);
+    }
+    return points;
+}
+
+table hit_summary(std::span<const hit_point> points, bool in_double) {
+    table t = empty_table({"pairs", "triangle"}, {"hits", "differ", "error/bound", "error", "bound", "ns a hit"});
+    for (const hit_point& p : points) {
+        if (p.in_double != in_double) continue;
+        t.rows.push_back({p.pairs, p.triangle, grouped(p.count), grouped(p.different), number_text(p.greatest.of_bound),
+                          number_text(p.greatest.greatest), number_text(p.greatest.bound),
+                          fmt::format("{:.0f}", p.ns_a_hit.median)});
+    }
+    return t;
 }
 
 }  // namespace aabblab

@@ -1,29 +1,44 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.errors;
 
-import :front;
+import aabb.registry;
+import aabblab.fmt;
+import aabblab.metrics;
 import aabblab.numbers;
+import aabblab.results;
+import aabblab.trials;
 
 namespace aabblab {
 
 namespace {
 
+/// Two numbers of a method; less is better in both.
+using cost = std::array<double, 2>;
+
+/// Those that nothing else is better than in one number and at least as good in the other, by the first; of equal ones
+/// one.
+std::vector<std::size_t> front_of(std::span<const cost> costs) {
+    std::vector<std::size_t> order(costs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return costs[i]; });
+    std::vector<std::size_t> front;
+    for (const std::size_t i : order)
+        if (front.empty() || costs[i][1] < costs[front.back()][1]) front.push_back(i);
+    return front;
+}
+
+/// A text as part of the name of a file.
+std::string file_name(std::string text) {
+    for (char& c : text)
+        if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '_') c = '-';
+    return text.substr(0, 100);
+}
+
 /// A method over several sets of pairs.
-struct pooled {
-    std::string curve;
-    aabb::strategy_choice triangle;
-    std::uint64_t count = 0;
-    std::uint64_t intersecting = 0;
-    std::uint64_t false_negatives = 0;
-    std::uint64_t false_positives = 0;
+struct pooled : error_point {
     double ns_of_sets = 0;  ///< sum of medians
     std::size_t sets = 0;
 
-    [[nodiscard]] double error() const {
-        return static_cast<double>(false_negatives + false_positives) / static_cast<double>(count);
-    }
+    [[nodiscard]] double error() const { return static_cast<double>(wrong()) / static_cast<double>(count); }
     [[nodiscard]] double ns() const { return ns_of_sets / static_cast<double>(sets); }
 };
 
@@ -33,7 +48,11 @@ std::vector<pooled> pooled_over(std::span<const error_point> points) {
     for (const error_point& p : points) {
         auto found =
             std::ranges::find_if(all, [&](const pooled& m) { return m.curve == p.curve && m.triangle == p.triangle; });
-        if (found == all.end()) found = all.insert(all.end(), {.curve = p.curve, .triangle = p.triangle});
+        if (found == all.end()) {
+            found = all.emplace(found);
+            found->curve = p.curve;
+            found->triangle = p.triangle;
+        }
         found->count += p.count;
         found->intersecting += p.intersecting;
         found->false_negatives += p.false_negatives;
@@ -64,12 +83,8 @@ std::string share_text(std::uint64_t wrong, std::uint64_t of) {
 }
 
 std::string name_of(pair_group group) {
-    switch (group) {
-        case pair_group::of_floats: return "float";
-        case pair_group::of_doubles: return "double";
-        case pair_group::of_meshes: break;
-    }
-    return "meshes";
+    constexpr std::array names{"float", "double", "meshes"};
+    return names[static_cast<std::size_t>(group)];
 }
 
 std::vector<std::string> sets_in(std::span<const error_point> points) {
@@ -86,21 +101,19 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
                                     "gets nothing wrong stands on the line of one wrong answer in N = {} pairs; by the "
                                     "rule of three its share is then below 3/N with 95 % certainty.",
                                     what, grouped(methods.front().count)),
-             .x = {"time a pair (ns)", true, {}},
-             .y = {"share of wrong answers", true, {}},
-             .lines = {},
-             .marks = {}};
+             .x = {"time a pair (ns)", true},
+             .y = {"share of wrong answers", true}};
     const double floor = 1 / static_cast<double>(methods.front().count);
     const auto point_of = [&](const pooled& m) {
         const double share = std::max(floor, m.error());
-        return figure_point{m.ns(), share, share, share};
+        return figure_point{m.ns(), share};
     };
     for (const pooled& m : methods) {
         auto line = std::ranges::find(f.lines, m.curve, &series::label);
-        if (line == f.lines.end()) line = f.lines.insert(f.lines.end(), {m.curve, series_style::line, {}});
+        if (line == f.lines.end()) line = f.lines.insert(f.lines.end(), {m.curve});
         line->points.push_back(point_of(m));
     }
-    series front{"not dominated", series_style::line, {}};
+    series front{"not dominated"};
     std::vector<cost> costs;
     for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
     for (const std::size_t i : front_of(costs)) front.points.push_back(point_of(methods[i]));
@@ -109,6 +122,126 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
     f.lines.push_back({"nothing wrong (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
     return f;
 }
+
+/// Where a composition stands in a plot.
+struct place {
+    std::string label;
+    double x;
+    double y;
+};
+
+class plotted_scene {
+public:
+    plotted_scene(const scene_summary& scene, const metric_plot& plot)
+        : scene_(scene), x_(metric_named(plot.x)), y_(metric_named(plot.y)) {}
+
+    /// Empty where there is nothing to choose from.
+    [[nodiscard]] std::string statement_of(std::span<const error_curve> curves) const {
+        std::vector<place> all;
+        for (const error_curve& curve : curves)
+            for (const aabb::composition& c : curve.compositions)
+                if (std::optional<place> at = place_of(c)) {
+                    // A curve of one composition is named as its config names it.
+                    if (curve.compositions.size() == 1) at->label = curve.label;
+                    all.push_back(*std::move(at));
+                }
+        const std::vector<std::size_t> front = front_of(costs_of(all));
+        if (front.size() < 2 || !has_front()) return {};
+        const place& first = all[front.front()];
+        const place& last = all[front.back()];
+        return fmt::format("In {}, {} has the best {}, {}, with a {} of {}; {} has the best {}, {}, with a {} of {}.",
+                           title(), first.label, x_.name, value_text(x_, first.x), y_.name, value_text(y_, first.y),
+                           last.label, y_.name, value_text(y_, last.y), x_.name, value_text(x_, last.x));
+    }
+
+    [[nodiscard]] figure figure_of(std::span<const error_curve> curves) const {
+        figure f{.name = "",
+                 .caption = fmt::format("{} over {} in {}: each method over its knob.", y_.name, x_.name, title()),
+                 .x = {label_of(x_), false},
+                 .y = {label_of(y_), false}};
+        std::vector<place> all;
+        for (const error_curve& curve : curves) {
+            series line{curve.label};
+            for (const aabb::composition& c : curve.compositions)
+                if (const std::optional<place> at = place_of(c)) {
+                    line.points.push_back(point_of(*at));
+                    all.push_back(*at);
+                }
+            f.lines.push_back(std::move(line));
+        }
+        // No logarithm shows a zero.
+        f.x.logarithmic = std::ranges::all_of(all, [](const place& at) { return at.x > 0; });
+        f.y.logarithmic = has_floor() || std::ranges::all_of(all, [](const place& at) { return at.y > 0; });
+        if (has_front()) {
+            // Below the curves.
+            f.lines.insert(f.lines.begin(), front(all));
+            f.caption += " What no other is better than in both is joined by a line.";
+        }
+        if (has_floor()) {
+            f.lines.push_back({"nothing wrong (1/N)", series_style::level, {{1, least_share()}}});
+            f.caption += fmt::format(" What gets nothing wrong stands on the line of one wrong pair in N = {}.",
+                                     grouped(exact_pairs()));
+        }
+        return f;
+    }
+
+    [[nodiscard]] std::string title() const {
+        const std::string parameters = parameters_text(scene_.scene);
+        return scene_.scene.kind + (parameters.empty() ? "" : " " + parameters);
+    }
+
+private:
+    [[nodiscard]] static std::string label_of(const metric& m) {
+        return m.name + (m.unit.empty() ? "" : " (" + m.unit + ")");
+    }
+
+    [[nodiscard]] std::optional<place> place_of(const aabb::composition& c) const {
+        const contender_name name = contender_of(c, has_meshes(scene_.scene)).name;
+        const auto line = std::ranges::find(scene_.lines, name, &summary_line::name);
+        if (line == scene_.lines.end()) return std::nullopt;
+        const auto value_of = [&](const metric& m) {
+            const auto all = metrics();
+            return line->metrics[static_cast<std::size_t>(std::ranges::find(all, m.name, &metric::name) - all.begin())];
+        };
+        const std::optional<double> x = value_of(x_);
+        const std::optional<double> y = value_of(y_);
+        return x && y ? std::optional(place{line->label, *x, *y}) : std::nullopt;
+    }
+
+    [[nodiscard]] bool has_front() const { return x_.direction != better::neither && y_.direction != better::neither; }
+    [[nodiscard]] static std::string value_text(const metric& m, double value) {
+        return fmt::format("{:.3g}{}", value, m.unit.empty() ? "" : " " + m.unit);
+    }
+
+    [[nodiscard]] bool has_floor() const { return y_.name == "wrong_share" && exact_pairs() > 0; }
+    [[nodiscard]] std::uint64_t exact_pairs() const {
+        const summary_line& line = scene_.lines[0];
+        return line.contacts.value_or(line.pairs) + line.missing.value_or(0) - line.invented.value_or(0);
+    }
+    [[nodiscard]] double least_share() const { return 1 / static_cast<double>(exact_pairs()); }
+
+    [[nodiscard]] figure_point point_of(const place& at) const {
+        const double y = has_floor() ? std::max(at.y, least_share()) : at.y;
+        return {at.x, y};
+    }
+
+    [[nodiscard]] std::vector<cost> costs_of(std::span<const place> all) const {
+        const auto cost_of = [](const metric& m, double value) { return m.direction == better::more ? -value : value; };
+        std::vector<cost> costs;
+        for (const place& at : all) costs.push_back({cost_of(x_, at.x), cost_of(y_, at.y)});
+        return costs;
+    }
+
+    [[nodiscard]] series front(std::span<const place> all) const {
+        series line{"not dominated"};
+        for (const std::size_t i : front_of(costs_of(all))) line.points.push_back(point_of(all[i]));
+        return line;
+    }
+
+    const scene_summary& scene_;
+    const metric& x_;
+    const metric& y_;
+};
 
 }  // namespace
 
@@ -120,12 +253,9 @@ std::vector<pair_group> groups_in(std::span<const error_point> points) {
 }
 
 std::string_view title_of(pair_group group) {
-    switch (group) {
-        case pair_group::of_floats: return "generated triangles of floats";
-        case pair_group::of_doubles: return "generated triangles of doubles";
-        case pair_group::of_meshes: break;
-    }
-    return "triangles of meshes whose boxes overlap";
+    constexpr std::array titles{"generated triangles of floats", "generated triangles of doubles",
+                                "triangles of meshes whose boxes overlap"};
+    return titles[static_cast<std::size_t>(group)];
 }
 
 table error_summary(std::span<const error_point> points, pair_group group) {
@@ -133,8 +263,7 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     std::vector<pooled> methods = pooled_over(of_group(points, group));
     std::ranges::stable_sort(methods, {}, [](const pooled& m) { return std::pair(m.error(), m.ns()); });
     for (const pooled& m : methods)
-        t.rows.push_back({to_text(m.triangle), fmt::format("{:.1f}", m.ns()),
-                          share_text(m.false_negatives + m.false_positives, m.count),
+        t.rows.push_back({to_text(m.triangle), fmt::format("{:.1f}", m.ns()), share_text(m.wrong(), m.count),
                           share_text(m.false_negatives, m.intersecting),
                           share_text(m.false_positives, m.count - m.intersecting)});
     return t;
@@ -174,9 +303,7 @@ std::string group_statement(std::span<const error_point> points, pair_group grou
     for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
     const std::vector<std::size_t> front = front_of(costs);
     const auto wrong = [](const pooled& m) {
-        const std::uint64_t all = m.false_negatives + m.false_positives;
-        return all == 0 ? "none of " + grouped(m.count) + " pairs wrong"
-                        : fmt::format("{} of {} pairs wrong", grouped(all), grouped(m.count));
+        return (m.wrong() == 0 ? "none" : grouped(m.wrong())) + " of " + grouped(m.count) + " pairs wrong";
     };
     const pooled& fastest = methods[front.front()];
     const pooled& best = methods[front.back()];
@@ -202,6 +329,28 @@ std::vector<figure> error_figures(std::span<const error_point> points) {
         }
     }
     return figures;
+}
+
+std::vector<figure> metric_figures(const error_study& study, std::span<const scene_summary> scenes) {
+    std::vector<figure> figures;
+    for (const scene_summary& scene : scenes)
+        for (const metric_plot& plot : study.plots) {
+            const plotted_scene plotted(scene, plot);
+            figures.push_back(plotted.figure_of(study.curves));
+            std::string name = plot.y + "_over_" + plot.x + "_" + file_name(plotted.title());
+            while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
+            figures.back().name = name;
+        }
+    return figures;
+}
+
+std::vector<std::string> metric_statements(const error_study& study, std::span<const scene_summary> scenes) {
+    std::vector<std::string> statements;
+    for (const scene_summary& scene : scenes)
+        for (const metric_plot& plot : study.plots)
+            if (std::string text = plotted_scene(scene, plot).statement_of(study.curves); !text.empty())
+                statements.push_back(std::move(text));
+    return statements;
 }
 
 }  // namespace aabblab

@@ -1,11 +1,116 @@
 module aabblab.extreme;
 
 import aabb.validation;
+import aabblab.numbers;
 import aabblab.results;
 
 namespace aabblab {
 
 namespace {
+
+using row_list = std::vector<const extreme_row*>;
+
+/// The rows that have the same text there, in the order in which the texts come first.
+std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> rows, std::string extreme_row::* text) {
+    std::vector<std::pair<std::string, row_list>> all;
+    for (const extreme_row& row : rows) {
+        auto found = std::ranges::find(all, row.*text, &std::pair<std::string, row_list>::first);
+        if (found == all.end()) found = all.insert(all.end(), {row.*text, {}});
+        found->second.push_back(&row);
+    }
+    return all;
+}
+
+row_list of(const row_list& rows, contender_role role) {
+    row_list all = rows;
+    std::erase_if(all, [&](const extreme_row* row) { return row->role != role; });
+    return all;
+}
+
+row_list of(const row_list& rows, const std::string& contender) {
+    row_list all = rows;
+    std::erase_if(all, [&](const extreme_row* row) { return row->contender != contender; });
+    return all;
+}
+
+/// Each once.
+std::vector<std::string> contenders_in(std::span<const extreme_row> rows, contender_role role) {
+    std::vector<std::string> names;
+    for (const auto& [name, of_contender] : by(rows, &extreme_row::contender))
+        if (of_contender.front()->role == role) names.push_back(name);
+    return names;
+}
+
+/// "-12 +3" are missing and invented; "-" where nothing is.
+std::string counts(std::uint64_t missing, std::uint64_t invented) {
+    std::string text = missing > 0 ? "-" + std::to_string(missing) : "";
+    if (invented > 0) text += (text.empty() ? "+" : " +") + std::to_string(invented);
+    return text.empty() ? "-" : text;
+}
+
+/// Of those that must be exact: "312 exact", "312 refused", "3 WRONG"; the number is of contenders.
+std::string sum_cell(const row_list& rows) {
+    if (rows.empty()) return "-";
+    std::set<std::string> contenders;
+    std::set<std::string> failed;
+    bool refused = true;
+    for (const extreme_row* row : rows) {
+        contenders.insert(row->contender);
+        if (!row->as_expected) failed.insert(row->contender);
+        refused = refused && row->made.said == aabb::verdict::refused;
+    }
+    if (!failed.empty()) return std::to_string(failed.size()) + " WRONG";
+    return std::to_string(contenders.size()) + (refused ? " refused" : " exact");
+}
+
+/// Of one contender: "exact", "refused", "WRONG", or what it misses and invents where that is allowed; "-" where it has
+/// no part.
+std::string cell(const row_list& rows) {
+    if (rows.empty()) return "-";
+    std::uint64_t missing = 0;
+    std::uint64_t invented = 0;
+    bool refused = false;
+    bool wrong = false;
+    for (const extreme_row* row : rows) {
+        if (!row->as_expected) return "WRONG";
+        missing += row->made.missing;
+        invented += row->made.invented;
+        refused = refused || row->made.said == aabb::verdict::refused;
+        wrong = wrong || row->made.said == aabb::verdict::wrong;
+    }
+    if (missing + invented > 0) return counts(missing, invented);
+    return refused ? "refused" : wrong ? "wrong" : "exact";
+}
+
+/// A row for each text, a column a contender; rows that all get right are left out.
+table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
+    table t{{{title, false}}, {}};
+    std::vector<std::string> names;
+    for (const auto& [name, of_contender] : by(rows, &extreme_row::contender)) {
+        names.push_back(name);
+        t.columns.push_back({name});
+    }
+    for (const auto& [value, same] : by(rows, text)) {
+        if (std::ranges::none_of(same, [](const extreme_row* row) { return row->made.said == aabb::verdict::wrong; }))
+            continue;
+        std::vector<std::string> cells{value};
+        for (const std::string& name : names) cells.push_back(cell(of(same, name)));
+        t.rows.push_back(std::move(cells));
+    }
+    return t;
+}
+
+/// Rows of cases; a test in float and in double is one.
+std::vector<extreme_row> case_rows(std::span<const extreme_row> rows) {
+    std::vector<extreme_row> all;
+    for (const extreme_row& row : rows) {
+        if (row.group != row_group::cases) continue;
+        all.push_back(row);
+        if (row.role == contender_role::triangle_test)
+            all.back().contender = row.contender.substr(0, row.contender.find(" in "));
+    }
+    return all;
+}
 
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
 constexpr std::array<std::string_view, 3> role_names = {"composition", "engine", "triangle_test"};
@@ -33,6 +138,86 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 };
 
 }  // namespace
+
+table case_table(std::span<const extreme_row> rows) {
+    const std::vector<extreme_row> shown = case_rows(rows);
+    table t{{{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, {}};
+    const std::vector<std::string> engines = contenders_in(shown, contender_role::engine);
+    for (const std::string& engine : engines) t.columns.push_back({engine});
+    for (const auto& [kind, of_kind] : by(shown, &extreme_row::kind)) {
+        std::set<std::string> cases;
+        for (const extreme_row* row : of_kind) cases.insert(row->scene);
+        row_list tests = of(of_kind, contender_role::triangle_test);
+        std::erase_if(tests, [](const extreme_row* row) { return !row->must_be_exact; });
+        std::vector<std::string> cells{kind, std::to_string(cases.size()), sum_cell(tests),
+                                       sum_cell(of(of_kind, contender_role::composition))};
+        for (const std::string& engine : engines) cells.push_back(cell(of(of_kind, engine)));
+        t.rows.push_back(std::move(cells));
+    }
+    return t;
+}
+
+table inexact_case_table(std::span<const extreme_row> rows) {
+    std::vector<extreme_row> shown = case_rows(rows);
+    // Those with settings are in the file.
+    std::erase_if(shown, [](const extreme_row& row) {
+        return row.must_be_exact || row.role != contender_role::triangle_test ||
+               row.contender.find(':') != std::string::npos;
+    });
+    return wrong_table("class", shown, &extreme_row::kind);
+}
+
+table scene_table(std::span<const extreme_row> rows, row_group group) {
+    std::vector<extreme_row> shown;
+    for (const extreme_row& row : rows)
+        if (row.group == group && row.role != contender_role::triangle_test) shown.push_back(row);
+    table t{{{"scene", false}, {"compositions"}}, {}};
+    const std::vector<std::string> engines = contenders_in(shown, contender_role::engine);
+    for (const std::string& engine : engines) t.columns.push_back({engine});
+    for (const auto& [scene, of_scene] : by(shown, &extreme_row::scene)) {
+        std::vector<std::string> cells{scene, sum_cell(of(of_scene, contender_role::composition))};
+        for (const std::string& engine : engines) cells.push_back(cell(of(of_scene, engine)));
+        t.rows.push_back(std::move(cells));
+    }
+    return t;
+}
+
+table inexact_scene_table(std::span<const extreme_row> rows) {
+    std::vector<extreme_row> shown;
+    for (const extreme_row& row : rows)
+        if (row.group == row_group::meshes && row.role == contender_role::triangle_test) shown.push_back(row);
+    return wrong_table("scene", shown, &extreme_row::scene);
+}
+
+table class_table(std::span<const extreme_row> rows) {
+    table t{{{"may be inexact", false}}, {}};
+    for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
+    std::vector<extreme_row> shown;
+    for (const extreme_row& row : rows)
+        if (row.group == row_group::meshes && !row.must_be_exact) shown.push_back(row);
+    for (const auto& [name, of_contender] : by(shown, &extreme_row::contender)) {
+        aabb::differences sum;
+        for (const extreme_row* row : of_contender) sum += row->made.classes;
+        std::vector<std::string> cells{name};
+        for (std::size_t c = 0; c < sum.missing.size(); ++c) cells.push_back(counts(sum.missing[c], sum.invented[c]));
+        t.rows.push_back(std::move(cells));
+    }
+    return t;
+}
+
+std::vector<std::string> memory_in(std::span<const extreme_row> rows, std::span<const aabb::extreme_scene> scenes) {
+    std::vector<std::string> all;
+    for (const aabb::extreme_scene& scene : scenes) {
+        if (scene.most_bytes == 0) continue;
+        std::size_t most = 0;
+        for (const extreme_row& row : rows)
+            if (row.scene == scene.name && row.role == contender_role::composition)
+                most = std::max(most, row.made.bytes);
+        all.push_back(scene.name + ", " + scene.summary + ":\n  compositions hold at most " + grouped(most) +
+                      " bytes, of " + grouped(scene.most_bytes) + " stated");
+    }
+    return all;
+}
 
 table extreme_rows(std::span<const extreme_row> rows) {
     table t;

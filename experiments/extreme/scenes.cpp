@@ -1,6 +1,5 @@
 module aabblab.extreme;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabblab.scenes;
 

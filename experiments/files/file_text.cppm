@@ -2,7 +2,6 @@
 module aabblab.files:file_text;
 
 import aabb.base;
-import aabb.std;
 import :text_decoder;
 
 namespace aabblab {
@@ -53,7 +52,6 @@ struct close_file {
 };
 using file_handle = std::unique_ptr<std::FILE, close_file>;
 
-/// What the system says of the last call that failed.
 [[nodiscard]] std::string system_error_text();
 
 /// A regular file that is read from its begin on, as often as is asked for.
@@ -90,8 +88,7 @@ private:
 
 /// The line without what a carriage return before its line feed leaves at its end.
 /// @param fail is called with a sentence where one stands alone
-template <class Fail>
-[[nodiscard]] inline std::string_view line_without_return(std::string_view line, Fail fail) {
+[[nodiscard]] inline std::string_view line_without_return(std::string_view line, auto fail) {
     while (line.ends_with('\r')) line.remove_suffix(1);
     if (line.find('\r') != std::string_view::npos)
         fail("some lines end in carriage returns alone, others in line feeds; expected one of the two");

@@ -2,7 +2,6 @@
 /// names the file, the line where there is one, and what was expected.
 export module aabblab.files;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.std;
 export import :comment;
@@ -25,8 +24,7 @@ export namespace aabblab {
 /// @throws aabb::input_error where it is no such text, too.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
 
-/// The same of a file that may be a pipe or a device: at most one byte more than it may have, which shows that it is
-/// too long.
+/// The same of a file that may be a pipe or a device: at most one byte too many, which shows that it is too long.
 /// @throws aabb::input_error where nobody writes into a named pipe, too.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most);
 
@@ -74,8 +72,7 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 
 /// Opens a motion file for playing with these meshes: object i is mesh i modulo their number. A line is a frame, an
 /// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames are numbered from 0 and stand in
-/// order; frame 0 has every object, later ones those that have moved, so that a frame in which none has may be left
-/// out.
+/// order; frame 0 has every object, later ones those that have moved, so that one in which none has may be left out.
 /// @throws aabb::input_error, with file and line, on anything else, a pose that is not rigid, or more meshes than
 /// objects.
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
@@ -91,10 +88,9 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress);
 
-/// A file that appears under its name only when it is complete; gone if not committed. Until then it has no name at all
-/// where the file system allows that, so that an interrupted process leaves nothing behind; elsewhere one beside it.
-/// What is not a regular file, such as /dev/stdout, is written at once. Every member throws aabb::input_error when
-/// writing fails, on a full disk too.
+/// A file that appears under its name only when it is complete; gone if not committed. Until then it has no name,
+/// or one beside it where the file system needs one, so that an interrupted process leaves nothing behind. What is no
+/// regular file, such as /dev/stdout, is written at once. Every member throws aabb::input_error when writing fails.
 class output_file {
 public:
     explicit output_file(const std::filesystem::path& file);
@@ -117,12 +113,10 @@ private:
 /// Writes a text file, whole or not at all.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
-/// A motion file in the making: every object in every frame, with the shortest decimals that read back to the same
-/// doubles.
+/// A motion file in the making: every object in every frame, in the shortest decimals that read back to the doubles.
 class motion_file {
 public:
     explicit motion_file(const std::filesystem::path& file) : out_(file) {}
-    /// The next frame.
     void add(std::span<const aabb::pose> poses);
     void commit() { out_.commit(); }
 

@@ -3,12 +3,9 @@ module;
 
 module aabblab.files;
 
-import aabb.base;
 import aabblab.vectors;
-import :file_text;
 import :gltf_asset;
 import :mesh_builder;
-import :readers;
 
 namespace aabblab {
 

@@ -5,7 +5,6 @@ module;
 /// is checked where they are used. (Khronos Group, "glTF 2.0 Specification", 2021.)
 module aabblab.files:gltf_asset;
 
-import aabb.std;
 import :file_text;
 
 namespace aabblab {

@@ -4,7 +4,6 @@ module;
 module aabblab.files;
 
 import aabblab.json;
-import :file_text;
 import :gltf_asset;
 
 namespace aabblab {

@@ -17,8 +17,7 @@ struct mesh_report {
     std::size_t polygons = 0;   ///< faces of more than three corners
     std::size_t concave = 0;    ///< those of them that were ear-clipped; the others were fan-triangulated
     std::size_t zero_area = 0;  ///< triangles of zero area, exactly: kept
-    /// Coordinates that are not floats: rounded to nearest. Text counts when it differs from the float as far as a
-    /// double can tell, so "0.1" does.
+    /// Coordinates that are not floats: rounded to nearest. Text counts when it differs as a double, so "0.1" does.
     std::size_t rounded = 0;
     std::size_t dropped = 0;             ///< faces of fewer than three corners, points, lines
     std::size_t stitches = 0;            ///< triangles of strips that repeat a corner: left out

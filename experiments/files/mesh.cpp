@@ -1,10 +1,6 @@
 module aabblab.files;
 
-import aabb.base;
-import aabb.policy;
-import :file_text;
-import :readers;
-import :text_decoder;
+import :mesh_builder;
 
 namespace aabblab {
 

@@ -1,9 +1,6 @@
 /// A mesh as its file brings it: vertices, faces of any number of corners, and what became of them.
 module aabblab.files:mesh_builder;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.std;
 import :file_text;
 import :loaded_mesh;
 import :polygon;
@@ -29,14 +26,12 @@ public:
     }
     [[nodiscard]] std::size_t vertices() const noexcept { return loaded_.mesh.vertices.size(); }
     [[nodiscard]] const aabb::vec3f& vertex(std::size_t index) const { return loaded_.mesh.vertices[index]; }
-    /// Room for about so many.
     void reserve(std::size_t vertices, std::size_t triangles) {
         loaded_.mesh.vertices.reserve(vertices);
         loaded_.mesh.triangles.reserve(triangles);
     }
 
-    /// A polygon becomes triangles when the mesh is finished, as vertices may come later; fewer than three corners are
-    /// dropped.
+    /// A polygon becomes triangles when the mesh is finished, as vertices may come later. Below three corners it goes.
     /// @param place where it stands in the file, for errors: a line or a face
     void add_face(std::span<const std::uint32_t> corners, std::size_t place) {
         for (const std::uint32_t corner : corners) use(corner, place);
@@ -59,8 +54,7 @@ public:
         greatest_at_ = place;
     }
 
-    /// A triangle of a strip. One that repeats a corner only joins two parts of the strip, from one to the other
-    /// through space, and is left out.
+    /// A triangle of a strip. One that repeats a corner only joins two parts, through space, and is left out.
     void add_strip_triangle(const std::array<std::uint32_t, 3>& corners, std::size_t place) {
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
             ++loaded_.report.stitches;
@@ -134,8 +128,7 @@ private:
         std::size_t line;
     };
 
-    /// Vertices that are not finite keep their numbers. Where no face uses them they go where a vertex is that some
-    /// face uses, so that no box of vertices has them in it.
+    /// Vertices that are not finite keep their numbers and, where no face uses them, go where one is that a face uses.
     void settle_vertices(std::size_t first) {
         if (not_finite_.empty()) return;
         aabb::mesh& m = loaded_.mesh;
@@ -159,5 +152,18 @@ private:
     std::size_t greatest_ = 0;  // one more than the greatest corner so far
     std::size_t greatest_at_ = 0;
 };
+
+// The readers, one a format. Files that are text come as `as_text` makes it.
+[[nodiscard]] loaded_mesh read_off(const file_text& file);
+[[nodiscard]] loaded_mesh read_obj(const file_text& file);
+[[nodiscard]] loaded_mesh read_ply(const file_text& file);
+[[nodiscard]] loaded_mesh read_stl(const file_text& file);
+/// None where the file does not have the size that a binary one of its header has; then it may be text.
+[[nodiscard]] std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size);
+/// glTF 2.0, as text or binary, with its buffers inside or beside it.
+[[nodiscard]] loaded_mesh read_gltf(const file_text& file);
+
+[[nodiscard]] bool is_text_ply(std::string_view bytes);
+[[nodiscard]] bool is_text_stl(std::string_view bytes);
 
 }  // namespace aabblab

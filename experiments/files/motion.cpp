@@ -1,7 +1,5 @@
 module aabblab.files;
 
-import aabb.base;
-import :file_text;
 import :text_scanner;
 
 namespace aabblab {
@@ -31,7 +29,6 @@ aabb::pose read_pose(text_scanner& in) {
     return p;
 }
 
-/// What holds from line to line.
 class motion_reader {
 public:
     explicit motion_reader(const file_text& file) : in_(file, '#') {}

@@ -1,8 +1,6 @@
 module aabblab.files;
 
-import :file_text;
 import :mesh_builder;
-import :readers;
 import :text_scanner;
 
 namespace aabblab {
@@ -33,17 +31,13 @@ private:
     bool goes_on_ = false;
 };
 
-/// What may stand behind the vertex of a corner: "/vt", "//vn" or "/vt/vn".
-bool are_other_indices(std::string_view rest) {
-    return rest.find_first_not_of("/-0123456789") == std::string_view::npos && std::ranges::count(rest, '/') <= 2;
-}
-
-/// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Numbers count from 1, negative ones from the last
-/// vertex so far.
+/// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", from 0. Numbers count from 1, negative ones from the last so far.
 std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
     const std::string_view number = word.substr(0, word.find('/'));
+    const std::string_view others = word.substr(number.size());
     const read_number<std::int64_t> read(number);
-    if (!read.is_one || read.out_of_range || !are_other_indices(word.substr(number.size())))
+    if (!read.is_one || read.out_of_range || others.find_first_not_of("/-0123456789") != std::string_view::npos ||
+        std::ranges::count(others, '/') > 2)
         in.expected("the number of a vertex", word);
     const std::int64_t value = read.value;
     if (value == 0) in.fail("a face uses vertex 0, but vertices are counted from 1");
@@ -54,8 +48,7 @@ std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t 
     return static_cast<std::uint32_t>(index);
 }
 
-/// Statements without which the surface is the same: looks, names, groups, and what only says how a free-form curve or
-/// surface is meant, which is a statement of its own.
+/// Statements without which the surface is the same: looks, names, groups, and how a free-form curve is meant.
 constexpr std::string_view silent[] = {
     "vt",     "vn",    "vp",       "g",        "o",    "s",    "mg",   "usemtl",     "mtllib",    "usemap",
     "maplib", "bevel", "c_interp", "d_interp", "lod",  "end",  "parm", "shadow_obj", "trace_obj", "cstype",

@@ -1,9 +1,6 @@
 module aabblab.files;
 
-import aabb.base;
-import :file_text;
 import :mesh_builder;
-import :readers;
 import :text_scanner;
 
 namespace aabblab {
@@ -67,15 +64,13 @@ public:
         return mesh_.finish(in_.rounded(), name_ + ":", 0);
     }
 
-    /// Whether a vertex was read.
     [[nodiscard]] bool has_vertex() const { return mesh_.vertices() > 0; }
     /// Whether the end was come to, so that what is wrong is not how numbers stand on lines.
     [[nodiscard]] bool is_so_arranged() const { return is_so_arranged_; }
 
 private:
     /// Goes to the next word.
-    template <class Where>
-    void go_on(Where where) {
+    void go_on(auto where) {
         if (!in_.more() && !in_.next_line()) in_.ends(where());
     }
 

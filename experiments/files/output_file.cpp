@@ -7,7 +7,6 @@ module;
 
 module aabblab.files;
 
-import aabb.base;
 import :file_text;
 
 namespace aabblab {
@@ -36,8 +35,7 @@ struct output_file::state {
 
     /// Gives `make` names that no other process and no other file of this one has, until it makes one. `make` must not
     /// take an existing file (EEXIST). They are short, since the target's name may be as long as names can be.
-    template <class Make>
-    [[nodiscard]] bool make_part(Make make) {
+    [[nodiscard]] bool make_part(auto make) {
         for (int attempt = 0; attempt < 100; ++attempt) {
             part = ".aabblab." + std::to_string(getpid()) + "." + std::to_string(attempt) + ".part";
             if (make(part.c_str())) return true;
@@ -51,12 +49,6 @@ struct output_file::state {
         if (descriptor < 0) return;
         file.reset(fdopen(descriptor, "wb"));
         if (!file) close(descriptor);
-    }
-
-    /// A file without a name goes with its process, however that ends. Without /proc it could never be named.
-    void open_unnamed() {
-        take(openat(folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
-        if (file && access(link_to(fileno(file.get())).c_str(), F_OK) != 0) file.reset();
     }
 
     [[nodiscard]] static std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
@@ -80,7 +72,9 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
         }
         state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
         if (state_->folder < 0) state_->fail();
-        state_->open_unnamed();
+        // A file without a name goes with its process, however that ends. Without /proc it could never be named.
+        state_->take(openat(state_->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+        if (state_->file && access(state::link_to(fileno(state_->file.get())).c_str(), F_OK) != 0) state_->file.reset();
         // Not every file system has files without a name.
         if (!state_->file && !state_->make_part([&](const char* part) {
                 state_->take(openat(state_->folder, part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));

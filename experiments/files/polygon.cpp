@@ -16,8 +16,7 @@ int sign_of(double x) noexcept {
 }
 
 /// Where the least rotation of a cycle begins (Shiloach, "Fast canonization of circular strings", 1981).
-template <class Key>
-std::size_t least_rotation(std::size_t count, Key key) {
+std::size_t least_rotation(std::size_t count, auto key) {
     std::size_t i = 0;
     std::size_t j = 1;
     std::size_t equal = 0;
@@ -249,8 +248,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
         --left;
     };
 
-    // A boundary that goes somewhere and back may block an ear. Without it, a corner that is no ear becomes one only
-    // when a neighbour is cut.
+    // A boundary that goes and comes back may block an ear. Else a corner becomes one only when a neighbour is cut.
     std::uint32_t at = 0;
     for (std::size_t passed = 0; left > 3 && passed < left;)
         if (is_needle(corners_[at])) {

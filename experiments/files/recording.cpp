@@ -1,6 +1,5 @@
 module aabblab.files;
 
-import aabb.base;
 import :file_text;
 
 // The format is Broadmark's (Serpa and Rodrigues, "Broadmark: a testing framework for broad-phase collision detection

@@ -1,4 +1,4 @@
-/// Numbers as bytes, on a machine that is little-endian (`gltf_parts.cpp`).
+/// Numbers as bytes, on a machine that is little-endian (`gltf_buffers.cpp`).
 module aabblab.files:scalar;
 
 import aabb.std;

@@ -1,19 +1,15 @@
 module aabblab.files;
 
-import :file_text;
 import :mesh_builder;
-import :readers;
 import :scalar;
-import :text_decoder;
 import :text_scanner;
 
 namespace aabblab {
 
 namespace {
 
-/// STL repeats a vertex for every triangle around it: vertices of the same bits become one, numbered in the order of
-/// their first appearance. Triangles keep the order of the file. The numbers stand in a hash table with open
-/// addressing.
+/// STL repeats a vertex for every triangle around it: those of the same bits become one, numbered as they first appear.
+/// Triangles keep the order of the file. The numbers stand in a hash table with open addressing.
 class vertex_merger {
 public:
     /// @param triangles how many there are about; a closed mesh has half as many vertices
@@ -47,8 +43,7 @@ private:
     [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3f& p) noexcept {
         return std::bit_cast<bits_of_vertex>(p);
     }
-    /// Multiplication carries every bit upwards, and the shifts bring the upper ones down to where places are taken
-    /// from.
+    /// Multiplication carries every bit upwards; shifts bring the upper ones down to where places are taken from.
     [[nodiscard]] static std::size_t hash_of(const bits_of_vertex& bits) noexcept {
         constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio (Knuth, volume 3, 6.4)
         std::uint64_t hash = (bits[0] | std::uint64_t{bits[1]} << 32U) * odd;

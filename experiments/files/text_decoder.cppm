@@ -11,9 +11,8 @@ enum class text_encoding : std::uint8_t { utf8, utf16_little, utf16_big, utf16_u
 
 /// Takes a text piece by piece. A byte order mark is dropped, UTF-16 that begins with one is converted, carriage
 /// returns become line feeds where the first line ends in one alone, and what pads the end of a file is dropped: NULs,
-/// and Ctrl-Z, which CP/M and DOS end text with. A carriage return before a line feed stays, as readers skip it. One
-/// that stands alone in a text of line feeds stays too, and so does the reverse, as a carriage return:
-/// `line_without_return` refuses both.
+/// and Ctrl-Z, which CP/M and DOS end text with. A carriage return before a line feed stays, as readers skip it; alone
+/// in a text of line feeds it stays too, as does the reverse, as a carriage return: `line_without_return` refuses both.
 class text_decoder {
 public:
     /// Appends what the bytes say.

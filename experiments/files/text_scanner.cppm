@@ -1,15 +1,12 @@
 /// Words of a text file, line by line; numbers in them; errors with the file and the line.
 module aabblab.files:text_scanner;
 
-import aabb.base;
 import aabb.geometry;
-import aabb.std;
 import :comment;
 import :file_text;
 
 namespace aabblab {
 
-/// The number that a text is.
 template <class Number>
 struct read_number {
     explicit read_number(std::string_view text) {

@@ -7,12 +7,9 @@ import aabblab.scenes;
 
 export namespace aabblab {
 
-/// A number in decimal or C99 hexadecimal, correctly rounded to Real, which is float or double.
-/// @throws aabb::input_error on anything else, NaN, infinity, or a number too large for Real: "'x' is not a number".
-template <class Real>
-[[nodiscard]] Real parse_number(const std::string& text);
-
-/// Of these words, one of a series: "number 3 of 18: 'x' is not a number".
+/// One of a series of numbers in decimal or C99 hexadecimal, correctly rounded to Real, which is float or double.
+/// @throws aabb::input_error on anything else, NaN, infinity, or a number too large for Real: "number 3 of 18: 'x' is
+/// not a number".
 template <class Real>
 [[nodiscard]] Real parse_number_of(const std::vector<std::string>& words, std::size_t i);
 
@@ -29,12 +26,10 @@ template <class Real>
 /// @throws aabb::input_error on a comma that has no word on either side.
 [[nodiscard]] std::vector<std::string> split_numbers(std::string_view line);
 
-/// The pose that an option gives: twelve numbers with commas between, the rows of [R t]. Without one, the mesh is as it
-/// is.
+/// The pose that an option gives: twelve numbers with commas between, the rows of [R t]; without it, the mesh as it is.
 /// @throws aabb::input_error that names the option, on anything else or a pose that is not rigid.
 [[nodiscard]] aabb::pose pose_of(const std::optional<std::string>& text, const char* option);
 
-/// Poses, where they stand in a file.
 struct given_poses {
     std::vector<aabb::pose> poses;
     std::string file;                ///< empty where there is none
@@ -72,7 +67,6 @@ inline constexpr const char* scene_arguments_help =
     "A recording (.aabbs); one or two meshes (files in OFF, OBJ, PLY, STL or glTF, or shapes), which pass through each "
     "other; or a motion file and its meshes";
 
-/// Whether it is the name of a config.
 [[nodiscard]] bool names_config(const std::string& argument);
 
 /// The scene that these arguments name.

@@ -1,10 +1,9 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.measures;
 
 import aabb.pipeline;
+import aabb.prepare.mean_extent;
 import aabb.registry;
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
@@ -13,44 +12,125 @@ namespace {
 
 constexpr std::size_t frames_measured = 4;
 
-/// Boxes by id, and who is there.
+constexpr std::array of_motion{&motion_measures::displacement, &motion_measures::relative, &motion_measures::at_rest,
+                               &motion_measures::inversions};
+
 struct seen_frame {
     std::vector<aabb::box> boxes;
     std::vector<bool> present;
 
-    [[nodiscard]] std::vector<aabb::box> of(const std::vector<bool>& whom) const {
+    [[nodiscard]] std::vector<aabb::box> there() const {
         std::vector<aabb::box> some;
         for (std::size_t id = 0; id < boxes.size(); ++id)
-            if (whom[id]) some.push_back(boxes[id]);
+            if (present[id]) some.push_back(boxes[id]);
         return some;
     }
 };
 
-/// Those who are there in both frames.
-std::vector<bool> in_both(const seen_frame& a, const seen_frame& b) {
-    std::vector<bool> both(a.present.size());
-    for (std::size_t id = 0; id < both.size(); ++id) both[id] = a.present[id] && b.present[id];
-    return both;
-}
-
-void add_motion(scene_measures& m, const seen_frame& before, const seen_frame& now, std::size_t axis) {
-    const std::vector<bool> both = in_both(before, now);
-    const motion_measures one = measure_motion(before.of(both), now.of(both), axis);
+/// Of those who are there in both frames.
+void add_motion(scene_measures& m, seen_frame before, seen_frame now, std::size_t axis) {
+    for (std::size_t id = 0; id < before.present.size(); ++id)
+        before.present[id] = now.present[id] = before.present[id] && now.present[id];
+    const motion_measures one = measure_motion(before.there(), now.there(), axis);
     if (!m.motion) m.motion = motion_measures{0, 0, 0, 0};
-    m.motion->displacement += one.displacement;
-    m.motion->relative += one.relative;
-    m.motion->at_rest += one.at_rest;
-    m.motion->inversions += one.inversions;
+    for (const auto member : of_motion) *m.motion.*member += one.*member;
 }
 
-void divide(motion_measures& sum, double by) {
-    sum.displacement /= by;
-    sum.relative /= by;
-    sum.at_rest /= by;
-    sum.inversions /= by;
+/// Pairs of intervals that overlap: all but those of which one ends before the other begins.
+double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
+    std::ranges::sort(lower);
+    std::ranges::sort(upper);
+    const auto n = static_cast<double>(lower.size());
+    double apart = 0;
+    std::size_t ended = 0;
+    for (const float begin : lower) {
+        while (ended < upper.size() && upper[ended] < begin) ++ended;
+        apart += static_cast<double>(ended);
+    }
+    return n * (n - 1) / 2 - apart;
+}
+
+double longest_edge(const aabb::box& b) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, double{b.max[k]} - double{b.min[k]});
+    return longest;
+}
+
+std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {
+    std::vector<double> edges;
+    for (const aabb::box& b : boxes) edges.push_back(longest_edge(b));
+    const double longest = *std::ranges::max_element(edges);
+    const auto median = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
+    std::ranges::nth_element(edges, median);
+    return *median > 0 ? std::optional(longest / *median) : std::nullopt;
+}
+
+/// An object: pairs in the order of the frame before that stand in the wrong order now.
+double inversions_of(std::span<const aabb::box> before, std::span<const aabb::box> after, int axis) {
+    std::vector<std::uint32_t> order(before.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t id) { return before[id].min[axis]; });
+    std::vector<aabb::projection> list;
+    for (const std::uint32_t id : order) list.push_back({after[id].min[axis], id});
+    aabb::inversion_counter counter;
+    return static_cast<double>(counter.count(list)) / static_cast<double>(list.size());
 }
 
 }  // namespace
+
+box_measures measure_boxes(std::span<const aabb::box> boxes) {
+    box_measures m;
+    if (boxes.empty()) return m;
+    const auto n = static_cast<double>(boxes.size());
+    m.size_ratio = size_ratio_of(boxes);
+    m.expected_pairs = n * (n - 1) / 2;
+    aabb::typical_extent extents_of_boxes;
+    for (const aabb::box& b : boxes) extents_of_boxes.add(b);
+    m.typical_extent = extents_of_boxes();
+    for (int k = 0; k < 3; ++k) {
+        std::vector<float> lower;
+        std::vector<float> upper;
+        double extents = 0;
+        for (const aabb::box& b : boxes) {
+            lower.push_back(b.min[k]);
+            upper.push_back(b.max[k]);
+            extents += double{b.max[k]} - double{b.min[k]};
+        }
+        const double width = double{*std::ranges::max_element(upper)} - double{*std::ranges::min_element(lower)};
+        if (width > 0) m.expected_pairs *= std::min(1.0, 2 * extents / n / width);
+        m.overlaps[static_cast<std::size_t>(k)] = 2 * overlapping_pairs(std::move(lower), std::move(upper)) / n;
+    }
+    return m;
+}
+
+motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after, std::size_t axis) {
+    motion_measures m;
+    if (before.empty()) return m;
+    const auto n = static_cast<double>(before.size());
+    double ways = 0;
+    double moved = 0;
+    std::vector<double> squares(before.size());
+    for (int k = 0; k < 3; ++k) {
+        double least = std::numeric_limits<double>::infinity();
+        double most = -least;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            const double lower = double{after[i].min[k]} - double{before[i].min[k]};
+            const double upper = double{after[i].max[k]} - double{before[i].max[k]};
+            squares[i] += (lower + upper) * (lower + upper) / 4;
+            least = std::min(least, lower);
+            most = std::max(most, upper);
+        }
+        m.relative = std::max(m.relative, (most - least) / 2);
+    }
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        ways += std::sqrt(squares[i]);
+        moved += before[i] == after[i] ? 0 : 1;
+    }
+    m.displacement = ways / n;
+    m.at_rest = 1 - moved / n;
+    m.inversions = inversions_of(before, after, static_cast<int>(axis));
+    return m;
+}
 
 scene_measures measure_scene(const scene_choice& choice) {
     scene_play scene(choice);
@@ -75,7 +155,7 @@ scene_measures measure_scene(scene_play& scene) {
             for (const std::uint32_t id : scene.arrivals()) now.present[id] = true;
             for (const std::uint32_t id : scene.departures()) now.present[id] = false;
             if (frame.number == 0) {
-                const std::vector<aabb::box> there = now.of(now.present);
+                const std::vector<aabb::box> there = now.there();
                 m.boxes = measure_boxes(there);
                 m.present = there.size();
                 m.pairs_an_object = static_cast<double>(frame.pairs.size()) /
@@ -92,7 +172,7 @@ scene_measures measure_scene(scene_play& scene) {
         },
         frames_measured);
     if (followed > 0) {
-        divide(*m.motion, static_cast<double>(followed));
+        for (const auto member : of_motion) *m.motion.*member /= static_cast<double>(followed);
         m.turnover = changes / static_cast<double>(followed) / static_cast<double>(std::max<std::size_t>(m.objects, 1));
     }
     return m;

@@ -11,8 +11,7 @@ export namespace aabblab {
 /// Of the boxes of one frame.
 struct box_measures {
     double typical_extent = 0;  ///< mean over the axes, and the boxes that are not by far longer than others
-    /// The longest edge of any box over the median of the boxes' longest edges; empty where that is 0, or there are no
-    /// boxes.
+    /// The longest edge of any box over the median of the boxes' longest edges; empty where that is 0 or of no box.
     std::optional<double> size_ratio;
     std::array<double, 3> overlaps{};  ///< by axis: of how many others a box overlaps the projection, a mean
     double expected_pairs = 0;         ///< if boxes of the mean extents lay evenly spread over the bounds of all

@@ -2,9 +2,7 @@
 /// at poses, with its digest, its times and its rows.
 export module aabblab.queries;
 
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.registry;
 import aabb.selection;
 import aabb.std;
@@ -40,7 +38,6 @@ private:
     std::optional<aabb::relative_pose> to_a_;
 };
 
-/// Who is to search.
 struct search_choice {
     std::vector<aabb::stage> stages;  ///< one of the two, or both
     aabb::named_strategies named;
@@ -48,7 +45,6 @@ struct search_choice {
     bool geometry = false;              ///< its triangle test constructs what triangles have in common
 };
 
-/// Who searches.
 struct search_method {
     std::string name;
     bool exact = true;

@@ -1,9 +1,7 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.race;
 
 import aabb.registry;
+import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.results;
 

@@ -6,7 +6,6 @@ namespace aabblab {
 
 namespace {
 
-/// A walk through a text, field by field.
 class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}

@@ -1,4 +1,8 @@
 module;
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cerrno>
 
 module aabblab.results;
@@ -10,15 +14,40 @@ namespace aabblab {
 
 namespace {
 
-/// A row that was cut off while it was written goes, and so does what another program made of the text, so that rows
-/// can be appended.
+/// So that rows can be appended, one that was cut off goes, and so does what another program made of the text.
 void drop_torn_row(const std::filesystem::path& file) {
     const std::string text = text_of_file(file);
     const std::string complete = text.substr(0, read_csv(text, file.string()).bytes);
     if (complete != bytes_of_file(file)) write_file(file, complete);
 }
 
+void make_folder(const std::filesystem::path& folder) {
+    if (folder.empty()) throw aabb::input_error("the folder of the results has no name");
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw aabb::input_error("the folder " + folder.string() + " cannot be made: " + error.message());
+}
+
 }  // namespace
+
+folder_lock::folder_lock(const std::filesystem::path& folder) {
+    make_folder(folder);
+    // Processes that this one starts keep it too (no O_CLOEXEC): what they do must end before another begins.
+    descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
+    // A process that was killed leaves others that are about to end.
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        // A file system that locks no folders cannot tell.
+        if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+        usleep(50'000);
+    }
+    close(descriptor_);
+    throw aabb::input_error("another aabblab writes into " + folder.string() +
+                            " at this moment; wait until it ends, or name another folder with --out");
+}
+
+folder_lock::~folder_lock() {
+    if (descriptor_ >= 0) close(descriptor_);
+}
 
 results_folder::results_folder(std::filesystem::path folder, experiment_record e, existing_results existing)
     : folder_(std::move(folder)), experiment_(std::move(e)), date_(date_now()) {
@@ -27,8 +56,7 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
         replaced_ = refusal_to_resume(manifest, experiment_);
-        // Hours may be in them, so they are set aside. The table last: until it is gone, the next run finds them all to
-        // replace.
+        // Hours may be in them, so they are set aside; the table last, by which the next run finds all to replace.
         if (!replaced_.empty())
             for (const char* name : {"differences.csv", "results.csv"})
                 if (std::filesystem::exists(folder_ / name))
@@ -43,9 +71,7 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
         drop_torn_row(table);
     }
     if (!rows_.empty()) {
-        resumed_manifest before = resume_manifest(manifest, experiment_);
-        date_ = std::move(before.date);
-        digests_ = std::move(before.digests);
+        std::tie(date_, digests_) = resume_manifest(manifest, experiment_);
         for (std::size_t i = 0; i < rows_.size(); ++i)
             if (!digests_.contains(rows_[i].scene))
                 throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) +

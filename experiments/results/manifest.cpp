@@ -8,8 +8,8 @@ module;
 
 module aabblab.results;
 
-import aabb.base;
 import aabb.costs;
+import aabb.policy;
 import aabblab.files;
 import aabblab.json;
 import aabblab.machine;
@@ -26,18 +26,10 @@ const machine& here() {
     return found;
 }
 
-/// Of the program that runs: what was changed and not committed makes another build too.
-std::string own_digest() {
-    const std::string bytes = bytes_of_file("/proc/self/exe");
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx",
-                  static_cast<unsigned long long>(XXH3_64bits(bytes.data(), bytes.size())));
-    return digits.data();
-}
-
 /// What made the results. Times of different builds or machines must not meet in one table.
 json build() {
-    static const std::string digest = own_digest();
+    // Of the program that runs: what was changed and not committed makes another build too.
+    static const std::string digest = hash_of_text(bytes_of_file("/proc/self/exe"));
     return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
             {"dirty", AABBLAB_DIRTY},     {"compiler", AABBLAB_COMPILER},
             {"flags", AABBLAB_FLAGS},     {"build_type", AABBLAB_BUILD_TYPE},
@@ -118,6 +110,12 @@ read_in read_json(const std::filesystem::path& file) {
     return {std::move(content), json::parse(text)};
 }
 
+/// A number where that says the same, to the letter.
+json json_of(const std::string& value) {
+    const json parsed = json::parse(value, nullptr, false);
+    return parsed.is_number() && parsed.dump() == value ? parsed : json(value);
+}
+
 /// The scenes of a manifest in their order, each with its exact digest, or an empty one.
 std::vector<std::pair<scene_choice, std::string>> scenes_in(const read_in& manifest) {
     std::vector<std::pair<scene_choice, std::string>> scenes;
@@ -133,6 +131,39 @@ std::vector<std::pair<scene_choice, std::string>> scenes_in(const read_in& manif
 }
 
 }  // namespace
+
+std::string parameters_json(const scene_choice& scene) {
+    json all = json::object();
+    for (const aabb::setting& s : scene.settings) all[s.name] = json_of(s.value);
+    if (!scene.meshes.empty()) all["meshes"] = scene.meshes;
+    return text_of(all, -1);
+}
+
+bool set_parameters(scene_choice& scene, const std::string& text) {
+    const json all = json::parse(text, nullptr, false);
+    if (!all.is_object()) return false;
+    for (const auto& [name, value] : all.items()) {
+        if (name == "meshes") {
+            if (!value.is_array()) return false;
+            for (const json& mesh : value) {
+                if (!mesh.is_string()) return false;
+                scene.meshes.push_back(mesh);
+            }
+        } else if (value.is_string() || value.is_number()) {
+            scene.settings.push_back({name, value.is_string() ? value.get<std::string>() : value.dump()});
+        } else {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::string hash_of_text(std::string_view text) {
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx",
+                  static_cast<unsigned long long>(XXH3_64bits(text.data(), text.size())));
+    return digits.data();
+}
 
 std::string date_now() {
     const std::time_t now = std::time(nullptr);
@@ -199,14 +230,14 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
     return {};
 }
 
-resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
+std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
     if (const std::string refusal = refusal_to_resume(file, e); !refusal.empty())
         throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
     const read_in before = read_json(file);
-    resumed_manifest manifest{before.content.text("date").value_or(""), {}};
+    scene_digests digests;
     for (auto& [scene, digest] : scenes_in(before))
-        if (!digest.empty()) manifest.digests[std::move(scene)] = std::move(digest);
-    return manifest;
+        if (!digest.empty()) digests[std::move(scene)] = std::move(digest);
+    return {before.content.text("date").value_or(""), digests};
 }
 
 std::string build_description() {

@@ -6,7 +6,6 @@ import aabb.registry;
 import aabb.std;
 import aabblab.scenes;
 export import :columns;
-export import :csv;
 
 export namespace aabblab {
 
@@ -72,13 +71,14 @@ struct row {
 [[nodiscard]] std::string parameters_json(const scene_choice& scene);
 
 /// Rows of a results.csv. A last one that was cut off in the middle of being written is left out.
+/// @param seen hears each row with the line that it begins in
 /// @throws aabb::input_error with file and line where it is not a results.csv, or two rows are of the same measurement.
-[[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file);
+[[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file,
+                                         const std::function<void(const row&, std::size_t)>& seen = {});
 
 /// Rows of a folder of results, held against its manifest: the scenes are the manifest's, and an exact row has the
 /// digest that the manifest has for its scene. Where the run was finished, so that the manifest has a seal, all rows
-/// are there and none was altered, and they stand in the order of scenes, repeats and contenders, whatever their order
-/// in the file.
+/// are there, none was altered, and they stand in the order of scenes, repeats and contenders, whatever the file's.
 /// @throws aabb::input_error where that is not so, with file, and line where there is one.
 [[nodiscard]] std::vector<row> verified_rows(const std::filesystem::path& folder);
 
@@ -92,8 +92,7 @@ struct difference {
 };
 [[nodiscard]] std::vector<difference> read_differences(const std::filesystem::path& file);
 
-/// Keeps other processes from writing results into a folder, which it creates, as long as it lives, or a process that
-/// was started meanwhile.
+/// Keeps others from writing results into a folder, which it makes, while it or a process started meanwhile lives.
 class folder_lock {
 public:
     /// @throws aabb::input_error where another process has it, or the folder cannot be made.
@@ -110,7 +109,6 @@ private:
 /// sets others aside, as results.csv.old.
 enum class existing_results { refuse, resume, replace };
 
-/// The experiment that a folder of results is of.
 struct experiment_record {
     std::string name;
     std::string file;  ///< the config, as the user named it
@@ -146,7 +144,6 @@ public:
     void add(const row& finished);
     /// Deletes the rows of a contender in a scene.
     void drop(const scene_choice& scene, const contender_name& name);
-    /// Deletes those of a repeat.
     void drop(const scene_choice& scene, std::uint64_t repeat);
     /// Notes the exact digest of a scene in the manifest.
     void set_digest(const scene_choice& scene, const std::string& digest);
@@ -190,6 +187,9 @@ struct manifest_summary {
 /// @throws aabb::input_error where it is not a manifest.
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 
+/// XXH3-64 in 16 hexadecimal digits.
+[[nodiscard]] std::string hash_of_text(std::string_view text);
+
 /// "2026-01-31T12:00:00Z"
 [[nodiscard]] std::string date_now();
 
@@ -201,8 +201,6 @@ struct manifest_summary {
 // What the parts of the module share.
 namespace aabblab {
 
-void make_folder(const std::filesystem::path& folder);
-
 /// The inverse of `parameters_json`.
 /// @returns false where the text is not such an object
 [[nodiscard]] bool set_parameters(scene_choice& scene, const std::string& json);
@@ -210,10 +208,6 @@ void make_folder(const std::filesystem::path& folder);
 [[nodiscard]] std::string csv_header_of_rows();
 [[nodiscard]] std::string csv_of(const row& r);
 [[nodiscard]] std::string csv_of(std::span<const difference> differences);
-
-/// @param seen hears each row with the line that it begins in
-[[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file,
-                                         const std::function<void(const row&, std::size_t)>& seen);
 
 /// What shows whether a table was altered, whatever the order of its rows and the ends of its lines.
 struct table_seal {
@@ -240,13 +234,11 @@ struct sealed_manifest {
 /// @throws aabb::input_error where it is not a manifest, or was altered since it was sealed.
 [[nodiscard]] sealed_manifest read_sealed_manifest(const std::filesystem::path& file);
 
-struct resumed_manifest {
-    std::string date;
-    scene_digests digests;
-};
 /// Why results cannot be continued: they are of another config, build or machine. Empty where they can.
 [[nodiscard]] std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e);
-/// @throws aabb::input_error where that is so.
-[[nodiscard]] resumed_manifest resume_manifest(const std::filesystem::path& file, const experiment_record& e);
+/// The date and the digests of results that are continued.
+/// @throws aabb::input_error where they cannot be.
+[[nodiscard]] std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file,
+                                                                    const experiment_record& e);
 
 }  // namespace aabblab

@@ -8,8 +8,7 @@ namespace aabblab {
 namespace {
 
 /// The columns of a table in one place: calls `field(name, member)` for each.
-template <class Name, class Field>
-void for_each_name(Name& name, Field field) {
+void for_each_name(auto& name, auto field) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) field(std::string(name_of(kind)), name[kind]);
     field("engine", name.engine);
 }
@@ -27,19 +26,17 @@ void for_each_column_of_scene(Scene& scene, Field field) {
     field("seed", scene.seed);
 }
 
-template <class Row, class Field>
-void for_each_key(Row& r, Field field) {
+constexpr auto key_columns = [](auto& r, auto field) {
     field("experiment", r.experiment);
     for_each_column_of_scene(r.scene, field);
     field("objects", r.objects);
     field("frames", r.frames);
     for_each_name(r.name, field);
     field("repeat", r.repeat);
-}
+};
 
-template <class Row, class Field>
-void for_each_column(Row& r, Field field) {
-    for_each_key(r, field);
+constexpr auto columns_of_row = [](auto& r, auto field) {
+    key_columns(r, field);
     field("process", r.process);
     field("triangles", r.triangles);
     field("build_ms", r.build_ms);
@@ -61,16 +58,15 @@ void for_each_column(Row& r, Field field) {
     field("invented", r.invented);
     field("box_inflation", r.box_inflation);
     field("status", r.status);
-}
+};
 
-template <class Difference, class Field>
-void for_each_column_of_difference(Difference& d, Field field) {
+constexpr auto columns_of_difference = [](auto& d, auto field) {
     for_each_column_of_scene(d.scene, field);
     for_each_name(d.name, field);
     field("what", d.what);
     field("class", d.kind);
     field("count", d.count);
-}
+};
 
 template <class Scene>
 std::string written(const parameters_of<Scene>& parameters) {
@@ -82,8 +78,6 @@ bool taken(const parameters_of<scene_choice>& to, const std::string& text) {
 std::string expected_of(const parameters_of<scene_choice>&) {
     return "a JSON object of settings";
 }
-constexpr auto columns_of_row = [](auto& r, auto field) { for_each_column(r, field); };
-constexpr auto columns_of_difference = [](auto& d, auto field) { for_each_column_of_difference(d, field); };
 
 /// What is quoted of a field that may be of any length.
 constexpr std::size_t longest_quote = 60;
@@ -108,7 +102,7 @@ void require_header(const std::string& file, const csv_record& found, const std:
 }
 
 std::string row::key() const {
-    return csv_line(fields_of(*this, [](const row& r, auto field) { for_each_key(r, field); }));
+    return csv_line(fields_of(*this, key_columns));
 }
 
 std::string csv_header_of_rows() {
@@ -123,9 +117,6 @@ std::string csv_of(std::span<const difference> differences) {
     return text;
 }
 
-std::vector<row> read_rows(const std::filesystem::path& file) {
-    return read_rows(file, [](const row&, std::size_t) {});
-}
 std::vector<row> read_rows(const std::filesystem::path& file,
                            const std::function<void(const row&, std::size_t)>& seen) {
     std::map<std::string, std::size_t> lines;  // by key
@@ -136,7 +127,7 @@ std::vector<row> read_rows(const std::filesystem::path& file,
         if (const auto [before, is_new] = lines.emplace(r.key(), line); !is_new)
             throw aabb::input_error(place + "the measurement of line " + std::to_string(before->second) +
                                     " stands here again, so two runs have written into one folder");
-        seen(r, line);
+        if (seen) seen(r, line);
     };
     const csv_text table = read_csv(text_of_file(file), file.string());
     return rows_in<row>(table.records, file.string(), columns_of_row, later_columns, checked);

@@ -20,31 +20,17 @@ void require_seal(const std::filesystem::path& table, const table_seal& stated) 
 }
 
 /// The places of scenes in the manifest, with their digests.
-class known_scenes {
-public:
-    explicit known_scenes(const sealed_manifest& made) {
-        for (const auto& [scene, digest] : made.scenes) known_.emplace(scene, known{known_.size(), digest});
-    }
+using known_scenes = std::map<scene_choice, std::pair<std::size_t, std::string>>;
 
-    /// @param place "results.csv:17: "
-    void require(const row& r, const std::string& place) const {
-        const auto found = known_.find(r.scene);
-        if (found == known_.end())
-            throw aabb::input_error(place + "manifest.json has no scene " + r.scene.kind + " with these parameters");
-        if (const std::string& digest = found->second.digest;
-            r.status == "exact" && !digest.empty() && r.digest != digest)
-            throw aabb::input_error(place + "the row is exact, but its digest is '" + r.digest +
-                                    "'; that of the scene is " + digest + ", as manifest.json says");
-    }
-    [[nodiscard]] std::size_t index(const scene_choice& scene) const { return known_.at(scene).index; }
-
-private:
-    struct known {
-        std::size_t index;
-        std::string digest;
-    };
-    std::map<scene_choice, known> known_;
-};
+/// @param place "results.csv:17: "
+void require_known(const known_scenes& known, const row& r, const std::string& place) {
+    const auto found = known.find(r.scene);
+    if (found == known.end())
+        throw aabb::input_error(place + "manifest.json has no scene " + r.scene.kind + " with these parameters");
+    if (const std::string& digest = found->second.second; r.status == "exact" && !digest.empty() && r.digest != digest)
+        throw aabb::input_error(place + "the row is exact, but its digest is '" + r.digest +
+                                "'; that of the scene is " + digest + ", as manifest.json says");
+}
 
 /// By scene, repeat and contender.
 void sort_as_played(std::vector<row>& rows, const known_scenes& scenes, const std::vector<contender_name>& contenders) {
@@ -52,7 +38,7 @@ void sort_as_played(std::vector<row>& rows, const known_scenes& scenes, const st
     for (const contender_name& name : contenders) turns.emplace(name, turns.size());
     std::vector<std::tuple<std::size_t, std::uint64_t, std::size_t, std::size_t>> order;
     for (std::size_t i = 0; i < rows.size(); ++i)
-        order.emplace_back(scenes.index(rows[i].scene), rows[i].repeat, turns[rows[i].name], i);
+        order.emplace_back(scenes.at(rows[i].scene).first, rows[i].repeat, turns[rows[i].name], i);
     std::ranges::sort(order);
     std::vector<row> sorted;
     sorted.reserve(rows.size());
@@ -76,13 +62,14 @@ table_seal seal_of(const std::filesystem::path& table) {
 std::vector<row> verified_rows(const std::filesystem::path& folder) {
     const sealed_manifest made = read_sealed_manifest(folder / "manifest.json");
     const std::filesystem::path table = folder / "results.csv";
-    const known_scenes scenes(made);
+    known_scenes scenes;
+    for (const auto& [scene, digest] : made.scenes) scenes.emplace(scene, std::pair(scenes.size(), digest));
     std::vector<row> rows = read_rows(table, [&](const row& r, std::size_t line) {
         const std::string place = table.string() + ":" + std::to_string(line) + ": ";
         if (r.experiment != made.experiment)
             throw aabb::input_error(place + "the row is of the experiment '" + r.experiment +
                                     "', and manifest.json of '" + made.experiment + "'");
-        scenes.require(r, place);
+        require_known(scenes, r, place);
     });
     if (!made.seal) return rows;
     require_seal(table, made.seal->results);

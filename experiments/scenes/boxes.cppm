@@ -4,12 +4,8 @@ module;
 /// What the kinds of scenes of boxes share.
 module aabblab.scenes:boxes;
 
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
-import aabb.std;
 import aabblab.files;
-import :drift;
 import :parameters;
 import :random;
 import :spacing;
@@ -77,6 +73,22 @@ inline constexpr auto motion_parameters =
     return Eigen::Matrix<std::uint64_t, 3, 1>(cell / (side * side), cell / side % side, cell % side).cast<double>();
 }
 
+/// Edges evenly spread in the logarithm from 1 to a ratio, in ascending order. The i-th is ratio^(i / (count - 1)),
+/// multiplied from roots of the ratio, one for each binary digit of the exponent: std::pow differs between libraries.
+[[nodiscard]] inline std::vector<double> spread_edges(std::uint32_t count, double ratio) {
+    constexpr int digits = 32;
+    std::array<double, digits + 1> roots{};
+    roots[digits] = ratio;
+    for (std::size_t k = digits; k > 0; --k) roots[k - 1] = std::sqrt(roots[k]);
+    std::vector<double> edges(count, 1);
+    for (std::uint64_t i = 1; i < count; ++i) {
+        const std::uint64_t exponent = (i << digits) / (count - 1);
+        for (std::size_t k = 0; k <= digits; ++k)
+            if (exponent >> k & 1) edges[i] *= roots[k];
+    }
+    return edges;
+}
+
 /// A scene of boxes that is made as it is played. A kind moves what it holds and places the boxes of a frame.
 class generated_boxes : public aabb::box_scene {
 public:
@@ -102,7 +114,6 @@ protected:
             size.objects * (bytes_each + sizeof(aabb::box)));
     }
 
-    /// From one frame to the next.
     virtual void advance() {}
     virtual void place(std::span<aabb::box> boxes) = 0;
     /// The number of the frame that is advanced to, or placed.

@@ -3,11 +3,9 @@ module;
 
 module aabblab.scenes;
 
-import aabb.geometry;
 import aabblab.stepping;
 import :boxes;
-import :random;
-import :rotation;
+import :posed_meshes;
 
 namespace aabblab {
 

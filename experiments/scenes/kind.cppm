@@ -3,10 +3,7 @@
 /// kind that plays a file has no seed: it opens what its configuration names as `file`.
 module aabblab.scenes:kind;
 
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
-import aabb.std;
 import aabblab.files;
 import :scene_choice;
 

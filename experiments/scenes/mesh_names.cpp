@@ -1,7 +1,5 @@
 module aabblab.scenes;
 
-import aabb.base;
-import aabb.geometry;
 import aabb.registry;
 import :icosphere;
 import :kind;
@@ -44,6 +42,12 @@ std::array<std::filesystem::path, 3> places(std::string_view name, const std::fi
     return {name, folder / name, data_folder() / name};
 }
 
+bool is_there(std::string_view name, const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return std::ranges::any_of(places(name, folder),
+                               [&](const auto& p) { return std::filesystem::exists(p, ignored); });
+}
+
 /// Names of what could have been meant: shapes and the meshes of the data folder.
 std::vector<std::string> known_names() {
     std::vector<std::string> names;
@@ -69,9 +73,7 @@ struct ordered_name {
 /// A file may have such a name itself.
 ordered_name taken_apart(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
-    std::error_code ignored;
-    if (std::ranges::any_of(places(name, folder), [&](const auto& p) { return std::filesystem::exists(p, ignored); }))
-        return {name, {}};
+    if (is_there(name, folder)) return {name, {}};
     for (std::size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
         const std::string_view before = name.substr(0, at);
         if (!before.ends_with(':') && !(before.ends_with(',') && before.find(':') != std::string_view::npos)) continue;
@@ -125,10 +127,7 @@ std::string_view name_without_order(std::string_view name, const std::filesystem
 
 bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
     name = name_without_order(name, folder);
-    std::error_code ignored;
-    return is_shape(name.substr(0, name.find(':'))) || std::ranges::any_of(places(name, folder), [&](const auto& p) {
-               return std::filesystem::exists(p, ignored);
-           });
+    return is_shape(name.substr(0, name.find(':'))) || is_there(name, folder);
 }
 
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {

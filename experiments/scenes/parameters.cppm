@@ -18,7 +18,6 @@ template <class Config>
                       frames_parameter<Config>()};
 }
 
-/// Whether meshes are scaled to one size.
 enum class scaling : unsigned char { yes, no };
 
 template <class Config>

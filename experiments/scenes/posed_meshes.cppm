@@ -1,13 +1,79 @@
-/// What the kinds of scenes of meshes share.
+module;
+#include <Eigen/Geometry>
+
+/// What the kinds of scenes of meshes share: rotations in double, and what places a mesh with one. Products are written
+/// out where Eigen's round as the processor likes: quaternions, and matrices with vectors.
 module aabblab.scenes:posed_meshes;
 
-import aabb.geometry;
+import aabb.eigen;
 import aabb.pipeline;
-import aabb.std;
 import :parameters;
-import :rotation;
+import :random;
 
 namespace aabblab {
+
+[[nodiscard]] inline double square_of(const Eigen::Quaterniond& q) {
+    return q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
+}
+
+[[nodiscard]] inline Eigen::Quaterniond normalised(const Eigen::Quaterniond& q) {
+    return Eigen::Quaterniond(q.coeffs() / std::sqrt(square_of(q)));
+}
+
+/// q after p.
+[[nodiscard]] inline Eigen::Quaterniond composed(const Eigen::Quaterniond& q, const Eigen::Quaterniond& p) {
+    return normalised({q.w() * p.w() - q.x() * p.x() - q.y() * p.y() - q.z() * p.z(),
+                       q.w() * p.x() + q.x() * p.w() + q.y() * p.z() - q.z() * p.y(),
+                       q.w() * p.y() - q.x() * p.z() + q.y() * p.w() + q.z() * p.x(),
+                       q.w() * p.z() + q.x() * p.y() - q.y() * p.x() + q.z() * p.w()});
+}
+
+/// By 2 atan(angle / 2), which is `angle` radians for small ones, about a unit axis; needs no sine.
+[[nodiscard]] inline Eigen::Quaterniond turn(const Eigen::Vector3d& axis, double angle) {
+    const double t = angle / 2;
+    return normalised({1, t * axis[0], t * axis[1], t * axis[2]});
+}
+
+/// Evenly over all rotations.
+[[nodiscard]] inline Eigen::Quaterniond random_rotation(random_source& random) {
+    while (true) {
+        const Eigen::Quaterniond q{random.within(), random.within(), random.within(), random.within()};
+        if (square_of(q) <= 1 && square_of(q) > 1e-6) return normalised(q);
+    }
+}
+
+/// Turns a mesh about its centre (in the mesh's frame) and brings the centre to a place.
+[[nodiscard]] inline aabb::pose placed(const Eigen::Vector3d& centre, const Eigen::Quaterniond& q,
+                                       const Eigen::Vector3d& place) {
+    const Eigen::Matrix3d r = q.toRotationMatrix();
+    Eigen::Isometry3d at;
+    at.linear() = r;
+    at.translation() = place - product(r, centre);
+    return aabb::to_pose(at);
+}
+
+[[nodiscard]] inline Eigen::Vector3d centre_of(const aabb::box& b) {
+    return (in_eigen(b.min) + in_eigen(b.max)) / 2;
+}
+
+[[nodiscard]] inline double longest_extent(const aabb::box& b) {
+    const int k = aabb::longest_axis(b);
+    return double{b.max[k]} - double{b.min[k]};
+}
+
+/// Moves the mesh's box to the origin and scales its longest extent; each vertex is rounded to float once.
+inline void normalise(aabb::mesh& m, double wanted = 1) {
+    const aabb::box bounds = aabb::bounds_of(m);
+    const Eigen::Vector3d centre = centre_of(bounds);
+    const double extent = longest_extent(bounds);
+    if (extent == 0) return;
+    for (aabb::vec3f& v : m.vertices) {
+        Eigen::Vector3d scaled = (in_eigen(v) - centre) / extent * wanted;
+        // A vertex that no triangle uses may lie anywhere; it stays finite.
+        for (double& x : scaled) x = std::fmin(std::fmax(x, -0x1p100), 0x1p100);
+        v = in_float(scaled);
+    }
+}
 
 /// A scene of meshes whose poses are made as it is played.
 class generated_meshes : public aabb::mesh_scene {
@@ -31,7 +97,6 @@ protected:
             for (aabb::mesh& m : meshes) normalise(m);
     }
 
-    /// From one frame to the next.
     virtual void advance() = 0;
     /// @param frame its number, from 0
     virtual void place(std::size_t frame, std::vector<aabb::pose>& poses) = 0;

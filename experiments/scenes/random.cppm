@@ -2,8 +2,8 @@ module;
 #include <Eigen/Core>
 #include <random>
 
-/// Random numbers that are the same with every compiler and on every machine: the standard fixes the engine, not its
-/// distributions, and of functions only the square root is rounded alike everywhere.
+/// Random numbers, points that drift by them and roots that are the same with every compiler and on every machine: the
+/// standard fixes the engine, not its distributions, and of functions only the square root is rounded alike everywhere.
 module aabblab.scenes:random;
 
 import aabb.std;
@@ -41,6 +41,85 @@ public:
 
 private:
     std::mt19937_64 engine_;
+};
+
+/// The positive root of x^3 = value >= 0 by Newton's method: std::cbrt differs between libraries in its last digit.
+[[nodiscard]] inline double cube_root(double value) {
+    if (value == 0) return 0;
+    double root = value > 1 ? value : 1;
+    while (true) {
+        const double next = (2 * root + value / (root * root)) / 3;
+        if (!(next < root)) return root;
+        root = next;
+    }
+}
+
+/// The edge of the cube, square or segment (3, 2, 1 axes) of that volume, area or length.
+[[nodiscard]] inline double edge_of(double volume, int axes) {
+    return axes == 3 ? cube_root(volume) : axes == 2 ? std::sqrt(volume) : volume;
+}
+
+/// The way of a point in a frame; points have steps spread evenly over the range.
+struct step_range {
+    double least;
+    double most;
+};
+
+/// Points in the cube [0, width]^3, each on a straight line with a constant step a frame. The walls reflect; a
+/// hundredth of the points, drawn anew, change their direction every frame.
+class drifting_points {
+public:
+    drifting_points() = default;
+    /// On the first `axes` axes only; the other coordinates stay 0.
+    drifting_points(std::uint32_t count, int axes, double width, step_range steps, random_source& random)
+        : axes_(axes), width_(width > 0 ? width : 0) {
+        points_.reserve(count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            point& p = points_.emplace_back();
+            for (int k = 0; k < axes; ++k) p.at[k] = random.unit() * width_;
+            p.step = steps.least + random.unit() * (steps.most - steps.least);
+            p.direction = random.direction(axes);
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
+    [[nodiscard]] const Eigen::Vector3d& operator[](std::size_t i) const noexcept { return points_[i].at; }
+
+    void advance(random_source& random) {
+        const auto count = static_cast<std::uint32_t>(points_.size());
+        // What is left of a hundredth is carried over, so that few objects turn as often as many do.
+        for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100)
+            points_[random.below(count)].direction = random.direction(axes_);
+        for (point& p : points_)
+            for (int k = 0; k < axes_; ++k) move(p, k);
+    }
+
+    static constexpr double bytes_each = 56;
+
+private:
+    struct point {
+        Eigen::Vector3d at = Eigen::Vector3d::Zero();
+        Eigen::Vector3d direction;
+        double step = 0;
+    };
+    static_assert(sizeof(point) == static_cast<std::size_t>(bytes_each));
+
+    void move(point& p, int k) const {
+        if (width_ == 0) return;
+        // Unfolded, the way between two walls repeats after twice the width.
+        double along = std::fmod(p.at[k] + p.step * p.direction[k], 2 * width_);
+        if (along < 0) along += 2 * width_;
+        if (along > width_) {
+            along = 2 * width_ - along;
+            p.direction[k] = -p.direction[k];
+        }
+        p.at[k] = along;
+    }
+
+    int axes_ = 0;
+    double width_ = 0;
+    std::vector<point> points_;
+    std::uint64_t to_turn_ = 0;
 };
 
 }  // namespace aabblab

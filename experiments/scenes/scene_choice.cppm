@@ -43,8 +43,7 @@ public:
     return scene;
 }
 
-/// What a scene is apart from its kind and its seed, to be read, not to be taken apart again:
-/// "objects=1000 frames=20 meshes=elephant.off+torus_knot".
+/// What a scene is beside its kind and its seed, to be read: "objects=1000 frames=20 meshes=elephant.off+torus_knot".
 [[nodiscard]] std::string settings_text(const scene_choice& scene);
 /// The same with "seed=1" behind, where the scene has a seed.
 [[nodiscard]] std::string parameters_text(const scene_choice& scene);

@@ -1,7 +1,7 @@
 module aabblab.scenes;
 
-import aabb.base;
 import :kind;
+import :random;
 
 namespace aabblab {
 
@@ -38,6 +38,18 @@ std::vector<std::string> scene_names() {
     std::vector<std::string> names;
     for (const scene_kind& k : kinds()) names.push_back(k.info.name);
     return names;
+}
+
+double mean_spacing(const aabb::vec3d& sides, std::size_t objects) {
+    double volume = 1;
+    int axes = 0;
+    for (const double side : sides.at)
+        if (side > 0) {
+            volume *= side;
+            ++axes;
+        }
+    if (axes == 0 || objects == 0) return 0;
+    return edge_of(volume / static_cast<double>(objects), axes);
 }
 
 std::string settings_text(const scene_choice& scene) {

@@ -2,7 +2,6 @@
 export module aabblab.scenes;
 
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 import aabblab.files;
 export import :dropped_world;

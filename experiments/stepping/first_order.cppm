@@ -1,11 +1,8 @@
-/// The same motion as a system of first order, twice as large: ways since some moment, then velocities. Ways, since a
-/// contact's depth can be a billionth of a position, and solvers change each value by a share of it to see what
-/// follows.
+/// The same motion as a system of first order, twice as large: ways since some moment, then velocities. Ways, since
+/// solvers change each value by a share of it, and a contact's depth can be a billionth of a position.
 module aabblab.stepping:first_order;
 
-import aabb.std;
 import :dynamics;
-import :integrator;
 
 namespace aabblab {
 

@@ -3,8 +3,5 @@ export module aabblab.stepping;
 
 import aabb.std;
 
-export import :body;
 export import :contact_law;
 export import :dynamics;
-export import :integrator;
-export import :overlap_volume;

@@ -1,7 +1,10 @@
 /// Compositions and engines whose effect on a trajectory is told.
 module aabblab.stiff:method;
 
+import aabb.policy;
+import aabb.registry;
 import aabb.std;
+import aabb.validation;
 import aabblab.trials;
 
 namespace aabblab {
@@ -12,13 +15,43 @@ struct method {
 };
 
 /// The default composition but for these strategies, as the command line takes them: "triangle moller:epsilon=none".
-[[nodiscard]] method composed(std::string_view changes);
+[[nodiscard]] method composed(std::string_view changes) {
+    aabb::composition c;
+    const std::size_t space = changes.find(' ');
+    const std::string_view name = changes.substr(0, space);
+    const auto kind = std::ranges::find(aabb::strategy_kinds, name, &aabb::name_of);
+    c[*kind] = aabb::parse_strategy(changes.substr(space + 1));
+    return {std::string(changes.substr(space + 1)), contender_of(c, true)};
+}
 
 /// Every triangle test of the registry in each of its forms, and each engine that collides meshes.
-[[nodiscard]] std::vector<method> triangle_methods();
-/// Every way in which a tree may be stored smaller.
-[[nodiscard]] std::vector<method> tree_methods();
-/// Lists of neighbours that are searched for again in time, and lists that are not.
-[[nodiscard]] std::vector<method> list_methods();
+[[nodiscard]] std::vector<method> triangle_methods() {
+    std::vector<method> all;
+    for (const char* const test :
+         {"triangle exact", "triangle interval_arithmetic", "triangle interval_arithmetic:fallback=intersects",
+          "triangle devillers_guigue", "triangle devillers_guigue:precision=float", "triangle separating_axes",
+          "triangle separating_axes:precision=double", "triangle moller", "triangle moller:epsilon=none",
+          "triangle moller:epsilon=scaled", "triangle moller_double"})
+        all.push_back(composed(test));
+    for (const aabb::engine_info& engine : aabb::engines())
+        // brute_force decides on triangles as cgal does, and takes longer.
+        if (engine.collides_meshes && engine.name != "brute_force")
+            if (std::optional<contender> who = contender_of(engine, true))
+                all.push_back({engine.name, *std::move(who)});
+    return all;
+}
+
+/// Every way in which a tree may be stored smaller; lists of neighbours that are searched for again in time, and lists
+/// that are not.
+[[nodiscard]] std::vector<method> tree_and_list_methods() {
+    std::vector<method> all;
+    for (const char* const changes :
+         {"tree compressed", "tree quantized:bits=16", "tree quantized:bits=8", "tree quantized:bits=4",
+          "prepare neighbour_list:margin=0.1", "prepare neighbour_list:margin=0.05,every=4",
+          "prepare neighbour_list:margin=0,every=4", "prepare neighbour_list:margin=0,every=16",
+          "prepare neighbour_list:margin=0,every=32", "prepare neighbour_list:margin=0,every=64"})
+        all.push_back(composed(changes));
+    return all;
+}
 
 }  // namespace aabblab

@@ -1,22 +1,45 @@
 /// Rules that verdicts follow.
 module aabblab.stiff:rules;
 
+import aabb.base;
 import aabb.std;
-import :study;
+import aabblab.fmt;
+import aabblab.stiff;
 
 namespace aabblab {
 
-[[nodiscard]] stiff_row told(std::string subject, std::string quantity, double measured);
-/// Measured differs from `expected` by no more than `share` of it.
-[[nodiscard]] stiff_row within(std::string subject, std::string quantity, double measured, double expected,
-                               double share);
-[[nodiscard]] stiff_row at_most(std::string subject, std::string quantity, double measured, double limit);
-[[nodiscard]] stiff_row at_least(std::string subject, std::string quantity, double measured, double limit);
+/// "0.05", with as many digits as it needs.
+[[nodiscard]] std::string short_number(double value) {
+    return fmt::format("{:.4g}", value);
+}
 
 /// Plays one part of a study. Where an integrator gives up, that is a row which does not hold.
-void unless_it_gives_up(stiff_result& result, std::string_view integrator, const std::function<void()>& part);
+void unless_it_gives_up(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
+    try {
+        part();
+    } catch (const aabb::input_error& error) {
+        result.add({error.what(), "gives up: " + std::string(integrator), 1, "never", false});
+    }
+}
 
-/// "0.05", with as many digits as it needs.
-[[nodiscard]] std::string short_number(double value);
+[[nodiscard]] stiff_row told(std::string subject, std::string quantity, double measured) {
+    return {std::move(subject), std::move(quantity), measured, "", true};
+}
+
+/// Measured differs from `expected` by no more than `share` of it.
+[[nodiscard]] stiff_row within(std::string subject, std::string quantity, double measured, double expected,
+                               double share) {
+    return {std::move(subject), std::move(quantity), measured,
+            fmt::format("{} ± {:.3g} %", short_number(expected), 100 * share),
+            std::abs(measured - expected) <= share * std::abs(expected)};
+}
+
+[[nodiscard]] stiff_row at_most(std::string subject, std::string quantity, double measured, double limit) {
+    return {std::move(subject), std::move(quantity), measured, "≤ " + short_number(limit), measured <= limit};
+}
+
+[[nodiscard]] stiff_row at_least(std::string subject, std::string quantity, double measured, double limit) {
+    return {std::move(subject), std::move(quantity), measured, "≥ " + short_number(limit), measured >= limit};
+}
 
 }  // namespace aabblab

@@ -1,38 +1,86 @@
 module aabblab.stiff:simulation;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.std;
 import aabblab.trials;
 import aabblab.stepping;
+import aabblab.stopwatch;
 
 namespace aabblab {
+
+/// A scene that has a frame wherever an integrator looks.
+class posed_bodies final : public aabb::mesh_scene {
+public:
+    explicit posed_bodies(const stepped_world& world) : world_(world) {
+        meshes = world.meshes;
+        mesh_of = world.mesh_of();
+        position_ = world.start().position;
+    }
+
+    void look_at(std::span<const double> position) { position_.assign(position.begin(), position.end()); }
+
+    [[nodiscard]] std::size_t frames() const override { return std::numeric_limits<std::size_t>::max(); }
+    bool next(std::vector<aabb::pose>& poses) override {
+        world_.place(position_, poses);
+        return true;
+    }
+
+private:
+    const stepped_world& world_;
+    std::vector<double> position_;
+};
 
 /// A world that one integrator steps and one contender finds the contacts of.
 class simulation {
 public:
     /// @param world must outlive this
     /// @param tolerance of an integrator that chooses its own steps
-    simulation(const stepped_world& world, const contender& who, const integrator_info& stepping, double tolerance = 0);
+    simulation(const stepped_world& world, const contender& who, const integrator_info& stepping, double tolerance = 0)
+        : poses_(new posed_bodies(world)),
+          play_(std::unique_ptr<aabb::mesh_scene>(poses_)),
+          player_(who, play_, aabb::instrumentation::none),
+          dynamics_(world),
+          integrator_(stepping.make(tolerance)),
+          state_(world.start()),
+          ignored_(state_.position.size()) {
+        acceleration_ = [this](const std::vector<double>& position, const std::vector<double>& velocity,
+                               std::vector<double>& acceleration) {
+            dynamics_.accelerate(position, velocity, find(position), acceleration);
+        };
+    }
 
     /// By so many seconds.
-    void advance(double step);
+    void advance(double step) { integrator_->advance(acceleration_, state_, step); }
 
     [[nodiscard]] const motion_state& state() const { return state_; }
     [[nodiscard]] std::uint64_t detections() const { return detections_; }
     [[nodiscard]] double detection_ms() const { return detection_ms_; }
 
     /// What is found where the bodies are now, sorted; looked for only where the integrator did not end there.
-    [[nodiscard]] std::span<const aabb::contact> contacts();
+    [[nodiscard]] std::span<const aabb::contact> contacts() {
+        return looked_at_ == state_.position ? std::span<const aabb::contact>(player_.sorted_contacts())
+                                             : find(state_.position);
+    }
     /// Of motion, height and springs, J; of a shared volume without its pressure.
-    [[nodiscard]] double energy();
+    [[nodiscard]] double energy() {
+        dynamics_.accelerate(state_.position, state_.velocity, contacts(), ignored_);
+        return dynamics_.mechanical_energy(state_) + dynamics_.spring_energy();
+    }
 
 private:
-    class posed_bodies;
+    std::span<const aabb::contact> find(std::span<const double> position) {
+        poses_->look_at(position);
+        looked_at_.assign(position.begin(), position.end());
+        play_.next();
+        detection_ms_ += milliseconds_of([&] {
+            player_.update();
+            player_.search();
+            player_.detect();
+        });
+        ++detections_;
+        return player_.sorted_contacts();
+    }
 
-    std::span<const aabb::contact> find(std::span<const double> position);
-
-    const stepped_world& world_;
     posed_bodies* poses_;  // in play_
     scene_play play_;
     player player_;

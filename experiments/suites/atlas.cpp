@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.suites;
 
+import aabblab.fmt;
 import aabblab.output;
 
 namespace aabblab {

@@ -1,10 +1,8 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.suites;
 
 import aabblab.errors;
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.output;
 import aabblab.stopwatch;
 
@@ -58,12 +56,16 @@ std::string usual_study() {
     return AABBLAB_ERROR_CONFIGS "/triangle_tests.toml";
 }
 
-std::vector<std::filesystem::path> error_configs() {
+std::vector<std::filesystem::path> configs_in(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> all;
-    for (const auto& file : std::filesystem::directory_iterator(AABBLAB_ERROR_CONFIGS))
+    for (const auto& file : std::filesystem::directory_iterator(folder))
         if (file.path().extension() == ".toml") all.push_back(file.path());
     std::ranges::sort(all);
     return all;
+}
+
+std::vector<std::filesystem::path> error_configs() {
+    return configs_in(AABBLAB_ERROR_CONFIGS);
 }
 
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown) {

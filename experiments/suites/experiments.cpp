@@ -1,5 +1,4 @@
 module;
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -10,6 +9,7 @@ import aabb.policy;
 import aabb.registry;
 import aabb.validation;
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.inputs;
 import aabblab.metrics;
 import aabblab.output;

@@ -40,7 +40,9 @@ enum class printed { tables, tables_and_counts, nothing };
 /// The study of triangle tests, which `errors` measures where nothing is said.
 [[nodiscard]] std::string usual_study();
 
-/// Configs of the project's own studies of error against run time, by name.
+/// Configs in a folder, by name.
+[[nodiscard]] std::vector<std::filesystem::path> configs_in(const std::filesystem::path& folder);
+/// Of the project's own studies of error against run time.
 [[nodiscard]] std::vector<std::filesystem::path> error_configs();
 
 /// Measures a study into a folder: its config, errors.csv or results.csv and intersections.csv, and what is printed,

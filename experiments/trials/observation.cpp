@@ -1,9 +1,5 @@
 module aabblab.trials;
 
-import aabb.geometry;
-import aabb.pipeline;
-import aabblab.stopwatch;
-
 namespace aabblab {
 
 namespace {

@@ -1,11 +1,6 @@
 module aabblab.trials;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.pipeline;
 import aabblab.pair_output;
-import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -17,19 +12,6 @@ scene_play::scene_play(const scene_choice& choice) {
     }
     meshes_ = make_mesh_scene(choice);
     if (info->plays_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
-}
-
-scene_play::scene_play(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
-
-scene_play::scene_play(std::unique_ptr<aabb::mesh_scene> scene, std::string file)
-    : meshes_(std::move(scene)), file_(std::move(file)) {}
-
-std::size_t scene_play::objects() const {
-    return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects();
-}
-
-std::size_t scene_play::frames() const {
-    return meshes_ ? meshes_->frames() : box_scene_->frames();
 }
 
 bool scene_play::next() {
@@ -87,18 +69,6 @@ void player::detect() {
     if (pipeline_) scene_.in_frame([&] { pipeline_->detect(); });
 }
 
-std::optional<aabb::contact> player::first_contact() {
-    return pipeline_->first_contact();
-}
-
-std::uint64_t player::count_contacts() {
-    return pipeline_->count_contacts();
-}
-
-void player::each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take) {
-    made_.local->each_self_pair(mesh, take);
-}
-
 const std::vector<aabb::index_pair>& player::sorted_pairs() {
     if (pipeline_) pairs_.assign(pipeline_->candidates().begin(), pipeline_->candidates().end());
     sort_rows(pairs_);
@@ -137,10 +107,6 @@ std::vector<aabb::part_bytes> player::local_bytes() const {
     parts.push_back({"triangles", triangles});
     parts.push_back({"vertices", vertices});
     return parts;
-}
-
-std::size_t player::buffer_bytes() const {
-    return pipeline_ ? pipeline_->bytes() : aabb::bytes_of(pairs_);
 }
 
 std::size_t player::held_bytes() const {
@@ -204,10 +170,6 @@ void tally::add(std::span<const aabb::index_pair> pairs, std::span<const aabb::c
         digest_.add(frame_, pairs);
     }
     ++frame_;
-}
-
-std::optional<std::uint64_t> tally::contacts() const {
-    return meshes_ ? std::optional(contacts_) : std::nullopt;
 }
 
 }  // namespace aabblab

@@ -5,7 +5,6 @@ module aabblab.trials;
 
 import aabblab.metrics;
 import aabblab.progress;
-import aabblab.stopwatch;
 
 namespace aabblab {
 
@@ -52,27 +51,18 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
 }
 
 /// Who is not repeated, of the rows of a scene: those who took too long in the first repeat of the share.
-class hopeless {
-public:
-    hopeless(const experiment& e, const share_of_repeats& share, std::span<const row> rows) {
-        if (!e.patience) return;
-        const row_value& whole = measured("whole_ms");
-        double least = std::numeric_limits<double>::infinity();
-        for (const row& r : rows)
-            if (r.repeat == share.begin) least = std::min(least, whole(r).value_or(least));
-        for (const row& r : rows)
-            if (r.repeat == share.begin && whole(r).value_or(0) > static_cast<double>(*e.patience) * least)
-                names_.push_back(r.name);
-    }
-
-    [[nodiscard]] std::size_t size() const { return names_.size(); }
-    [[nodiscard]] bool contains(const contender_name& name) const {
-        return std::ranges::find(names_, name) != names_.end();
-    }
-
-private:
-    std::vector<contender_name> names_;
-};
+std::set<contender_name> hopeless(const experiment& e, const share_of_repeats& share, std::span<const row> rows) {
+    std::set<contender_name> names;
+    if (!e.patience) return names;
+    const row_value& whole = measured("whole_ms");
+    double least = std::numeric_limits<double>::infinity();
+    for (const row& r : rows)
+        if (r.repeat == share.begin) least = std::min(least, whole(r).value_or(least));
+    for (const row& r : rows)
+        if (r.repeat == share.begin && whole(r).value_or(0) > static_cast<double>(*e.patience) * least)
+            names.insert(r.name);
+    return names;
+}
 
 /// Ratios are formed within a repeat, so one that was interrupted is played again, whole. It can only be the last.
 void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const share_of_repeats& share,
@@ -91,7 +81,7 @@ std::vector<contender> unfinished(const experiment& e, std::span<const contender
     // The fastest is known once all have played the first repeat.
     const bool all_played =
         static_cast<std::size_t>(std::ranges::count(rows, share.begin, &row::repeat)) == contenders.size();
-    const hopeless given_up(e, share, all_played ? rows : std::span<const row>());
+    const std::set<contender_name> given_up = hopeless(e, share, all_played ? rows : std::span<const row>());
     std::vector<contender> left;
     for (const contender& who : contenders) {
         if (given_up.contains(who.name)) continue;
@@ -192,7 +182,8 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
     for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat) {
-        const hopeless given_up(e, share, repeat > share.begin ? rows_of(scene, results.rows()) : std::vector<row>());
+        const std::set<contender_name> given_up =
+            hopeless(e, share, repeat > share.begin ? rows_of(scene, results.rows()) : std::vector<row>());
         for (std::size_t i = 0; i < timed.size(); ++i, shown.at(++done)) {
             timed_contender& turn = timed[in_turn(i, repeat, timed.size())];
             turn.result.repeat = repeat;

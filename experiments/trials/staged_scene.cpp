@@ -1,13 +1,97 @@
 module;
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 module aabblab.trials;
 
-import aabb.pipeline;
+import aabblab.fmt;
 
 namespace aabblab {
 
 namespace {
+
+using clock = std::chrono::steady_clock;
+
+/// With which the copy of this process ends.
+enum : int { is_done = 0, has_failed = 1, is_refused = 2, has_no_memory = 3 };
+/// Stands before the sentence of a refusal.
+constexpr char refusal_mark = 0;
+
+void write_all(int to, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t n = write(to, text.data(), text.size());
+        if (n < 0 && errno == EINTR) continue;
+        // Nobody reads any more.
+        if (n <= 0) _exit(has_failed);
+        text.remove_prefix(static_cast<std::size_t>(n));
+    }
+}
+
+/// Of all processes this one is killed first where memory runs out; whoever started it goes on.
+void offer_to_be_killed() {
+    const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+    if (file < 0) return;
+    static_cast<void>(!write(file, "1000", 4));
+    close(file);
+}
+
+[[noreturn]] void tell_all(int to, const std::function<void(const telling&)>& work) {
+    offer_to_be_killed();
+    int status = has_failed;
+    try {
+        work([to](std::string_view text) { write_all(to, text); });
+        status = is_done;
+    } catch (const aabb::input_error& error) {
+        write_all(to, std::string(1, refusal_mark) + error.what());
+        status = is_refused;
+    } catch (const std::bad_alloc&) {
+        status = has_no_memory;
+    } catch (const std::length_error&) {
+        status = has_no_memory;
+    } catch (...) {  // NOLINT(bugprone-empty-catch)
+        // It is told by the status.
+    }
+    _exit(status);
+}
+
+/// For `poll`: at least one, since less than that may be left.
+int milliseconds_until(clock::time_point end) {
+    const double left = std::chrono::duration<double, std::milli>(end - clock::now()).count();
+    return static_cast<int>(std::clamp(std::ceil(left), 1.0, double{std::numeric_limits<int>::max()}));
+}
+
+/// Reads until the other end closes.
+/// @returns whether that was before `end`
+bool read_until(int from, clock::time_point end, std::string& text) {
+    std::array<char, 4096> part{};
+    while (clock::now() < end) {
+        pollfd one{from, POLLIN, 0};
+        const int ready = poll(&one, 1, milliseconds_until(end));
+        if (ready < 0 && errno != EINTR) return false;
+        if (ready <= 0) continue;
+        const ssize_t n = read(from, part.data(), part.size());
+        if (n < 0) return false;
+        if (n == 0) return true;
+        text.append(part.data(), static_cast<std::size_t>(n));
+    }
+    return false;
+}
+
+ending ending_of(int status) {
+    if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGKILL ? ending::out_of_memory : ending::failed;
+    switch (WEXITSTATUS(status)) {
+        case is_done: return ending::done;
+        case is_refused: return ending::refused;
+        case has_no_memory: return ending::out_of_memory;
+        default: return ending::failed;
+    }
+}
 
 // What is told of a play: a line after each frame, with what it took up to there, then its bytes and what its stages
 // left out. The first letter says which.
@@ -59,6 +143,39 @@ void tell_play(scene_play& scene, const contender& who, std::size_t frames, cons
 }
 
 }  // namespace
+
+work_apart done_apart(const std::function<void(const telling&)>& work, double seconds) {
+    work_apart result;
+    if (!(seconds > 0)) return result;
+    result.end = ending::failed;
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) return result;
+    const auto begin = clock::now();
+    // More would not fit the clock.
+    const auto end =
+        begin + std::chrono::duration_cast<clock::duration>(std::chrono::duration<double>(std::min(seconds, 1e7)));
+    const pid_t child = fork();
+    if (child == 0) {
+        // It does not outlive this process, however that ends.
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        close(ends[0]);
+        tell_all(ends[1], work);
+    }
+    close(ends[1]);
+    const bool is_in_time = child > 0 && read_until(ends[0], end, result.told);
+    close(ends[0]);
+    if (child < 0) return result;
+    if (!is_in_time) kill(child, SIGKILL);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+    result.end = is_in_time ? ending_of(status) : ending::stopped;
+    result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
+    if (const std::size_t at = result.told.find(refusal_mark); at != std::string::npos) {
+        result.reason = result.told.substr(at + 1);
+        result.told.resize(at);
+    }
+    return result;
+}
 
 work_apart staged_scene::apart(const std::function<void(scene_play&, const telling&)>& work, double seconds) {
     return done_apart(

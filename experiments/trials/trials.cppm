@@ -2,8 +2,8 @@
 /// copy of this process where it may take too long, and into a folder that can be resumed.
 export module aabblab.trials;
 
-import aabb.counters;
-import aabb.policy;
+import aabb.digest;
+import aabb.pipeline;
 import aabb.registry;
 import aabb.selection;
 import aabb.std;
@@ -11,13 +11,376 @@ import aabb.validation;
 import aabblab.configs;
 import aabblab.results;
 import aabblab.scenes;
-export import :isolation;
-export import :observation;
-export import :player;
-export import :staged_scene;
-export import :turns;
+import aabblab.stopwatch;
 
 export namespace aabblab {
+
+// Scenes and those who play them.
+
+/// What an external engine says that it took for a frame.
+struct told_times {
+    double update_ms = 0;
+    double search_ms = 0;
+};
+
+/// An external engine that took longer than it may, and was killed: nobody else is to suffer for that.
+class engine_timeout : public aabb::input_error {
+public:
+    using input_error::input_error;
+};
+
+/// A composition of ours or a reference system, ready to be made anew for each time it plays.
+struct contender {
+    contender_name name;
+    std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
+    std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
+    /// The times of an external engine, by frame, once `make_global` has run it; null for all others, which are timed.
+    std::shared_ptr<const std::vector<told_times>> told;
+    bool whole_boxes =
+        true;  ///< false where global search sees parts of objects: its pairs are not held against theirs
+    bool exact_boxes = true;  ///< a difference from the exact pairs of boxes is a failure, not a measurement
+    bool exact = true;        ///< the same of contacts
+};
+
+/// A scene from its first frame to its last, of boxes or of meshes.
+class scene_play {
+public:
+    /// @throws aabb::input_error where the scene cannot be made.
+    explicit scene_play(const scene_choice& choice);
+    explicit scene_play(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
+    /// @param file that its poses stand in, for messages; empty where they do not
+    explicit scene_play(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {})
+        : meshes_(std::move(scene)), file_(std::move(file)) {}
+
+    [[nodiscard]] std::size_t objects() const { return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects(); }
+    [[nodiscard]] std::size_t frames() const { return meshes_ ? meshes_->frames() : box_scene_->frames(); }
+    /// Goes to the next frame; false after the last.
+    bool next();
+    /// Tells the scene what was found in this frame, both sorted, before it goes to the next; contacts are of meshes.
+    void tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
+    /// Does something with this frame. What is wrong with poses is found by whoever takes them: where they stand in a
+    /// file, the sentence begins with file and frame.
+    template <class Work>
+    void in_frame(Work work) const {
+        try {
+            work();
+        } catch (const aabb::input_error& error) {
+            if (file_.empty()) throw;
+            throw aabb::input_error(file_ + ": frame " + std::to_string(played_ - 1) + ": " + error.what());
+        }
+    }
+    /// Null in a scene of boxes.
+    [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
+    [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }
+    [[nodiscard]] std::span<const aabb::pose> poses() const { return poses_; }
+    /// Objects of a scene of boxes that are in this frame and were not in the one before, and the other way round.
+    [[nodiscard]] std::span<const std::uint32_t> arrivals() const { return arrivals_; }
+    [[nodiscard]] std::span<const std::uint32_t> departures() const { return departures_; }
+
+private:
+    void note_changes(std::span<const std::uint8_t> present);
+
+    std::unique_ptr<aabb::box_scene> box_scene_;
+    std::unique_ptr<aabb::mesh_scene> meshes_;
+    std::string file_;        // of poses
+    std::size_t played_ = 0;  // frames
+    std::vector<aabb::box> boxes_;
+    std::vector<aabb::pose> poses_;
+    std::vector<std::uint8_t> present_;  // by object
+    std::vector<std::uint32_t> arrivals_;
+    std::vector<std::uint32_t> departures_;
+};
+
+/// What plays a scene, once.
+struct stages {
+    std::unique_ptr<aabb::global_stage> global;  ///< null in a scene of meshes: every two objects are candidates
+    std::unique_ptr<aabb::local_stage> local;    ///< null in a scene of boxes
+};
+
+/// A contender in a scene: its stages, with the trees built. The scene must outlive it.
+class player {
+public:
+    player(const contender& who, const scene_play& scene, aabb::instrumentation counted);
+    player(stages made, const scene_play& scene);
+
+    /// One frame, in steps that can be timed apart.
+    /// @throws aabb::input_error with file and frame where poses that stand in a file are refused.
+    void update();
+    void search();
+    void detect();
+
+    /// Of the time of the last search, what went into work of an update (`aabb::global_stage`).
+    [[nodiscard]] double share_of_update() const { return made_.global ? made_.global->share_of_update() : 0; }
+
+    /// In place of `detect`, in scenes of meshes: any one contact of the frame, how many there are.
+    [[nodiscard]] std::optional<aabb::contact> first_contact() { return pipeline_->first_contact(); }
+    [[nodiscard]] std::uint64_t count_contacts() { return pipeline_->count_contacts(); }
+    /// Hands over the pairs of intersecting triangles a < b of one mesh of the scene, which is not divided, with
+    /// itself, in no particular order.
+    void each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take) {
+        made_.local->each_self_pair(mesh, take);
+    }
+
+    /// Of the frame, by object; by piece where meshes are divided; empty without global search.
+    [[nodiscard]] std::span<const aabb::box> boxes() const { return pipeline_ ? pipeline_->boxes() : scene_.boxes(); }
+    /// Of the frame, sorted; duplicates stay.
+    [[nodiscard]] const std::vector<aabb::index_pair>& sorted_pairs();
+    [[nodiscard]] const std::vector<aabb::contact>& sorted_contacts();
+
+    /// Over all frames so far.
+    [[nodiscard]] aabb::work_counters counters() const;
+    [[nodiscard]] std::vector<aabb::part_bytes> global_bytes() const;
+    [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
+    [[nodiscard]] std::size_t buffer_bytes() const { return pipeline_ ? pipeline_->bytes() : aabb::bytes_of(pairs_); }
+    /// Of all parts but the meshes, which every composition reads.
+    [[nodiscard]] std::size_t held_bytes() const;
+    /// What the global search planned from what it saw.
+    [[nodiscard]] std::vector<aabb::stage_plan> plans() const;
+    [[nodiscard]] std::vector<aabb::omission> left_out() const;
+    /// The mean over the models of the tree's; empty where there is no tree to be seen.
+    [[nodiscard]] std::optional<double> box_inflation() const;
+
+private:
+    const scene_play& scene_;
+    stages made_;
+    std::optional<aabb::pipeline> pipeline_;  // of meshes
+    std::vector<aabb::index_pair> pairs_;
+    std::vector<aabb::contact> contacts_;
+};
+
+/// What the phases of a frame took, or of several.
+struct phases {
+    elapsed update;
+    elapsed search;
+    elapsed detect;  ///< the query that is asked
+
+    phases& operator+=(const phases& other) {
+        update += other.update;
+        search += other.search;
+        detect += other.detect;
+        return *this;
+    }
+    [[nodiscard]] double wall_ms() const { return update.wall_ms + search.wall_ms + detect.wall_ms; }
+    [[nodiscard]] double cpu_ms() const { return update.cpu_ms + search.cpu_ms + detect.cpu_ms; }
+};
+
+/// A frame that was played.
+struct played_frame {
+    std::uint32_t number;
+    phases took;
+    std::span<const aabb::index_pair> pairs;  ///< of boxes, sorted; duplicates stay
+    std::span<const aabb::contact> contacts;  ///< the same; empty in a scene of boxes
+
+    [[nodiscard]] double ms() const { return took.wall_ms(); }
+};
+
+/// Detects the contacts of a frame, and says how long the query took that is asked: the detection itself, or another.
+using detecting = std::function<elapsed(player&)>;
+[[nodiscard]] elapsed detect_in(player& who);
+
+/// Plays what is left of a scene, or so many frames of it. Each frame is handed over, then the scene is told what was
+/// found in it.
+void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each,
+          std::size_t most = std::numeric_limits<std::size_t>::max(), const detecting& detect = detect_in);
+
+/// Number and digest of what is found, frame by frame.
+class tally {
+public:
+    /// @param meshes the digest is of contacts, not of pairs of boxes
+    explicit tally(bool meshes) : meshes_(meshes) {}
+
+    /// A frame: both sorted; contacts are empty in a scene of boxes.
+    void add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
+
+    [[nodiscard]] std::uint64_t candidates() const { return candidates_; }
+    [[nodiscard]] std::optional<std::uint64_t> contacts() const {
+        return meshes_ ? std::optional(contacts_) : std::nullopt;
+    }
+    [[nodiscard]] std::string digest() const { return digest_.text(); }
+
+private:
+    bool meshes_;
+    std::uint32_t frame_ = 0;
+    std::uint64_t candidates_ = 0;
+    std::uint64_t contacts_ = 0;
+    aabb::digest digest_;
+};
+
+// One trial: who plays a scene, how it is asked, and what is seen of that.
+
+/// A scene played once from a fresh start, or its first frames.
+struct observation {
+    elapsed build;  ///< making the stages, taking the objects, building the trees
+    phases first;   ///< frame 0
+    phases rest;    ///< all frames after it
+    std::size_t frames = 0;
+    std::string digest;
+    std::vector<std::string> digests;      ///< up to each frame, of who played in a copy of this process
+    std::string wrong;                     ///< what is answered otherwise than by the digest; empty where all is right
+    std::uint64_t bytes = 0;               ///< held after the last of these frames
+    aabb::work_counters work;              ///< over all frames
+    std::vector<aabb::omission> left_out;  ///< by the stages, after the last of these frames
+
+    /// Wall time of all frames that were played.
+    [[nodiscard]] double whole_ms() const { return build.wall_ms + first.wall_ms() + rest.wall_ms(); }
+    /// Of a frame after frame 0.
+    [[nodiscard]] double steady_ms() const { return frames > 1 ? rest.wall_ms() / static_cast<double>(frames - 1) : 0; }
+    /// The same, or of frame 0 where it is alone.
+    [[nodiscard]] double frame_ms() const { return frames > 1 ? steady_ms() : first.wall_ms(); }
+    /// Of so many frames, the further ones as fast as those that were played.
+    [[nodiscard]] double over(double all_frames) const {
+        return build.wall_ms + first.wall_ms() + (all_frames > 1 ? (all_frames - 1) * steady_ms() : 0);
+    }
+};
+
+/// How a scene is played.
+struct protocol {
+    asking asked = {};
+    std::size_t frames = std::numeric_limits<std::size_t>::max();  ///< at most
+    aabb::instrumentation counted = aabb::instrumentation::none;
+    /// Takes what is seen so far, after each frame.
+    std::function<void(const observation&)> each = nullptr;
+};
+
+/// Plays a scene from its first frame on; it is told what is found. Of an external engine times are what it says of
+/// itself, of wall time alone.
+[[nodiscard]] observation observe(scene_play& scene, const contender& who, const protocol& how = {});
+[[nodiscard]] observation observe(const scene_choice& scene, const contender& who, const protocol& how = {});
+
+// Trials in copies of this process, which may take too long or too much memory.
+
+/// How work ended that was done apart.
+enum class ending : std::uint8_t {
+    done,
+    stopped,        ///< it took longer than it may
+    out_of_memory,  ///< or was killed by somebody else, as the kernel does where memory runs out
+    refused,        ///< by an aabb::input_error
+    failed
+};
+
+struct work_apart {
+    ending end = ending::stopped;
+    std::string told;    ///< up to that end
+    std::string reason;  ///< the sentence of a refusal
+    double seconds = 0;  ///< that it took
+};
+
+/// Takes what the work has to tell, as it comes: that is there also where the work does not end.
+using telling = std::function<void(std::string_view)>;
+
+/// Does the work in a copy of this process, which is killed after so many seconds. Where memory runs out the kernel
+/// kills the copy first.
+/// @param seconds without any, nothing is begun
+[[nodiscard]] work_apart done_apart(const std::function<void(const telling&)>& work, double seconds);
+
+/// A play in a copy of this process.
+struct attempt {
+    ending end = ending::stopped;
+    observation seen;              ///< of the frames that it came to the end of
+    std::string reason;            ///< the sentence of a refusal
+    double seconds = 0;            ///< in all, with reading, and sorting what was found
+    double seconds_of_frames = 0;  ///< up to the end of the last of those frames
+    bool is_hopeless = false;      ///< it was stopped as far slower than another, not since time was over
+};
+
+/// "stopped after 2.1 s, in frame 3", "not played: no time was left"
+[[nodiscard]] std::string text_of(const attempt& one);
+
+/// A scene that is read once and played by many, each in a copy of this process, which is not played itself.
+class staged_scene {
+public:
+    /// @throws aabb::input_error where the scene cannot be made.
+    explicit staged_scene(const scene_choice& choice) : choice_(choice), scene_(choice) {}
+
+    [[nodiscard]] const scene_choice& choice() const { return choice_; }
+    [[nodiscard]] const scene_play& scene() const { return scene_; }
+    /// Plays the first frames, for so many seconds at most.
+    [[nodiscard]] attempt play(const contender& who, std::size_t frames, double seconds);
+    /// Does something else with the scene from its first frame on.
+    [[nodiscard]] work_apart apart(const std::function<void(scene_play&, const telling&)>& work, double seconds);
+
+private:
+    scene_choice choice_;
+    scene_play scene_;
+};
+
+// Who plays when, and for how long.
+
+/// Who plays at a place of a round, so that it matters to nobody alone after whom one plays: each begins a round, and
+/// in as many rounds as there are players, if these are even, follows each other one once; else about so (Williams,
+/// "Experimental designs balanced for the estimation of residual effects of treatments", 1949).
+[[nodiscard]] constexpr std::size_t in_turn(std::size_t place, std::size_t round, std::size_t players) noexcept {
+    // 0, 1, -1, 2, -2 and so on.
+    const std::size_t apart = place % 2 == 1 ? (place + 1) / 2 : players - place / 2;
+    return (round + apart) % players;
+}
+
+/// When to end. What is to take S seconds ends within 2 S, or 2 seconds after the scene is read where that is later:
+/// half of it is for playing, the rest for comparing with the exact pairs. A twentieth is kept for ending and telling.
+class time_limits {
+public:
+    /// @param seconds at most 1,000,000
+    /// @param elapsed in seconds
+    explicit time_limits(double seconds, std::function<double()> elapsed = since_now())
+        : seconds_(seconds), elapsed_(std::move(elapsed)) {}
+
+    void scene_is_read() { reading_ = elapsed_(); }
+    /// Seconds that are left, none where it is not above 0.
+    [[nodiscard]] double to_play() const { return std::max(usable * seconds_, reading_ + usable) - elapsed_(); }
+    [[nodiscard]] double to_end() const { return std::max(2 * usable * seconds_, reading_ + 2 * usable) - elapsed_(); }
+
+private:
+    static constexpr double usable = 0.95;
+
+    [[nodiscard]] static std::function<double()> since_now() {
+        return [begin = std::chrono::steady_clock::now()] {
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        };
+    }
+
+    double seconds_;
+    std::function<double()> elapsed_;
+    double reading_ = 0;
+};
+
+/// Of those who play in turn, who takes more than so many times as long a frame as the first, and so long in all that
+/// it matters, is stopped, or plays in one round only.
+inline constexpr double hopeless_ratio = 20;
+inline constexpr double hopeless_ms = 100;
+
+/// What came of playing in turn, by contender.
+struct turns {
+    std::size_t frames = 0;  ///< in each play: as many as there was time for
+    std::size_t rounds = 0;
+    std::vector<std::vector<observation>> times;     ///< of whole plays, by round
+    std::vector<std::optional<attempt>> broken_off;  ///< whose first play did not end
+    std::vector<bool> hopeless;                      ///< who took, or would have taken, so many times as long
+};
+
+/// Plays the first frames of the scene with all in turn (`in_turn`), round after round, until time is over. Without the
+/// first, whose first frame may take too long, nobody else plays.
+[[nodiscard]] turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::size_t frames,
+                                 std::size_t rounds, const time_limits& limits);
+
+/// Those of them, by place, who find other pairs than the first in as many frames.
+[[nodiscard]] std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times);
+
+/// By round.
+[[nodiscard]] std::vector<double> frame_ms_of(std::span<const observation> times);
+
+/// Of the times of two in the same rounds, one's over the other's.
+struct paired_ratio {
+    double median = 1;
+    double least = 1;
+    double greatest = 1;
+
+    /// Whether the rounds leave it open which of the two is faster by more than 3 %.
+    [[nodiscard]] bool may_be_same() const { return least < 1.03 && greatest > 1 / 1.03; }
+};
+/// @param ms one or more, by round, as are those of the other
+[[nodiscard]] paired_ratio paired_ratio_of(std::span<const double> ms, std::span<const double> of_other);
+
+// Who there is, and whole scenes.
 
 /// "insertion + none + one_axis + canonical + exact", "cgal".
 [[nodiscard]] std::string text_of(const contender_name& name);

@@ -1,7 +1,5 @@
 module aabblab.trials;
 
-import aabb.geometry;
-import aabb.pipeline;
 import aabblab.progress;
 
 namespace aabblab {
@@ -17,27 +15,15 @@ std::string text_of(const aabb::contact& c) {
            std::to_string(c.triangle_a) + " " + std::to_string(c.triangle_b);
 }
 
-/// What two sorted ranges do not have in common. A duplicate is one too many.
+/// Says the first one; empty where there is none.
 template <class T>
-struct set_difference {
-    set_difference(const std::vector<T>& exact, const std::vector<T>& found) {
-        std::ranges::set_difference(exact, found, std::back_inserter(missing));
-        std::ranges::set_difference(found, exact, std::back_inserter(invented));
-    }
-
-    /// Says the first one; empty where there is none.
-    [[nodiscard]] std::string first(const std::vector<T>& exact) const {
-        if (missing.empty() && invented.empty()) return {};
-        if (invented.empty() || (!missing.empty() && missing[0] < invented[0]))
-            return text_of(missing[0]) + " is missing";
-        return text_of(invented[0]) + (std::ranges::binary_search(exact, invented[0])
-                                           ? " is reported more than once"
-                                           : " is reported, but is not in the exact answer");
-    }
-
-    std::vector<T> missing;
-    std::vector<T> invented;
-};
+std::string first_of(const aabb::set_difference<T>& d) {
+    if (d.missing.empty() && d.invented.empty()) return {};
+    if (d.invented.empty() || (!d.missing.empty() && d.missing[0] < d.invented[0]))
+        return text_of(d.missing[0]) + " is missing";
+    return text_of(d.invented[0]) +
+           (d.repeated ? " is reported more than once" : " is reported, but is not in the exact answer");
+}
 
 /// Compares one contender with the exact answer.
 class validated_player {
@@ -56,14 +42,14 @@ public:
         if (frame == 0) first_frame_ = player_.counters();
         found_.add(player_.sorted_pairs(), player_.sorted_contacts());
         if (who_.whole_boxes) {
-            const set_difference boxes(exact.pairs(), player_.sorted_pairs());
-            if (who_.exact_boxes) note(frame, boxes.first(exact.pairs()));
+            const aabb::set_difference boxes(exact.pairs(), player_.sorted_pairs());
+            if (who_.exact_boxes) note(frame, first_of(boxes));
             boxes_missing_ += boxes.missing.size();
             boxes_invented_ += boxes.invented.size();
         }
         if (!scene_.meshes()) return;
-        const set_difference contacts(exact.contacts(), player_.sorted_contacts());
-        if (who_.exact) note(frame, contacts.first(exact.contacts()));
+        const aabb::set_difference contacts(exact.contacts(), player_.sorted_contacts());
+        if (who_.exact) note(frame, first_of(contacts));
         contacts_missing_ += contacts.missing.size();
         contacts_invented_ += contacts.invented.size();
         classify(contacts);
@@ -122,7 +108,7 @@ private:
     }
 
     /// By class, pair of objects by pair of objects.
-    void classify(const set_difference<aabb::contact>& contacts) {
+    void classify(const aabb::set_difference<aabb::contact>& contacts) {
         struct both {
             std::vector<aabb::index_pair> missing, invented;
         };

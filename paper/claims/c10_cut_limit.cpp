@@ -27,8 +27,8 @@ draft c10_claim(const measurements& m) {
             if (!limit_acts(c, segments)) continue;
             const std::string subject = value_of(c.of(), "span").empty() ? "with that limit on mixed sizes"
                                                                          : "with at most one cut of huge boxes";
-            made.add(told(candidate_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
-                                       {{"segments", segments}}),
+            made.add(told(endpoint_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
+                                      {{"segments", segments}}),
                           subject + (segments == "auto" ? "" : " and 32 segments")));
         }
     figure& f = made.claim.figures.emplace_back(log_log(
@@ -37,7 +37,7 @@ draft c10_claim(const measurements& m) {
         "1), with the automatic number of segments, against the number of huge objects, by their edge over the side "
         "of the world; 95 % intervals.",
         "huge objects", "time with the limit over that without"));
-    f.lines = lines_by_span(made.candidates, {{"segments", "auto"}});
+    f.lines = lines_by_span(made.endpoints, {{"segments", "auto"}});
     f.lines.push_back(level_of("any number of cuts"));
     return made;
 }

@@ -1,34 +1,27 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.claims;
+
+import aabblab.fmt;
 
 namespace aabblab {
 
 namespace {
 
-const std::vector<method>& methods() {
-    static const std::vector<method> all{{"traditional in both stages", traditional.with(kind::tree, "canonical")},
-                                         {"improved global search", improved.with(kind::tree, "canonical")},
-                                         {"improved local detection", traditional.with(kind::tree, compressed)},
-                                         {"improved in both", improved.with(kind::tree, compressed)}};
-    return all;
-}
+const std::vector<method> methods{{"traditional in both stages", traditional.with(kind::tree, "canonical")},
+                                  {"improved global search", improved.with(kind::tree, "canonical")},
+                                  {"improved local detection", traditional.with(kind::tree, compressed)},
+                                  {"improved in both", improved.with(kind::tree, compressed)}};
 
 /// Of the traditional method's time, in per cent.
 std::optional<double> global_share(const condition& c) {
-    return median_of(c, methods()[0].who, measured("global_share"));
+    return median_of(c, methods[0].who, measured("global_share"));
 }
 
 table half_steps(const std::vector<condition>& conditions) {
-    table t{{{"meshes", false}, {"objects"}}, {}};
-    for (std::size_t i = 1; i < methods().size(); ++i) t.columns.push_back({methods()[i].label});
+    table t = empty_table({"meshes"}, {"objects"});
+    for (const condition& c : conditions) t.rows.push_back({mesh_of(c), value_of(c.of(), "objects")});
+    add_ratios(t, conditions, methods);
     t.columns.push_back({"global search, % of traditional time"});
-    for (const condition& c : conditions) {
-        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{mesh_of(c), value_of(c.of(), "objects")});
-        for (const std::string& cell : ratio_cells(c, methods())) cells.push_back(cell);
-        cells.push_back(digits_cell(global_share(c)));
-    }
+    for (std::size_t i = 0; i < conditions.size(); ++i) t.rows[i].push_back(digits_cell(global_share(conditions[i])));
     return t;
 }
 
@@ -52,7 +45,7 @@ draft c11_claim(const measurements& m) {
     const std::vector<condition>& conditions = m.of("c11");
     for (const condition& c : conditions) {
         const std::string density = value_of(c.of(), "density");
-        made.add(told(candidate_of(c, methods()[3].who, methods()[0].who, "frame_cpu_ms"),
+        made.add(told(endpoint_of(c, methods[3].who, methods[0].who, "frame_cpu_ms"),
                       density == "0.3"    ? "where detailed models touch"
                       : density == "0.05" ? "with many small models"
                                           : "with simple models far apart",
@@ -72,7 +65,7 @@ draft c11_claim(const measurements& m) {
                 "Time of both stages against the number of objects, simple models far apart: traditional, improved, "
                 "and each stage improved alone; medians and quartiles.",
                 "objects", "time a frame (ms)"));
-    f.lines = series_of(methods(), having(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
+    f.lines = series_of(methods, having(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
                         measured("frame_cpu_ms"));
     return made;
 }

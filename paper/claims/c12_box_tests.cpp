@@ -8,11 +8,11 @@ draft c12_claim(const measurements& m) {
                 .experiments = {"figure1", "three_lists"}},
                {drifting}};
     for (const condition& c : m.of("figure1"))
-        made.add(told(candidate_of(c, improved, uncut, "box_tests"),
+        made.add(told(endpoint_of(c, improved, uncut, "box_tests"),
                       is_brownian(c) ? "on drifting boxes" : "in other scenes", "", quantity::box_tests));
     for (const condition& c : m.of("three_lists"))
-        made.add(told(candidate_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"),
-                                   "box_tests", {{"sweep", "all_axes"}}),
+        made.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"),
+                                  "box_tests", {{"sweep", "all_axes"}}),
                       "with three sorted lists", "", quantity::box_tests));
     figure& f = made.claim.figures.emplace_back(
         log_log("c12", "Tests of two boxes in a frame against the number of objects, with the axial cut and without.",

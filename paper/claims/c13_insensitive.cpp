@@ -8,11 +8,11 @@ namespace {
 const selection smb{{kind::sort, "shell"}, {kind::partition, "axial_cut:axes=3"}, {kind::sweep, "one_axis"}};
 
 /// A box's share in one condition over that in another, both with the same method.
-candidate compared(const condition& large, const condition& small, const std::string& factor, quantity what) {
+endpoint compared(const condition& large, const condition& small, const std::string& factor, quantity what) {
     const bool is_time = what == quantity::time;
     const row_value a_box =
         an_object(is_time ? measured("frame_cpu_ms") : bytes_of({"projections", "partition", "sweep"}));
-    candidate made;
+    endpoint made;
     made.where = large.of();
     made.where.emplace_back("quantity", is_time ? "time" : "memory");
     made.where.emplace_back("over", factor + " " + value_of(small.of(), factor));

@@ -7,15 +7,11 @@ namespace {
 /// The classic sort and sweep, which keeps its pairs from frame to frame.
 const selection incremental = traditional.with(kind::sweep, "incremental");
 
-const std::vector<method>& methods() {
-    static const std::vector<method> all{
-        {"insertion sort (traditional)", traditional},
-        {"insertion sort, axial cut", traditional.with(kind::partition, "axial_cut:axes=2")},
-        {"Shell sort", uncut},
-        {"Shell sort, axial cut (improved)", improved},
-        {"insertion sort, incremental", incremental}};
-    return all;
-}
+const std::vector<method> methods{{"insertion sort (traditional)", traditional},
+                                  {"insertion sort, axial cut", traditional.with(kind::partition, "axial_cut:axes=2")},
+                                  {"Shell sort", uncut},
+                                  {"Shell sort, axial cut (improved)", improved},
+                                  {"insertion sort, incremental", incremental}};
 
 /// Where a scene that is not the drifting one is told.
 std::string subject_of(const condition& c) {
@@ -29,13 +25,8 @@ std::string subject_of(const condition& c) {
 
 /// Which half brings the gain: the ratio of every method to the traditional one.
 table half_steps(const std::vector<condition>& conditions) {
-    const place_columns places(conditions);
-    table t{places.head(), {}};
-    for (std::size_t i = 1; i < methods().size(); ++i) t.columns.push_back({methods()[i].label});
-    for (const condition& c : conditions) {
-        std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
-        for (const std::string& cell : ratio_cells(c, methods())) cells.push_back(cell);
-    }
+    table t = place_table(places_of(conditions));
+    add_ratios(t, conditions, methods);
     return t;
 }
 
@@ -50,7 +41,7 @@ draft c1_claim(const measurements& m) {
                 {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
     const std::vector<condition>& conditions = m.of("figure1");
     const auto over_traditional = [](const condition& c, const std::string& subject, const std::string& along = "") {
-        return told(candidate_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
+        return told(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
     };
     const std::vector<const condition*> of_all_sizes =
         having(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
@@ -60,18 +51,18 @@ draft c1_claim(const measurements& m) {
         if (!has(c->of(), drifting)) made.add(over_traditional(*c, "on 10,000 drifting boxes", "displacement"));
     // Both with the paper's three lists, each sorted and swept.
     for (const condition& c : m.of("three_lists"))
-        made.add(told(candidate_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
-                                   "frame_cpu_ms", {{"sweep", "all_axes"}}),
+        made.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
+                                  "frame_cpu_ms", {{"sweep", "all_axes"}}),
                       "with three sorted lists", "displacement"));
     for (const condition* c : large)
-        made.add(told(candidate_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
+        made.add(told(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
                       "against the classic incremental sweep", "displacement"));
     for (const condition& c : conditions)
         if (!is_brownian(c)) made.add(over_traditional(c, subject_of(c)));
     for (const condition* c : having(conditions, drifting))
         made.beside = {
-            told(candidate_of(*c, methods()[1].who, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
-            told(candidate_of(*c, methods()[2].who, traditional, "frame_cpu_ms"), "with Shell sort alone")};
+            told(endpoint_of(*c, methods[1].who, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
+            told(endpoint_of(*c, methods[2].who, traditional, "frame_cpu_ms"), "with Shell sort alone")};
     made.claim.tables.push_back(
         {"figure1", "Time a frame as a ratio to the traditional method, with 95 % intervals.", half_steps(conditions)});
     figure& f = made.claim.figures.emplace_back(log_log(
@@ -79,7 +70,7 @@ draft c1_claim(const measurements& m) {
         "Time of global search against the number of objects: the traditional method, the improved one, and the "
         "half-steps between. Cubes that drift up to a tenth of their edge in a frame; medians and quartiles.",
         "objects", "time a frame (ms)"));
-    f.lines = series_of(methods(), of_all_sizes, "objects", measured("frame_cpu_ms"));
+    f.lines = series_of(methods, of_all_sizes, "objects", measured("frame_cpu_ms"));
     return made;
 }
 

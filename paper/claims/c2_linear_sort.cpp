@@ -14,20 +14,11 @@ struct sizes {
     /// How much work an element costs at ten times as many, from the straight line through work against log N; the line
     /// is flat where the sort is O(N).
     [[nodiscard]] double growth(const resample& d) const {
-        double mean_x = 0, mean_y = 0;
         std::vector<double> y;
-        for (std::size_t i = 0; i < log_n.size(); ++i) {
-            y.push_back(std::exp(d.mean_of(per_element[i])));
-            mean_x += log_n[i] / static_cast<double>(log_n.size());
-            mean_y += y[i] / static_cast<double>(log_n.size());
-        }
-        double xx = 0, xy = 0;
-        for (std::size_t i = 0; i < y.size(); ++i) {
-            xx += (log_n[i] - mean_x) * (log_n[i] - mean_x);
-            xy += (log_n[i] - mean_x) * (y[i] - mean_y);
-        }
+        for (const cells& one : per_element) y.push_back(std::exp(d.mean_of(one)));
+        const auto [slope, mean_y] = line_through(log_n, y);
         // A steep fall would give a negative level; the line has no meaning there.
-        return std::log(std::max(1e-6, 1 + xy / xx / mean_y));
+        return std::log(std::max(1e-6, 1 + slope / mean_y));
     }
 };
 
@@ -109,7 +100,7 @@ draft c2_claim(const measurements& m) {
                 all.log_n.push_back(std::log10(number_of(c->of(), "objects")));
                 all.per_element.push_back(c->logs({{kind::sort, one.sort}}, an_object(work())));
             }
-            candidate c;
+            endpoint c;
             c.where = {{"scene", "line"},
                        {"sort", one.sort},
                        {"displacement", displacement},

@@ -6,19 +6,16 @@ namespace aabblab {
 
 namespace {
 
-const std::vector<std::string>& gap_sequences() {
-    static const std::vector<std::string> all{"ciura", "ciura_eight", "four_one", "tokuda", "shell"};
-    return all;
-}
+const std::vector<std::string> gap_sequences{"ciura", "ciura_eight", "four_one", "tokuda", "shell"};
 
 /// 0 where they were not counted.
 double disorder_of(const condition& c) {
     return inversions_of(c).value_or(0);
 }
 
-candidate over_insertion(const condition& c, const std::string& gaps) {
-    candidate ratio = candidate_of(c, {{kind::sort, "shell:gaps=" + gaps}}, {{kind::sort, "insertion"}},
-                                   "update_cpu_ms", {{"gaps", gaps}});
+endpoint over_insertion(const condition& c, const std::string& gaps) {
+    endpoint ratio = endpoint_of(c, {{kind::sort, "shell:gaps=" + gaps}}, {{kind::sort, "insertion"}}, "update_cpu_ms",
+                                 {{"gaps", gaps}});
     ratio.observed = {{"inversions", three_digits(disorder_of(c))}};
     return ratio;
 }
@@ -28,12 +25,12 @@ table map_of(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = having(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
     table t{{{"inversions an element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
-    for (const std::string& gaps : gap_sequences()) t.columns.push_back({gaps});
+    for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
     for (const condition* c : ordered) {
         std::vector<std::string>& cells =
             t.rows.emplace_back(std::vector{three_digits(disorder_of(*c)), value_of(c->of(), "scene"),
                                             value_of(c->of(), "objects"), value_of(c->of(), "displacement")});
-        for (const std::string& gaps : gap_sequences()) cells.push_back(ratio_cell(over_insertion(*c, gaps)));
+        for (const std::string& gaps : gap_sequences) cells.push_back(ratio_cell(over_insertion(*c, gaps)));
     }
     return t;
 }
@@ -46,10 +43,10 @@ figure figure_of(const std::vector<condition>& conditions) {
     for (const bool in_space : {true, false}) {
         figure_panel& panel = f.panels.emplace_back();
         panel.title = in_space ? "in space" : "on a line";
-        for (const std::string& gaps : gap_sequences()) {
-            series s{gaps, series_style::points, {}};
+        for (const std::string& gaps : gap_sequences) {
+            series s{gaps, series_style::points};
             for (const condition& c : conditions)
-                if (const candidate ratio = over_insertion(c, gaps);
+                if (const endpoint ratio = over_insertion(c, gaps);
                     is_brownian(c) == in_space && ratio.known() && disorder_of(c) > 0)
                     s.points.push_back(point_of(disorder_of(c), ratio));
             std::ranges::sort(s.points, {}, &figure_point::x);

@@ -6,10 +6,7 @@ namespace aabblab {
 
 namespace {
 
-const std::vector<int>& segments_wanted() {
-    static const std::vector<int> all{2, 4, 8, 16, 32, 64, 256};
-    return all;
-}
+constexpr std::array segments_wanted{2, 4, 8, 16, 32, 64, 256};
 
 selection cut_into(int axes, const std::string& segments) {
     return {{kind::sort, "insertion"},
@@ -38,34 +35,34 @@ figure figure_of(const std::string& name, const condition& c) {
             "; the marks say how many segments the limit of one cut a box leaves. The level is without a cut.",
         "segments wanted on each axis", "time a frame (ms)");
     for (int axes = 1; axes <= 3; ++axes) {
-        series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes"), series_style::line, {}};
-        for (const int wanted : segments_wanted())
+        series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes")};
+        for (const int wanted : segments_wanted)
             if (const auto point = c.point(wanted, cut_into(axes, std::to_string(wanted)), measured("frame_cpu_ms")))
                 s.points.push_back(*point);
         f.lines.push_back(s);
-        if (const auto limit = segments_got(c, axes, segments_wanted().back()))
+        if (const auto limit = segments_got(c, axes, segments_wanted.back()))
             f.marks.push_back({*limit, "limit, " + s.label});
     }
-    if (const auto uncut = c.point(segments_wanted().front(), traditional, measured("frame_cpu_ms")))
+    if (const auto uncut = c.point(segments_wanted.front(), traditional, measured("frame_cpu_ms")))
         f.lines.push_back({"no cut", series_style::level, {*uncut}});
     return f;
 }
 
 /// Segments need not be tiny: what the automatic choice leaves on the table.
 table automatic(const std::vector<condition>& conditions) {
-    const place_columns places(conditions);
-    table t{places.head(), {}};
+    table t = place_table(places_of(conditions));
+    const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
-            const candidate ratio = candidate_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), "frame_cpu_ms");
+            const endpoint ratio = endpoint_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), "frame_cpu_ms");
             const auto chosen = median_of(c, cut_into(axes, "auto"), measured("segments_got"));
             const auto limit = segments_got(c, axes, 256);
             if (!ratio.known() || !chosen || !limit) continue;
-            std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
-            for (const std::string& cell :
-                 {std::to_string(axes), three_digits(*chosen / axes), three_digits(*limit), ratio_cell(ratio)})
-                cells.push_back(cell);
+            std::vector<std::string>& cells =
+                t.rows.emplace_back(places[static_cast<std::size_t>(&c - conditions.data())]);
+            cells.insert(cells.end(),
+                         {std::to_string(axes), three_digits(*chosen / axes), three_digits(*limit), ratio_cell(ratio)});
         }
     return t;
 }
@@ -94,8 +91,8 @@ draft c4_claim(const measurements& m) {
     };
     const segments limit{"256", "the limit"};
     const auto ratio = [](const condition& c, int axes, const segments& now, const segments& before) {
-        return candidate_of(c, cut_into(axes, now.number), cut_into(axes, before.number), "frame_cpu_ms",
-                            {{"axes", std::to_string(axes)}, {"segments", now.name}, {"over", before.name}});
+        return endpoint_of(c, cut_into(axes, now.number), cut_into(axes, before.number), "frame_cpu_ms",
+                           {{"axes", std::to_string(axes)}, {"segments", now.name}, {"over", before.name}});
     };
     for_each_cut([&](const condition& c, int axes) {
         made.add(told(ratio(c, axes, limit, {"8", "8"}),
@@ -104,9 +101,9 @@ draft c4_claim(const measurements& m) {
                       "axes"));
     });
     for_each_cut([&](const condition& c, int axes) {
-        for (std::size_t i = 1; i < segments_wanted().size(); ++i) {
-            const int wanted = segments_wanted()[i];
-            const int before = segments_wanted()[i - 1];
+        for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
+            const int wanted = segments_wanted[i];
+            const int before = segments_wanted[i - 1];
             const std::string now = std::to_string(wanted);
             const std::string then = std::to_string(before);
             if (is_finer(c, axes, wanted, before)) made.add(ratio(c, axes, {now, now}, {then, then}));

@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.claims;
 
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
@@ -16,10 +14,7 @@ selection grid(const std::string& cell) {
 }
 
 /// Those of the config. Not what there are rows of: a size that was wrong everywhere would be forgotten.
-const std::vector<std::string>& cell_sizes() {
-    static const std::vector<std::string> all{"4", "8", "16", "32", "64"};
-    return all;
-}
+const std::vector<std::string> cell_sizes{"4", "8", "16", "32", "64"};
 
 row_value all_bytes() {
     return bytes_of({"projections", "partition", "sweep"});
@@ -34,12 +29,12 @@ bool is_grid(const condition& c, const std::string& size) {
 class scenes_and_cells {
 public:
     explicit scenes_and_cells(const std::vector<const condition*>& conditions) {
-        for (const std::string& size : cell_sizes())
+        for (const std::string& size : cell_sizes)
             if (std::ranges::all_of(conditions, [&](const condition* c) { return is_grid(*c, size); }))
                 everywhere_.push_back(size);
         for (const condition* c : conditions) {
             std::map<std::string, cells>& scene = over_cut_.emplace_back();
-            for (const std::string& size : cell_sizes())
+            for (const std::string& size : cell_sizes)
                 if (is_grid(*c, size)) scene.emplace(size, c->log_ratios(grid(size), cut, measured("frame_cpu_ms")));
         }
     }
@@ -55,36 +50,28 @@ public:
     }
     /// That of the cell size whose worst scene is the least bad.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
-        double least = std::numeric_limits<double>::infinity();
-        for (const std::string& size : everywhere_) {
-            const double regret = worst_regret(size, d);
-            if (std::isnan(regret)) return regret;
-            least = std::min(least, regret);
-        }
-        return least;
+        return least_of(everywhere_, [&](const std::string& size) { return worst_regret(size, d); });
     }
 
 private:
-    /// Of the cell sizes that are a grid in the scene. NaN where one was not measured: the others would look better
-    /// than they are.
-    [[nodiscard]] static double best(const std::map<std::string, cells>& scene, const resample& d) {
+    /// NaN where any is, which was not measured: the others would look better than they are.
+    template <class All, class Value>
+    [[nodiscard]] static double least_of(const All& all, Value value) {
         double least = std::numeric_limits<double>::infinity();
-        for (const auto& [size, over_cut] : scene) {
-            const double ratio = d.mean_of(over_cut);
-            if (std::isnan(ratio)) return ratio;
-            least = std::min(least, ratio);
+        for (const auto& one : all) {
+            const double here = value(one);
+            if (std::isnan(here)) return here;
+            least = std::min(least, here);
         }
         return least;
     }
+    /// Of the cell sizes that are a grid in the scene.
+    [[nodiscard]] static double best(const std::map<std::string, cells>& scene, const resample& d) {
+        return least_of(scene, [&](const auto& over_cut) { return d.mean_of(over_cut.second); });
+    }
     template <class Regret>
     [[nodiscard]] double worst(Regret regret) const {
-        double found = -std::numeric_limits<double>::infinity();
-        for (const auto& scene : over_cut_) {
-            const double one = regret(scene);
-            if (std::isnan(one)) return one;
-            found = std::max(found, one);
-        }
-        return found;
+        return -least_of(over_cut_, [&](const auto& scene) { return -regret(scene); });
     }
 
     std::vector<std::string> everywhere_;
@@ -92,18 +79,16 @@ private:
 };
 
 table times(const std::vector<condition>& conditions) {
-    const place_columns places(conditions);
-    table t{places.head(), {}};
+    table t = place_table(places_of(conditions));
     t.columns.push_back({"axial_cut"});
-    for (const std::string& size : cell_sizes()) t.columns.push_back({"cells of " + size});
+    for (const std::string& size : cell_sizes) t.columns.push_back({"cells of " + size});
     t.columns.push_back({"grid, auto"});
-    for (const condition& c : conditions) {
-        std::vector<std::string>& cells = t.rows.emplace_back(places.cells(c.of()));
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
         const auto add = [&](const selection& who) {
-            cells.push_back(digits_cell(median_of(c, who, measured("frame_cpu_ms"))));
+            t.rows[i].push_back(digits_cell(median_of(conditions[i], who, measured("frame_cpu_ms"))));
         };
         add(cut);
-        for (const std::string& size : cell_sizes()) add(grid(size));
+        for (const std::string& size : cell_sizes) add(grid(size));
         add(grid("auto"));
     }
     return t;
@@ -149,9 +134,9 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
         figure_panel& panel = f.panels.emplace_back();
         panel.title = grouped(static_cast<std::uint64_t>(objects)) + " objects";
         for (const condition* c : conditions) {
-            series s{value_of(c->of(), "scene"), series_style::line, {}};
-            for (const std::string& size : cell_sizes()) {
-                const candidate ratio = candidate_of(*c, grid(size), cut, "frame_cpu_ms");
+            series s{value_of(c->of(), "scene")};
+            for (const std::string& size : cell_sizes) {
+                const endpoint ratio = endpoint_of(*c, grid(size), cut, "frame_cpu_ms");
                 if (!ratio.known() || !is_grid(*c, size)) continue;
                 s.points.push_back(point_of(std::stod(size), ratio));
             }
@@ -172,7 +157,7 @@ figure world_figure(const std::string& name, const std::string& what, const std:
                        "side of the world (edges)", axis);
     const method all[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
     for (const auto& [label, who] : all) {
-        series s{label, series_style::line, {}};
+        series s{label};
         for (const condition& c : worlds) {
             const double side = std::cbrt(number_of(c.of(), "objects") / number_of(c.of(), "density"));
             if (const auto point = c.point(side, who, of)) s.points.push_back(*point);

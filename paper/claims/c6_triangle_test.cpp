@@ -70,7 +70,7 @@ table table_of(const test_times& times) {
         const std::string frame = name.ends_with(in_place) ? std::string(in_place) : "";
         const cells ratios = ratios_of(times, name, "test/box" + frame);
         t.rows.push_back({name, three_digits(q.median), three_digits(q.low) + " to " + three_digits(q.high),
-                          ratios.empty() ? "-" : ratio_cell({{}, {bootstrap(ratios)}})});
+                          ratios.empty() ? "-" : ratio_cell({.where = {}, .log_ratios = {bootstrap(ratios)}})});
     }
     return t;
 }
@@ -79,12 +79,10 @@ figure figure_of(const test_times& times) {
     figure f{"c6",
              "Nanoseconds of one elementary test, on the pairs that a walk through two trees meets; medians and "
              "quartiles.",
-             {"test", false, {}},
-             {"time a test (ns)", false, {}},
-             {},
-             {}};
-    series carried{"what is tested of B is carried into A's frame", series_style::points, {}};
-    series of_a{"nothing is carried", series_style::points, {}};
+             {"test", false},
+             {"time a test (ns)", false}};
+    series carried{"what is tested of B is carried into A's frame", series_style::points};
+    series of_a{"nothing is carried", series_style::points};
     for (const auto& [name, processes] : times) {
         if (name.ends_with(in_place)) continue;
         const auto place = static_cast<double>(f.x.names.size());
@@ -140,8 +138,8 @@ draft c6_claim(const measurements& m) {
         {"none", "in whole queries without a test at leaves"}};
     for (const condition& c : m.of("figure2"))
         for (const auto& [test, subject] : queries) {
-            candidate one = candidate_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
-                                         "detect_cpu_ms");
+            endpoint one = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
+                                       "detect_cpu_ms");
             one.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
             made.add(told(std::move(one), subject));
         }

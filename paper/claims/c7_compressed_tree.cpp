@@ -30,9 +30,9 @@ figure size_figure(const measurements& m, const std::string& name, const std::st
     return f;
 }
 
-candidate compressed_over_canonical(const condition& c, const std::string& metric, const std::string& leaf_test) {
-    return candidate_of(c, tree("compressed:leaf_test=" + leaf_test), tree("canonical"), metric,
-                        {{"leaf_test", leaf_test}, {"triangles", std::to_string(std::llround(c.triangles()))}});
+endpoint compressed_over_canonical(const condition& c, const std::string& metric, const std::string& leaf_test) {
+    return endpoint_of(c, tree("compressed:leaf_test=" + leaf_test), tree("canonical"), metric,
+                       {{"leaf_test", leaf_test}, {"triangles", std::to_string(std::llround(c.triangles()))}});
 }
 
 }  // namespace

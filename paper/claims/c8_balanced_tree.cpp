@@ -10,13 +10,8 @@ selection canonical(const std::string& build) {
 
 /// What each build costs and brings.
 table builds(const std::vector<condition>& conditions) {
-    table t{{{"meshes", false},
-             {"build", false},
-             {"build (ms)"},
-             {"query (ms)"},
-             {"box tests a query"},
-             {"triangle tests a query"}},
-            {}};
+    table t =
+        empty_table({"meshes", "build"}, {"build (ms)", "query (ms)", "box tests a query", "triangle tests a query"});
     for (const condition& c : conditions)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
             std::vector<std::string> cells{mesh_of(c), build};
@@ -28,8 +23,8 @@ table builds(const std::vector<condition>& conditions) {
     return t;
 }
 
-candidate median_over(const condition& c, const std::string& build) {
-    return candidate_of(c, canonical("median"), canonical(build), "detect_cpu_ms", {{"over", build}});
+endpoint median_over(const condition& c, const std::string& build) {
+    return endpoint_of(c, canonical("median"), canonical(build), "detect_cpu_ms", {{"over", build}});
 }
 
 }  // namespace
@@ -44,16 +39,14 @@ draft c8_claim(const measurements& m) {
     figure f{"c8",
              "Time of a query in the canonical tree split at the median, over that of one split at the mean, at the "
              "middle of the box, and by surface area, with 95 % intervals: above 1 the median is slower.",
-             {"meshes", false, {}},
-             {"time, median over other splits", false, {}},
-             {},
-             {}};
+             {"meshes", false},
+             {"time, median over other splits", false}};
     const std::pair<const char*, const char*> others[] = {
         {"mean", "against the mean"}, {"midpoint", "against the middle of the box"}, {"sah", "against surface area"}};
     for (const auto& [build, subject] : others) {
-        series& s = f.lines.emplace_back(series{std::string("over ") + build, series_style::points, {}});
+        series& s = f.lines.emplace_back(series{std::string("over ") + build, series_style::points});
         for (const condition& c : conditions) {
-            const candidate& ratio = made.add(told(median_over(c, build), subject));
+            const endpoint& ratio = made.add(told(median_over(c, build), subject));
             if (ratio.known()) s.points.push_back(point_of(static_cast<double>(&c - conditions.data()), ratio));
         }
     }

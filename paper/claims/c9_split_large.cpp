@@ -27,14 +27,14 @@ draft c9_claim(const measurements& m) {
     for (const condition& c : m.of("c9"))
         for (const char* size : {"4", "8"})
             if (const selection who = splitting("split_large", size); splits_something(c, who))
-                made.add(told(candidate_of(c, who, whole, "frame_cpu_ms", {{"split_large", size}}),
-                              "where boxes are split"));
+                made.add(
+                    told(endpoint_of(c, who, whole, "frame_cpu_ms", {{"split_large", size}}), "where boxes are split"));
     for (const condition& c : m.of("c9_geometry"))
         for (const char* size : {"2", "4", "8"}) {
             const selection who = splitting("split_mesh", size);
             if (!splits_something(c, who)) continue;
             const auto add = [&](const std::string& metric, const std::string& of, const std::string& subject) {
-                made.add(told(candidate_of(c, who, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
+                made.add(told(endpoint_of(c, who, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
             };
             add("global_cpu_ms", "global search", "of global search where meshes are split");
             add("frame_cpu_ms", "both stages", "of both stages there");
@@ -44,7 +44,7 @@ draft c9_claim(const measurements& m) {
                 "Time of global search with boxes split that are longer than four mean extents, over that without (the "
                 "level 1), against the number of huge boxes, by their edge over the side of the world; 95 % intervals.",
                 "huge boxes", "time over that without splitting"));
-    f.lines = lines_by_span(made.candidates, {{"split_large", "4"}});
+    f.lines = lines_by_span(made.endpoints, {{"split_large", "4"}});
     f.lines.push_back(level_of("not split"));
     return made;
 }

@@ -1,22 +1,34 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.claims;
+
+import aabblab.fmt;
 
 namespace aabblab {
 
 namespace {
 
+/// What every machine finds of endpoints that are decided together; where machines differ, nothing is decided.
+void settle(std::span<endpoint* const> all, double band) {
+    if (all.empty()) return;
+    for (std::size_t machine = 0; machine < all.front()->log_ratios.size(); ++machine) {
+        std::vector<tested> evidence;
+        for (const endpoint* e : all)
+            evidence.push_back({e->expected.value_or(expectation::less), tails_of(e->log_ratios[machine], band)});
+        const std::vector<double> levels = levels_together(evidence);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            endpoint& e = *all[i];
+            const support found = support_of(evidence[i].expected, evidence[i].p, levels[i]);
+            const outcome direction = direction_of(evidence[i].p, levels[i]);
+            e.found = machine == 0 || e.found == found ? found : support::undecided;
+            e.direction = machine == 0 || e.direction == direction ? direction : outcome::undecided;
+        }
+    }
+}
+
 std::string word_of(const endpoint& e) {
     if (e.expected == expectation::not_more && e.found == support::favours && e.direction == outcome::undecided)
         return "not more";
-    switch (e.direction) {
-        case outcome::less: return "less";
-        case outcome::same: return "the same";
-        case outcome::more: return "more";
-        case outcome::undecided: break;
-    }
-    return "open";
+    constexpr std::array words{"less", "the same", "more", "open"};
+    return words[static_cast<std::size_t>(e.direction)];
 }
 
 /// Every primary ratio, and how many others say what.
@@ -51,8 +63,8 @@ claim_result finished(const draft& made, const std::vector<endpoint>& all) {
     });
     claim.brief = sentence_of(of_primary_lines, claim.lead);
     std::vector<endpoint> beside;
-    for (const candidate& c : made.beside)
-        if (c.known()) beside.push_back(endpoint_of(c, claim.expected));
+    for (const endpoint& e : made.beside)
+        if (e.known()) beside.push_back(decided_alone(e));
     if (!beside.empty()) claim.sentence += " " + sentence_of(beside);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
     claim.because = figures_of(all);
@@ -78,31 +90,66 @@ claim_result finished(const draft& made, const std::vector<endpoint>& all) {
 std::vector<draft> drafts_of(const measurements& m) {
     std::vector<draft> all;
     for (const claim_source& source : claim_sources()) {
-        claim_result& claim = all.emplace_back(source.make(m)).claim;
+        draft& made = all.emplace_back(source.make(m));
+        claim_result& claim = made.claim;
         claim.id = source.listed.id;
         claim.expected = source.listed.expected;
+        for (std::vector<endpoint>* some : {&made.endpoints, &made.beside})
+            for (endpoint& e : *some) e.expected = e.expected.value_or(claim.expected);
         for (const std::string& experiment : claim.experiments)
-            for (const condition& c : m.of(experiment)) claim.scenes.push_back(c.of());
+            std::ranges::move(places_of(m.of(experiment)), std::back_inserter(claim.scenes));
     }
     return all;
 }
 
 /// Puts what another machine measured beside it. What it did not measure is not known of all machines.
 void add_machine(std::vector<draft>& all, const std::vector<draft>& more) {
-    const auto add = [](std::vector<candidate>& to, const std::vector<candidate>& from) {
-        for (candidate& c : to) {
+    const auto add = [](std::vector<endpoint>& to, const std::vector<endpoint>& from) {
+        for (endpoint& e : to) {
             const auto same = std::ranges::find_if(
-                from, [&](const candidate& other) { return other.where == c.where && other.source == c.source; });
-            c.log_ratios.push_back(same == from.end() ? estimate{std::nan("")} : same->log_ratios.front());
+                from, [&](const endpoint& other) { return other.where == e.where && other.source == e.source; });
+            e.log_ratios.push_back(same == from.end() ? estimate{std::nan("")} : same->log_ratios.front());
         }
     };
     for (std::size_t i = 0; i < all.size(); ++i) {
-        add(all[i].candidates, more[i].candidates);
+        add(all[i].endpoints, more[i].endpoints);
         add(all[i].beside, more[i].beside);
     }
 }
 
 }  // namespace
+
+endpoint decided_alone(endpoint e, double band) {
+    const estimate log_ratio = e.log_ratio();
+    const interval range = log_ratio.range();
+    const tails p = tails_of(log_ratio, band);
+    e.ratio = std::exp(log_ratio.value);
+    e.range = {std::exp(range.low), std::exp(range.high)};
+    e.found = e.alone = support_of(e.expected.value_or(expectation::less), p);
+    e.direction = direction_of(p);
+    return e;
+}
+
+std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band) {
+    std::vector<std::vector<endpoint>> all(drafts.size());
+    std::vector<endpoint*> primaries;
+    for (std::size_t i = 0; i < drafts.size(); ++i) {
+        for (const endpoint& e : drafts[i].endpoints)
+            if (e.known()) all[i].push_back(decided_alone(e, band));
+        std::vector<endpoint*> others;
+        for (endpoint& e : all[i]) (e.is_primary ? primaries : others).push_back(&e);
+        settle(others, band);
+    }
+    settle(primaries, band);
+    return all;
+}
+
+verdict_kind verdict_of(std::span<const endpoint> all) {
+    std::vector<support> primary;
+    for (const endpoint& e : all)
+        if (e.is_primary) primary.push_back(e.found);
+    return verdict_of(primary);
+}
 
 factors place_of(const endpoint& e) {
     factors place = e.where;

@@ -14,13 +14,14 @@ export namespace aabblab {
 /// What is compared, and so how a sentence tells it.
 enum class quantity : unsigned char { time, bytes, box_tests, work, slowdown };
 
-/// One ratio of a claim: where it was measured, what it is, and what it says.
+/// One ratio of a claim: where it was measured, what it is, and, once it is decided, what it says.
 struct endpoint {
     factors where{};
     factors observed{};  ///< measured there, so no part of what tells it from others: inversions an element
+    std::vector<estimate> log_ratios{};  ///< by machine
     double ratio = 0;
-    interval range{};  ///< 95 %, of this endpoint alone
-    expectation expected = expectation::less;
+    interval range{};                        ///< 95 %, of this endpoint alone
+    std::optional<expectation> expected{};   ///< in a draft empty where it is the claim's
     support found = support::undecided;      ///< beside all that are decided with it
     outcome direction = outcome::undecided;  ///< the same
     support alone = support::undecided;      ///< what its own interval says, as if there were no others
@@ -30,6 +31,13 @@ struct endpoint {
     std::optional<std::string> subject{};
     std::string along{};   ///< the factor that orders the line; empty where nothing does
     std::string source{};  ///< of which rows it is: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
+
+    /// Whether every machine measured it.
+    [[nodiscard]] bool known() const {
+        return !log_ratios.empty() && std::ranges::all_of(log_ratios, &estimate::known);
+    }
+    /// Over all machines.
+    [[nodiscard]] estimate log_ratio() const { return mean_of(log_ratios); }
 };
 
 struct claim_result {
@@ -121,24 +129,6 @@ struct reproduction {
 // What the parts of the module share. They see what is imported above.
 namespace aabblab {
 
-/// A ratio on its way to be judged.
-struct candidate {
-    factors where;
-    std::vector<estimate> log_ratios;  ///< by machine
-    bool primary = false;
-    std::optional<expectation> expected{};  ///< where it is not the claim's
-    quantity compared = quantity::time;
-    std::optional<std::string> subject{};
-    std::string along{};
-    std::string source{};
-    factors observed{};  ///< as an endpoint has it
-
-    /// Whether every machine measured it.
-    [[nodiscard]] bool known() const;
-    /// Over all machines.
-    [[nodiscard]] estimate log_ratio() const;
-};
-
 /// Whether all of these factors have these values there; one without a value must be missing.
 [[nodiscard]] bool has(const factors& place, const factors& wanted);
 
@@ -146,10 +136,10 @@ struct candidate {
 struct draft {
     claim_result claim;
     std::vector<factors> primary;  ///< an endpoint that has all factors of one of these decides the claim
-    std::vector<candidate> candidates{};
-    std::vector<candidate> beside{};  ///< told at the end of the sentence, by their own intervals, and not judged
+    std::vector<endpoint> endpoints{};
+    std::vector<endpoint> beside{};  ///< told at the end of the sentence, by their own intervals, and not judged
 
-    candidate& add(candidate c);
+    endpoint& add(endpoint e);
 };
 
 /// A claim as its line in CMakeLists.txt has it.
@@ -160,12 +150,12 @@ struct claim_source {
 /// Defined in a generated unit.
 [[nodiscard]] std::vector<claim_source> claim_sources();
 
-/// Endpoint by its own 95 % interval.
-[[nodiscard]] endpoint endpoint_of(const candidate& c, expectation expected, double band = equivalence_band);
+/// By its own 95 % interval.
+[[nodiscard]] endpoint decided_alone(endpoint e, double band = equivalence_band);
 
-/// Candidates without a finite ratio (a composition was wrong, an experiment has not run) are left out. Primary ones
+/// Endpoints without a finite ratio (a composition was wrong, an experiment has not run) are left out. Primary ones
 /// are decided together over all claims, the others together within theirs.
-/// @returns endpoints by claim, in the order of candidates
+/// @returns them by claim, in their order
 [[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
 /// By the rule of aabblab.statistics.
 [[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> all);
@@ -195,18 +185,9 @@ struct claim_source {
 [[nodiscard]] table endpoint_table(std::span<const endpoint> all,
                                    const std::function<std::string(const endpoint&)>& outcome);
 
-/// Columns of a table that say where its rows were measured: the factors in which they differ.
-class place_columns {
-public:
-    explicit place_columns(std::span<const factors> places);
-    explicit place_columns(const std::vector<condition>& conditions);
-
-    [[nodiscard]] std::vector<column> head() const;
-    [[nodiscard]] std::vector<std::string> cells(const factors& place) const;
-
-private:
-    std::vector<std::string> names_;
-};
+/// A row for each place, of columns that say where it is: the factors in which they differ.
+[[nodiscard]] table place_table(std::span<const factors> places);
+[[nodiscard]] std::vector<factors> places_of(const std::vector<condition>& conditions);
 
 /// The conditions of an experiment that have these factors.
 [[nodiscard]] std::vector<const condition*> having(const std::vector<condition>& all, const factors& wanted);
@@ -214,14 +195,14 @@ private:
 /// The ratio of two compositions in one condition.
 /// @param metric by its name
 /// @param more factors beside the condition's own
-[[nodiscard]] candidate candidate_of(const condition& c, const selection& arm, const selection& base,
-                                     const std::string& metric, factors more = {});
+[[nodiscard]] endpoint endpoint_of(const condition& c, const selection& arm, const selection& base,
+                                   const std::string& metric, factors more = {});
 /// The mean of one less that of the other; of conditions between which nothing is played in the same repeat, so that
 /// cells of one process and seed are compared.
 [[nodiscard]] estimate between(const cells& above, const cells& below);
 /// The same, told on a line.
-[[nodiscard]] candidate told(candidate c, const std::string& subject, const std::string& along = "",
-                             quantity compared = quantity::time);
+[[nodiscard]] endpoint told(endpoint e, const std::string& subject, const std::string& along = "",
+                            quantity compared = quantity::time);
 
 /// The median over all repeats; empty where it was not measured.
 [[nodiscard]] std::optional<double> median_of(const condition& c, const selection& who, const row_value& of);
@@ -230,21 +211,21 @@ private:
 
 /// Cells of tables, "-" where nothing was measured.
 [[nodiscard]] std::string digits_cell(const std::optional<double>& value);
-[[nodiscard]] std::string ratio_cell(const candidate& c);
+[[nodiscard]] std::string ratio_cell(const endpoint& e);
 
 /// A composition as figures and tables call it.
 struct method {
     std::string label;
     selection who;
 };
-/// The time a frame of each method but the first, over that of the first.
-[[nodiscard]] std::vector<std::string> ratio_cells(const condition& c, std::span<const method> methods);
+/// Adds to a table with a row for each condition the time a frame of each method but the first, over that of the first.
+void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods);
 
 /// A figure over two logarithmic axes.
 [[nodiscard]] figure log_log(const std::string& name, const std::string& caption, const std::string& x,
                              const std::string& y);
 /// A ratio with its 95 % interval as a point of a figure.
-[[nodiscard]] figure_point point_of(double x, const candidate& c);
+[[nodiscard]] figure_point point_of(double x, const endpoint& e);
 /// The level of what ratios are formed with.
 [[nodiscard]] series level_of(const std::string& label, double x = 1);
 /// A series of medians over the conditions of an experiment, in the order of x.
@@ -256,7 +237,7 @@ struct method {
                                             const row_value& of);
 /// Ratios against the number of huge boxes, a line for each edge over the side of the world.
 /// @param wanted factors of the ratios that are shown
-[[nodiscard]] std::vector<series> lines_by_span(std::span<const candidate> ratios, const factors& wanted);
+[[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted);
 
 /// The condition's mesh in a few letters: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] std::string mesh_of(const condition& c);

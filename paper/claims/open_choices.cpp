@@ -4,25 +4,20 @@ namespace aabblab {
 
 namespace {
 
-/// What a claim's ratio is under one of several choices.
-struct alternative {
-    std::string label;
-    candidate measured;
+using alternative = open_choice::alternative;
 
-    [[nodiscard]] expectation expected() const { return measured.expected.value_or(expectation::less); }
-};
-
+/// What a claim's ratio is under each of several choices.
 struct measured_choices {
     std::string where;               ///< they were measured
     std::string ours;                ///< the label of what we chose
     std::vector<alternative> all{};  ///< that were measured
 
-    void add(const std::string& label, const candidate& measured) {
+    void add(const std::string& label, const endpoint& measured) {
         if (measured.known()) all.push_back({label, measured});
     }
     /// Claim C1's ratio.
     void add_search(const std::string& label, const condition& c) {
-        add(label, candidate_of(c, improved, traditional, "frame_cpu_ms"));
+        add(label, endpoint_of(c, improved, traditional, "frame_cpu_ms"));
     }
 };
 
@@ -39,7 +34,7 @@ measured_choices in_one(const std::vector<const condition*>& conditions, const s
     measured_choices found{"", named.front().label};
     for (const condition* c : conditions) {
         found.where = text_of(c->of()) + note;
-        for (const arms& one : named) found.add(one.label, candidate_of(*c, one.arm, one.base, metric));
+        for (const arms& one : named) found.add(one.label, endpoint_of(*c, one.arm, one.base, metric));
     }
     return found;
 }
@@ -97,15 +92,15 @@ measured_choices over_leaf_tests(const measurements& m) {
 /// Growth of work an element, as claim C2 has it.
 measured_choices over_numbers_of_gaps(const measurements& m) {
     measured_choices found{"line, displacement 0.1", "as many as N asks for"};
-    for (candidate c : c2_claim(m).candidates) {
-        c.expected = expectation::not_more;
-        const std::string sort = value_of(c.where, "sort");
-        if (value_of(c.where, "displacement") != "0.1" || sort == "insertion") continue;
+    for (endpoint e : c2_claim(m).endpoints) {
+        e.expected = expectation::not_more;
+        const std::string sort = value_of(e.where, "sort");
+        if (value_of(e.where, "displacement") != "0.1" || sort == "insertion") continue;
         found.add(sort == "shell:gaps=ciura"         ? "as many as N asks for"
                   : sort == "shell:gaps=ciura_eight" ? "Ciura's eight"
                   : sort == "shell:gaps=four_one"    ? "two: 4 and 1"
                                                      : sort,
-                  c);
+                  e);
     }
     return found;
 }
@@ -116,8 +111,8 @@ measured_choices over_models(const measurements& m) {
         const std::string label =
             value_of(c.of(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.of(), "density");
         if (has(c.of(), large_crowd)) found.ours = label;
-        found.add(label, candidate_of(c, improved.with(kind::tree, compressed),
-                                      traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));
+        found.add(label, endpoint_of(c, improved.with(kind::tree, compressed),
+                                     traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));
     }
     return found;
 }
@@ -127,7 +122,7 @@ measured_choices with_first_frame(const measurements& m) {
     for (const condition* c : having(m.of("figure1"), drifting)) {
         found.where = text_of(c->of());
         found.add_search("without it", *c);
-        found.add("with it", candidate_of(*c, improved, traditional, "whole_cpu_ms"));
+        found.add("with it", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
     }
     return found;
 }
@@ -141,8 +136,9 @@ open_choice choice(const std::string& question, const std::string& ours, const s
     if (measured.all.empty() || measured.all.front().label != measured.ours) return made;
     std::vector<tested> others;
     for (const alternative& a : measured.all) {
-        if (!made.alternatives.empty()) others.push_back({a.expected(), tails_of(a.measured.log_ratio())});
-        made.alternatives.push_back({a.label, endpoint_of(a.measured, a.expected())});
+        if (!made.alternatives.empty())
+            others.push_back({a.measured.expected.value_or(expectation::less), tails_of(a.measured.log_ratio())});
+        made.alternatives.push_back({a.label, decided_alone(a.measured)});
     }
     const std::vector<double> levels = levels_together(others);
     for (std::size_t i = 0; i < levels.size(); ++i)

@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.claims;
 
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
@@ -15,14 +13,8 @@ constexpr double told_as_times = 1.5;
 constexpr double told_as_one = 1.1;
 
 std::string_view noun_of(quantity compared) {
-    switch (compared) {
-        case quantity::time: return "time";
-        case quantity::bytes: return "bytes";
-        case quantity::box_tests: return "box tests";
-        case quantity::work: return "work";
-        case quantity::slowdown: break;
-    }
-    return "worst slowdown";
+    constexpr std::array nouns{"time", "bytes", "box tests", "work", "worst slowdown"};
+    return nouns[static_cast<std::size_t>(compared)];
 }
 
 std::string times_text(double factor) {
@@ -79,14 +71,9 @@ extent extent_of(std::span<const endpoint> all) {
 }
 
 /// What is found of an endpoint, as a sentence tells it.
-enum class told_as : unsigned char { less, more, same, not_more, open };
+enum class told_as : unsigned char { less, same, more, not_more, open };
 told_as kind_of(const endpoint& e) {
-    switch (e.direction) {
-        case outcome::less: return told_as::less;
-        case outcome::more: return told_as::more;
-        case outcome::same: return told_as::same;
-        case outcome::undecided: break;
-    }
+    if (e.direction != outcome::undecided) return static_cast<told_as>(e.direction);
     return e.found == support::favours ? told_as::not_more : told_as::open;
 }
 
@@ -177,6 +164,47 @@ std::string unordered_clause(std::vector<endpoint> line) {
            (line.size() == count ? "" : fmt::format(", {} of {} conditions undecided", count - line.size(), count));
 }
 
+const claim_result* claim_named(std::span<const claim_result> claims, const std::string& id) {
+    const auto found = std::ranges::find(claims, id, &claim_result::id);
+    return found != claims.end() ? &*found : nullptr;
+}
+
+/// What the classic sweep makes of the paper's own premise, that objects hardly move.
+std::string against_classic_sweep(std::span<const claim_result> claims) {
+    const claim_result* claim = claim_named(claims, "C1");
+    if (!claim) return "";
+    for (const endpoint& e : primaries_of(*claim))
+        if (value_of(e.where, "over") == "incremental") return "; where objects hardly move, " + clause_of({&e, 1}, e);
+    return "";
+}
+
+/// The clause on the line of a claim's first primary endpoint.
+std::string first_clause(std::span<const claim_result> claims, const std::string& id) {
+    const claim_result* claim = claim_named(claims, id);
+    if (!claim || !claim->has_primary || !claim->primary.subject) return "not measured";
+    std::vector<endpoint> all{claim->primary};
+    all.insert(all.end(), claim->secondary.begin(), claim->secondary.end());
+    return clause_of(all, claim->primary);
+}
+
+/// "Of 14 claims 2 hold, 6 hold in part, 5 do not hold and 1 is undecided."
+std::string counts_of(std::span<const claim_result> claims) {
+    std::vector<std::string> parts;
+    const auto add = [&](verdict_kind verdict, const char* one, const char* many) {
+        if (const auto count = std::ranges::count(claims, verdict, &claim_result::verdict); count > 0)
+            parts.push_back(fmt::format("{} {}", count, count == 1 ? one : many));
+    };
+    add(verdict_kind::holds, "holds", "hold");
+    add(verdict_kind::in_part, "holds in part", "hold in part");
+    add(verdict_kind::does_not_hold, "does not hold", "do not hold");
+    add(verdict_kind::no_difference, "shows no difference", "show no difference");
+    add(verdict_kind::undecided, "is undecided", "are undecided");
+    std::string text = fmt::format("Of {} claims", claims.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        text += (i == 0 ? " " : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return text + ".";
+}
+
 }  // namespace
 
 std::string number_text(const std::string& value) {
@@ -206,6 +234,16 @@ std::string sentence_of(std::span<const endpoint> all, const std::string& lead) 
     if (!lead.empty()) text = lead + ": " + text;
     text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
     return text + ".";
+}
+
+std::vector<std::string> headline_of(std::span<const claim_result> claims) {
+    return {
+        "To find which boxes overlap, the paper sorts them with Shell sort and cuts the axes; compared with insertion "
+        "sort without cuts: " +
+            first_clause(claims, "C1") + against_classic_sweep(claims) + ".",
+        "To find which triangles meet, it compresses the tree of boxes; compared with the tree as it was: " +
+            first_clause(claims, "C7a") + ", and to search it " + first_clause(claims, "C7b") + ".",
+        counts_of(claims)};
 }
 
 }  // namespace aabblab

@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.claims;
 
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
@@ -36,14 +34,8 @@ const condition* measured_on(const measurements& m) {
 }
 
 table bytes_table(const condition& c) {
-    table t{{{"tree", false},
-             {"internal node", false},
-             {"leaf", false},
-             {"a triangle, on paper"},
-             {"allocated"},
-             {"of it boxes and symbols"},
-             {"indices"}},
-            {}};
+    table t = empty_table({"tree", "internal node", "leaf"},
+                          {"a triangle, on paper", "allocated", "of it boxes and symbols", "indices"});
     for (const layout& one : layouts) {
         const selection who = built(one, "median");
         if (!c.value(who, measured("tree_bytes"))) continue;
@@ -58,19 +50,13 @@ table bytes_table(const condition& c) {
 }
 
 table cost_table(const condition& c) {
-    table t{{{"tree", false},
-             {"build", false},
-             {"bytes a triangle"},
-             {"boxes larger by (%)"},
-             {"build time"},
-             {"query time"}},
-            {}};
+    table t = empty_table({"tree", "build"}, {"bytes a triangle", "boxes larger by (%)", "build time", "query time"});
     for (const layout& one : layouts)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
             const std::optional<double> bytes = c.value(built(one, build), measured("tree_bytes"));
             if (!bytes) continue;
             const auto ratio = [&](const std::string& metric) {
-                return ratio_cell(candidate_of(c, built(one, build), built(layouts[0], "median"), metric));
+                return ratio_cell(endpoint_of(c, built(one, build), built(layouts[0], "median"), metric));
             };
             t.rows.push_back({one.name, build, fmt::format("{:.2f}", *bytes),
                               three_digits(100 * c.value(built(one, build), measured("box_inflation")).value_or(0)),

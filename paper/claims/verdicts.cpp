@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.claims;
 
+import aabblab.fmt;
 import aabblab.numbers;
 
 namespace aabblab {
@@ -14,49 +12,51 @@ std::string grouped_if_long(const std::string& text) {
     return text.size() < 5 ? text : number_text(text);
 }
 
+/// From here on a direction is a difference: alone, it is found in one of twenty by chance.
+bool is_difference(const endpoint& e) {
+    return e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band);
+}
+
+/// Of the time of all frames, in per cent. A quiet machine takes a thousandth away for its own needs.
+constexpr double most_waiting = 2;
+/// By which one repeat differs from the next in the median, in per cent.
+constexpr double most_difference = 5;
+
 }  // namespace
 
 table endpoint_table(std::span<const endpoint> all, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> places;
     for (const endpoint& e : all) places.push_back(place_of(e));
-    const place_columns columns(places);
-    table t{columns.head(), {}};
+    table t = place_table(places);
     t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
-    for (const endpoint& e : all) {
-        std::vector<std::string>& cells = t.rows.emplace_back(columns.cells(place_of(e)));
-        cells.push_back(ratio_digits_of(e.ratio));
-        cells.push_back(ratio_digits_of(e.range.low) + " to " + ratio_digits_of(e.range.high));
-        cells.push_back(outcome(e));
-    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+        t.rows[i].insert(
+            t.rows[i].end(),
+            {ratio_digits_of(all[i].ratio),
+             ratio_digits_of(all[i].range.low) + " to " + ratio_digits_of(all[i].range.high), outcome(all[i])});
     return t;
 }
 
-place_columns::place_columns(std::span<const factors> places) {
+table place_table(std::span<const factors> places) {
+    table t;
+    t.rows.resize(places.size());
+    std::set<std::string> told;
     for (const factors& place : places)
-        for (const auto& [name, value] : place)
-            if (std::ranges::find(names_, name) == names_.end() &&
-                std::ranges::any_of(places,
-                                    [&, n = name, v = value](const factors& other) { return value_of(other, n) != v; }))
-                names_.push_back(name);
+        for (const auto& [name, value] : place) {
+            const auto differs = [n = name, v = value](const factors& other) { return value_of(other, n) != v; };
+            if (told.contains(name) || std::ranges::none_of(places, differs)) continue;
+            told.insert(name);
+            t.columns.push_back({name, false});
+            for (std::size_t i = 0; i < places.size(); ++i)
+                t.rows[i].push_back(grouped_if_long(value_of(places[i], name)));
+        }
+    return t;
 }
 
-place_columns::place_columns(const std::vector<condition>& conditions)
-    : place_columns([&] {
-          std::vector<factors> places;
-          for (const condition& c : conditions) places.push_back(c.of());
-          return places;
-      }()) {}
-
-std::vector<column> place_columns::head() const {
-    std::vector<column> columns;
-    for (const std::string& name : names_) columns.push_back({name, false});
-    return columns;
-}
-
-std::vector<std::string> place_columns::cells(const factors& place) const {
-    std::vector<std::string> all;
-    for (const std::string& name : names_) all.push_back(grouped_if_long(value_of(place, name)));
-    return all;
+std::vector<factors> places_of(const std::vector<condition>& conditions) {
+    std::vector<factors> places;
+    for (const condition& c : conditions) places.push_back(c.of());
+    return places;
 }
 
 std::string dependence_of(const open_choice& choice) {
@@ -93,17 +93,8 @@ std::string text_of(const claim_result& claim) {
 }
 
 table verdict_table(const reproduction& all) {
-    table t{{{"", false},
-             {"claim", false},
-             {"verdict", false},
-             {"in words", false},
-             {"ratio"},
-             {"95 %"},
-             {"for"},
-             {"against"},
-             {"same"},
-             {"undecided"}},
-            {}};
+    table t =
+        empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
     for (const claim_result& c : all.claims) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c), c.sentence});
         cells.push_back(c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
@@ -128,13 +119,7 @@ table brief_table(const reproduction& all) {
 }
 
 table choice_table(const reproduction& all) {
-    table t{{{"left open", false},
-             {"our choice", false},
-             {"why", false},
-             {"claim", false},
-             {"its ratio", false},
-             {"changes it", false}},
-            {}};
+    table t = empty_table({"left open", "our choice", "why", "claim", "its ratio", "changes it"});
     for (const open_choice& c : all.choices) {
         std::string ratios;
         for (const open_choice::alternative& a : c.alternatives)
@@ -143,6 +128,81 @@ table choice_table(const reproduction& all) {
             {c.question, c.choice, c.why, c.claim, ratios.empty() ? "not measured" : ratios, dependence_of(c)});
     }
     return t;
+}
+
+named_table bands_table(std::span<const draft> drafts) {
+    table t = empty_table({"", "claim"});
+    for (const draft& d : drafts) t.rows.push_back({d.claim.id, d.claim.claim});
+    for (const double band : {0.0, 0.03, 0.05, 0.1}) {
+        t.columns.push_back({fmt::format("band {:.0f} %", 100 * band), false});
+        const std::vector<std::vector<endpoint>> endpoints = decided(drafts, band);
+        for (std::size_t i = 0; i < drafts.size(); ++i) t.rows[i].push_back(text_of(verdict_of(endpoints[i])));
+    }
+    return {"bands", "The verdicts, if ratios that differ from 1 by no more than so much were no difference.", t};
+}
+
+named_table null_control(const measurements& m) {
+    // A composition, and the same with a default written out.
+    const std::pair<selection, selection> twins[] = {{traditional, traditional.with(kind::sweep, "one_axis:axis=auto")},
+                                                     {improved, improved.with(kind::sort, "shell:gaps=ciura")}};
+    std::vector<endpoint> found;
+    for (const condition& c : m.of("null_control"))
+        for (const auto& [plain, written_out] : twins) {
+            const endpoint ratio = endpoint_of(c, written_out, plain, "frame_cpu_ms",
+                                               {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
+            if (ratio.known()) found.push_back(decided_alone(ratio));
+        }
+    const table t = endpoint_table(found, [&](const endpoint& e) {
+        return is_difference(e)                    ? std::string("a difference")
+               : e.found == support::no_difference ? text_of(e.found)
+                                                   : "undecided";
+    });
+    if (found.empty()) return {"null_control", "There are no measurements of a null control.", t};
+    const auto without_one =
+        std::ranges::count_if(found, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
+    return {"null_control",
+            fmt::format(
+                "Null control: time a frame of a composition under two names. Of {} intervals {} miss 1, where one in "
+                "twenty would be expected to. Each taken alone, {} are decided as a difference, {} as none, "
+                "and {} are undecided.",
+                found.size(), without_one, std::ranges::count_if(found, is_difference),
+                std::ranges::count(found, support::no_difference, &endpoint::found),
+                std::ranges::count_if(
+                    found, [](const endpoint& e) { return !is_difference(e) && e.found != support::no_difference; })),
+            t};
+}
+
+std::string disturbance_of(std::span<const measurements> machines) {
+    std::string text;
+    for (const measurements& m : machines) {
+        double wall_ms = 0;
+        double cpu_ms = 0;
+        std::vector<double> differences;  // of processor time from one repeat to the next, as shares
+        for (const std::string& experiment : m.experiments())
+            for (const condition& c : m.of(experiment)) {
+                for (const double ms : c.values(measured("frame_ms"))) wall_ms += ms;
+                for (const double ms : c.values(measured("frame_cpu_ms"))) cpu_ms += ms;
+                std::ranges::copy(c.differences(measured("frame_cpu_ms")), std::back_inserter(differences));
+            }
+        if (!(wall_ms > 0)) continue;
+        const double waiting = std::max(0.0, 100 * (1 - cpu_ms / wall_ms));
+        const double difference = differences.empty() ? 0 : 100 * quartiles_of(differences).median;
+        if (waiting <= most_waiting && difference <= most_difference) continue;
+        text += (text.empty() ? "The machine" : " The machine") +
+                (machines.size() > 1 ? " of " + m.name() : std::string()) + " was not quiet:";
+        if (difference > most_difference)
+            text += fmt::format(
+                " one repeat differs from the next by {:.1f} % in the median, on a quiet one by less than "
+                "{:.0f} %.",
+                difference, most_difference);
+        if (waiting > most_waiting)
+            text += fmt::format(
+                " of the time of all frames the program waited {:.1f} % for a processor, on a quiet one "
+                "less than {:.0f} %.",
+                waiting, most_waiting);
+        text += " Ratios may be off by more than their intervals say.";
+    }
+    return text;
 }
 
 }  // namespace aabblab

@@ -1,5 +1,10 @@
 module aabblab.record;
 
+import aabb.base;
+import aabblab.files;
+import aabblab.fmt;
+import aabblab.sha256;
+
 namespace aabblab {
 
 namespace {
@@ -14,25 +19,41 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
     return names;
 }
 
-class listing {
-public:
-    explicit listing(const std::filesystem::path& folder) : folder_(folder) {}
+/// Checksums by file.
+using sums = std::map<std::string, std::string>;
 
-    /// Those that are there.
-    void add(const std::filesystem::path& place, std::initializer_list<const char*> names) {
-        for (const char* name : names)
-            if (std::filesystem::is_regular_file(folder_ / place / name)) files_.push_back(place / name);
+/// A copy may have come by a way that changes the ends of lines.
+std::string sum_of(const std::filesystem::path& file) {
+    const std::string bytes = bytes_of_file(file);
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        if (bytes[i] != '\r' || i + 1 == bytes.size() || bytes[i + 1] != '\n') text += bytes[i];
+    return sha256_of(text);
+}
+
+/// Of all files but the tables that a manifest speaks for.
+sums sums_of(const std::filesystem::path& folder) {
+    sums all;
+    for (const std::filesystem::path& file : recorded_files(folder))
+        if (const std::string name = file.filename().string(); name != "results.csv" && name != "differences.csv")
+            all.emplace(file.generic_string(), sum_of(folder / file));
+    return all;
+}
+
+sums stated_sums(const std::filesystem::path& file) {
+    sums all;
+    std::istringstream in(text_of_file(file));
+    std::size_t number = 0;
+    for (std::string line; std::getline(in, line);) {
+        ++number;
+        while (line.ends_with('\r')) line.pop_back();
+        if (line.size() < 67 || line.substr(64, 2) != "  ")
+            throw aabb::input_error(
+                fmt::format("{}:{}: expected a checksum of 64 digits, two blanks and a file", file.string(), number));
+        all[line.substr(66)] = line.substr(0, 64);
     }
-
-    [[nodiscard]] std::vector<std::filesystem::path> sorted() {
-        std::ranges::sort(files_);
-        return files_;
-    }
-
-private:
-    std::filesystem::path folder_;
-    std::vector<std::filesystem::path> files_;
-};
+    return all;
+}
 
 }  // namespace
 
@@ -46,25 +67,92 @@ std::vector<std::string> recorded_experiments(const std::filesystem::path& folde
 }
 
 std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
-    listing all(folder);
+    std::vector<std::filesystem::path> all;
+    const auto add = [&](const std::filesystem::path& place, std::initializer_list<const char*> names) {
+        for (const char* name : names)
+            if (std::filesystem::is_regular_file(folder / place / name)) all.push_back(place / name);
+    };
     for (const std::string& name : recorded_experiments(folder))
-        all.add(name, {"manifest.json", "results.csv", "differences.csv"});
+        add(name, {"manifest.json", "results.csv", "differences.csv"});
     for (const std::string& name : names_in(folder / "errors"))
-        all.add(std::filesystem::path("errors") / name,
-                {"config.toml", "errors.csv", "manifest.json", "results.csv", "differences.csv"});
+        add("errors/" + name, {"config.toml", "errors.csv", "manifest.json", "results.csv", "differences.csv"});
     for (const std::string& name : names_in(folder / "c6"))
-        if (name.ends_with(".json") || name == "made_by.txt") all.add("c6", {name.c_str()});
+        if (name.ends_with(".json") || name == "made_by.txt") add("c6", {name.c_str()});
     for (const std::string& name : names_in(folder / "atlas"))
-        all.add(std::filesystem::path("atlas") / name, {"manifest.json", "results.csv", "differences.csv"});
-    for (const char* suite : {"extreme", "stiff"}) all.add(suite, {"report.json"});
-    all.add("", {"failures.txt"});
-    return all.sorted();
+        add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
+    for (const char* suite : {"extreme", "stiff"}) add(suite, {"report.json"});
+    add("", {"failures.txt"});
+    std::ranges::sort(all);
+    return all;
 }
 
 std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files = recorded_files(folder);
     if (is_sealed_record(folder)) files.insert(files.begin(), sums_name);
     return files;
+}
+
+source_list::source_list(std::span<const std::string> names) {
+    for (const std::string& name : names) {
+        if (!std::filesystem::exists(name)) throw aabb::input_error(name + " is not there");
+        all_.push_back({name, std::filesystem::is_directory(name) ? std::filesystem::path(name)
+                                                                  : unpacked_.emplace_back(name, record_top).folder()});
+    }
+}
+
+void source_list::add(const std::filesystem::path& folder) {
+    all_.push_back({folder.string(), folder});
+}
+
+int source_list::with_names_of_user(const std::function<int()>& work) const {
+    try {
+        return work();
+    } catch (const aabb::input_error& refused) {
+        std::string sentence = refused.what();
+        for (const results_source& source : all_)
+            if (const std::size_t at = sentence.find(source.folder.string()); at != std::string::npos)
+                sentence.replace(at, source.folder.string().size(), source.name);
+        throw aabb::input_error(sentence);
+    }
+}
+
+void seal_record(const std::filesystem::path& folder) {
+    std::string text;
+    for (const auto& [file, sum] : sums_of(folder)) text += sum + "  " + file + "\n";
+    write_file(folder / sums_name, text);
+}
+
+void unseal_record(const std::filesystem::path& folder) {
+    std::filesystem::remove(folder / sums_name);
+}
+
+bool is_sealed_record(const std::filesystem::path& folder) {
+    return std::filesystem::exists(folder / sums_name);
+}
+
+std::string seal_of_record(const std::filesystem::path& folder) {
+    return sum_of(folder / sums_name);
+}
+
+void verify_record(const std::filesystem::path& folder) {
+    if (!is_sealed_record(folder)) return;
+    const sums found = sums_of(folder);
+    const sums stated = stated_sums(folder / sums_name);
+    for (const auto& [file, sum] : stated) {
+        const auto there = found.find(file);
+        if (there == found.end())
+            throw aabb::input_error((folder / file).string() + " is missing; SHA256SUMS names it");
+        if (there->second != sum)
+            throw aabb::input_error((folder / file).string() +
+                                    " was altered after the run: it does not have the checksum that SHA256SUMS states");
+    }
+    for (const auto& [file, sum] : found)
+        if (!stated.contains(file))
+            throw aabb::input_error((folder / file).string() + " was added after the run: SHA256SUMS does not name it");
+    for (const auto& [file, sum] : stated)
+        if (const std::filesystem::path manifest(file); manifest.filename() == "manifest.json")
+            if (const auto table = folder / manifest.parent_path() / "results.csv"; !std::filesystem::exists(table))
+                throw aabb::input_error(table.string() + " is missing, and its manifest.json is there");
 }
 
 }  // namespace aabblab

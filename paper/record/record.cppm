@@ -66,11 +66,6 @@ inline constexpr const char* unsealed_note =
     "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS, and "
     "nothing shows whether rows are missing or were altered";
 
-}  // namespace aabblab
-
-// What the parts of the module share.
-namespace aabblab {
-
 /// SHA256SUMS and nothing else has this name.
 inline constexpr const char* sums_name = "SHA256SUMS";
 

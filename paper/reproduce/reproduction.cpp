@@ -1,45 +1,96 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.reproduction;
 
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.record;
 
 namespace aabblab {
 
 namespace {
 
-std::string_view text_of(outcome direction) {
-    switch (direction) {
-        case outcome::less: return "less";
-        case outcome::same: return "same";
-        case outcome::more: return "more";
-        case outcome::undecided: break;
+class macros {
+public:
+    /// Text that is TeX already.
+    void set_tex(const std::string& key, const std::string& tex) { text_ += "\\aabbset{" + key + "}{" + tex + "}\n"; }
+    void set(const std::string& key, std::string_view text) { set_tex(key, tex_text(text)); }
+    void set(const std::string& key, std::size_t number) { set(key, std::to_string(number)); }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    std::string text_ = "% Written by ./aabblab reproduce: every number that the report names.\n";
+};
+
+/// The values of every factor over all scenes: "scene brownian, still; objects 100, 1000."
+std::string setup_of(const claim_result& c) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> values;
+    for (const factors& scene : c.scenes)
+        for (const auto& [name, value] : scene) {
+            auto known = std::ranges::find(values, name, &std::pair<std::string, std::vector<std::string>>::first);
+            if (known == values.end()) known = values.insert(known, {name, {}});
+            if (std::ranges::find(known->second, value) == known->second.end()) known->second.push_back(value);
+        }
+    std::string text;
+    for (auto& [name, seen] : values) {
+        const auto is_number = [&](const std::string& value) { return !std::isnan(number_of({{"", value}}, "")); };
+        if (std::ranges::all_of(seen, is_number))
+            std::ranges::sort(seen, {}, [](const std::string& value) { return number_of({{"", value}}, ""); });
+        text += (text.empty() ? "" : "; ") + name + " ";
+        for (const std::string& value : seen) text += (&value == seen.data() ? "" : ", ") + value;
     }
-    return "open";
+    return text.empty() ? "none were measured." : text + ".";
+}
+
+/// Names with commas, which TeX takes as they are.
+template <class Named>
+std::string list_of(const std::vector<Named>& all, std::size_t from = 0) {
+    std::string text;
+    for (std::size_t i = from; i < all.size(); ++i) text += (text.empty() ? "" : ",") + all[i].name;
+    return text;
+}
+
+void add_claim(macros& to, const claim_result& c) {
+    const auto set = [&](const char* key, std::string_view text) { to.set(c.id + "." + key, text); };
+    set("claim", c.claim);
+    set("measured", c.measured);
+    set("verdict", text_of(c));
+    set("sentence", c.sentence);
+    set("because", c.because == c.sentence ? "" : c.because);
+    to.set_tex(c.id + ".figures", list_of(c.figures));
+    // The first has the endpoints, and stands in the appendix.
+    to.set_tex(c.id + ".tables", list_of(c.tables, 1));
+    set("setup", setup_of(c));
+    set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
+    set("condition", c.has_primary ? text_of(c.primary.where) : "-");
+    set("ratio", c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
+    set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
+    set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
+    const std::vector<endpoint> others = secondaries_of(c);
+    to.set(c.id + ".endpoints", others.size());
+    const auto count = [&](const char* key, support what) {
+        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::found)));
+    };
+    count("for", support::favours);
+    count("against", support::contradicts);
+    count("same", support::no_difference);
+    count("undecided", support::undecided);
+}
+
+std::string text_of(outcome direction) {
+    constexpr std::array names{"less", "same", "more", "open"};
+    return names[static_cast<std::size_t>(direction)];
 }
 
 /// Every endpoint of every claim, for programs.
 table endpoints_of(const reproduction& all) {
-    table t{{{"claim", false},
-             {"endpoint", false},
-             {"where", false},
-             {"source", false},
-             {"expected", false},
-             {"ratio"},
-             {"low"},
-             {"high"},
-             {"direction", false},
-             {"outcome", false}},
-            {}};
+    table t = empty_table({"claim", "endpoint", "where", "source", "expected"}, {"ratio", "low", "high"},
+                          {"direction", "outcome"});
     const auto add = [&](const claim_result& c, const endpoint& e) {
         std::string where;
         for (const auto& [name, value] : e.where) where += (where.empty() ? "" : "; ") + name + "=" + value;
         const auto digits = [](double ratio) { return fmt::format("{:.9g}", ratio); };
         t.rows.push_back({c.id, e.is_primary ? "primary" : "secondary", where, e.source,
                           e.expected == expectation::less ? "less" : "not more", digits(e.ratio), digits(e.range.low),
-                          digits(e.range.high), std::string(text_of(e.direction)), text_of(e.found)});
+                          digits(e.range.high), text_of(e.direction), text_of(e.found)});
     };
     for (const claim_result& c : all.claims) {
         if (c.has_primary) add(c, c.primary);
@@ -51,14 +102,12 @@ table endpoints_of(const reproduction& all) {
 /// The primary ratio of every claim against the band of no difference.
 figure verdict_figure(const reproduction& all) {
     figure f{
-        std::string(verdict_figure_name),
+        "verdicts",
         "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference. Ratios "
         "below 0.2 are left out.",
-        {"claim", false, {}},
-        {"ratio", true, {}},
-        {},
-        {}};
-    series ratios{"primary ratio, 95 % interval", series_style::points, {}};
+        {"claim", false},
+        {"ratio", true}};
+    series ratios{"primary ratio, 95 % interval", series_style::points};
     for (std::size_t i = 0; i < all.claims.size(); ++i) {
         f.x.names.emplace_back(static_cast<double>(i), all.claims[i].id);
         if (!all.claims[i].has_primary || all.claims[i].primary.ratio < 0.2) continue;
@@ -76,7 +125,58 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
     write_file(folder / (t.name + ".tex"), to_tex(t.content));
 }
 
-}  // namespace
+std::string macros_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
+    macros to;
+    // A layout that was wrong has no row in table 1.
+    for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
+        for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
+    for (const char* name : {"table1", "table1_builds"})
+        to.set(std::string("table.") + name + ".caption", "There are no measurements.");
+    to.set("date", made.date);
+    to.set("commit", made.commit);
+    to.set("compiler", made.compiler);
+    to.set("flags", made.flags);
+    to.set("cpu", made.cpu);
+    to.set("size", made.size);
+    to.set("rows", made.rows);
+    to.set("compositions", made.compositions);
+    to.set("scenes", made.scenes);
+    to.set("processes", made.processes);
+    to.set("seeds", made.seeds);
+    to.set("repeats", made.repeats);
+    to.set_tex("confidence", "95\\,\\%");
+    to.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
+    to.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
+    to.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
+    to.set("draws", draws_of_a_level);
+    to.set("failures",
+           failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
+    std::string ids;
+    for (const claim_result& c : all.claims) ids += (ids.empty() ? "" : ",") + c.id;
+    to.set_tex("claims", ids);
+    to.set("claims.count", all.claims.size());
+    std::string headline;
+    for (const std::string& sentence : all.headline) headline += (headline.empty() ? "" : " ") + sentence;
+    to.set("headline", headline);
+    to.set("disturbance", all.disturbance);
+    to.set("table.bands.caption", all.bands.caption);
+    for (const claim_result& c : all.claims) {
+        add_claim(to, c);
+        for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);
+        for (const named_table& t : c.tables) to.set("table." + t.name + ".caption", t.caption);
+    }
+    to.set("table.null_control.caption", all.null_control.caption);
+    for (const figure& f : all.figures) to.set("figure." + f.name + ".caption", f.caption);
+    for (const named_table& t : all.tables) {
+        to.set("table." + t.name + ".caption", t.caption);
+        if (t.name != "table1") continue;
+        for (const std::vector<std::string>& cells : t.content.rows) {
+            to.set("table1." + cells[0] + ".paper", cells[3]);
+            to.set("table1." + cells[0] + ".allocated", cells[4]);
+        }
+    }
+    return to.text();
+}
 
 provenance provenance_of(const measurements& results, const reproduction& all) {
     provenance made;
@@ -111,6 +211,8 @@ provenance provenance_of(const measurements& results, const reproduction& all) {
     }
     return made;
 }
+
+}  // namespace
 
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
@@ -150,6 +252,22 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     const page report = report_of(all, sections, made, failures);
     write_file(folder / "report.md", report.markdown());
     write_file(folder / "report.html", report.html());
+}
+
+std::string agreement_of(std::span<const claim_result> here, std::span<const claim_result> there,
+                         const std::string& other) {
+    std::string differing;
+    std::size_t same = 0;
+    for (const claim_result& c : here) {
+        const auto counterpart = std::ranges::find(there, c.id, &claim_result::id);
+        const std::string verdict = counterpart == there.end() ? "none" : text_of(*counterpart);
+        if (verdict == text_of(c))
+            ++same;
+        else
+            differing +=
+                fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id, text_of(c), verdict);
+    }
+    return fmt::format("{} of {} verdicts agree with {}{}.", same, here.size(), other, differing);
 }
 
 }  // namespace aabblab

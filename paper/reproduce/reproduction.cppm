@@ -59,34 +59,10 @@ struct provenance {
     };
     std::vector<config> configs;
 };
-[[nodiscard]] provenance provenance_of(const measurements& results, const reproduction& all);
 
-inline constexpr std::string_view paper_title = "Research on Collision Detection Algorithm Based on AABB";
-
-inline constexpr std::string_view verdict_figure_name = "verdicts";
-
-/// Ratios with their intervals, below each other, against the band of no difference, as SVG for the page. All claims
-/// have the same scale; what lies beyond it is an arrow with its number.
-[[nodiscard]] std::string interval_picture(std::span<const endpoint> all);
-
-/// The rule as SVG for the page: where an interval may lie, and what that means.
-[[nodiscard]] std::string rule_picture();
-
-/// A verdict in few words.
-struct verdict_word {
-    verdict_kind kind;
-    std::string_view word;
-    std::string_view meaning;
-};
-[[nodiscard]] std::vector<verdict_word> verdict_words();
+/// Verdicts in few words.
 [[nodiscard]] table rule_table();
-
-/// How a verdict comes about, from rule.md: a paragraph each, without line breaks.
-[[nodiscard]] std::vector<std::string> rule_paragraphs();
-
 [[nodiscard]] page report_of(const reproduction& all, std::span<const report_section> sections, const provenance& made,
                              const std::vector<std::string>& failures);
-[[nodiscard]] std::string macros_of(const reproduction& all, const provenance& made,
-                                    const std::vector<std::string>& failures);
 
 }  // namespace aabblab

@@ -1,35 +1,249 @@
 module aabblab.comparison;
 
 import aabb.base;
+import aabb.counters;
+import aabblab.metrics;
+import aabblab.tables;
 
 namespace aabblab {
 
 namespace {
 
-/// Lines of all scenes that are decided together.
-class family {
-public:
-    explicit family(std::vector<compared_time> compared_scene::* to) : to_(to) {}
+/// By its experiment.
+using played_scene = std::pair<std::string, scene_choice>;
 
-    void add(std::size_t scene, std::string label, two_sides line) {
-        if (line.a.empty() || line.b.empty()) return;
-        places_.emplace_back(scene, std::move(label));
-        lines_.push_back(std::move(line));
+/// The rows of a run, by scene and by what played it.
+class played_scenes {
+public:
+    explicit played_scenes(std::span<const row> rows) {
+        for (const row& r : rows) scenes_[{r.experiment, r.scene}][r.name].push_back(&r);
     }
 
-    void decide(std::vector<compared_scene>& scenes) const {
-        std::vector<compared_time> times = judged(lines_);
-        for (std::size_t i = 0; i < times.size(); ++i) {
-            times[i].label = places_[i].second;
-            (scenes[places_[i].first].*to_).push_back(std::move(times[i]));
-        }
+    using repeats = std::vector<const row*>;
+    using players = std::map<contender_name, repeats>;
+    [[nodiscard]] const std::map<played_scene, players>& scenes() const { return scenes_; }
+    /// No rows where there are none.
+    [[nodiscard]] const repeats& of(const played_scene& scene, const contender_name& name) const {
+        static const repeats none;
+        const auto players = scenes_.find(scene);
+        if (players == scenes_.end()) return none;
+        const auto found = players->second.find(name);
+        return found != players->second.end() ? found->second : none;
     }
 
 private:
-    std::vector<compared_time> compared_scene::* to_;
-    std::vector<std::pair<std::size_t, std::string>> places_;
-    std::vector<two_sides> lines_;
+    std::map<played_scene, players> scenes_;
 };
+
+/// A scene with the seeds and the players that both runs have, not every one of them with every other.
+struct shared_scene {
+    const row* any;                     ///< of A
+    std::vector<played_scene> seeds;    ///< which differ in their seed only
+    std::vector<contender_name> names;  ///< in the order of A
+};
+
+template <class T>
+void add_once(std::vector<T>& to, const T& value) {
+    if (std::ranges::find(to, value) == to.end()) to.push_back(value);
+}
+
+std::vector<shared_scene> scenes_shared(std::span<const row> a, const played_scenes& b) {
+    std::vector<shared_scene> scenes;
+    std::map<played_scene, std::size_t> places;  // whatever the seed
+    for (const row& r : a) {
+        const played_scene seed{r.experiment, r.scene};
+        if (b.of(seed, r.name).empty()) continue;
+        const auto [place, is_new] = places.emplace(played_scene{r.experiment, whatever_seed(r.scene)}, scenes.size());
+        if (is_new) scenes.push_back({&r, {}, {}});
+        add_once(scenes[place->second].seeds, seed);
+        add_once(scenes[place->second].names, r.name);
+    }
+    return scenes;
+}
+
+/// As tables of these compositions name them.
+std::vector<std::string> labels_of(std::span<const contender_name> names) {
+    std::vector<row> rows;
+    for (const contender_name& name : names) {
+        row& r = rows.emplace_back();
+        r.name = name;
+        r.status = "exact";
+    }
+    const scene_summary scene = summarise(rows).at(0);
+    if (names.size() == 1 && !scene.common.empty()) return {scene.common};
+    std::vector<std::string> labels;
+    for (const summary_line& line : scene.lines) labels.push_back(line.label);
+    return labels;
+}
+
+std::optional<double> log_ms(const row& r) {
+    static const row_value& frame = measured("frame_ms");
+    if (!r.first_ms || !r.search_ms || !r.detect_ms) return std::nullopt;
+    const double ms = frame(r).value_or(0);
+    return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
+}
+
+std::optional<double> log_ms_in(const played_scenes::repeats& all, const row& same_repeat) {
+    for (const row* r : all)
+        if (r->repeat == same_repeat.repeat)
+            if (const std::optional<double> ms = log_ms(*r)) return ms;
+    return std::nullopt;
+}
+
+std::size_t size_of(const cells& all) {
+    std::size_t count = 0;
+    for (std::size_t process = 0; process < all.processes(); ++process)
+        for (std::size_t seed = 0; seed < all.seeds(); ++seed) count += all.at(process, seed).size();
+    return count;
+}
+
+/// The chance that n values all lie above m others of the same distribution: no test may be surer than that. The
+/// bootstrap of a few values would be, as it knows no others; of a single one it knows no noise at all.
+double least_chance(std::size_t n, std::size_t m) {
+    double chance = 1;
+    for (std::size_t i = 1; i <= n; ++i) chance *= static_cast<double>(i) / static_cast<double>(m + i);
+    return chance;
+}
+
+/// Logarithms of one player's milliseconds a frame, or of their ratios to another's in the same repeat.
+cells log_times(const played_scenes& run, const shared_scene& in, const contender_name& who,
+                const contender_name* base) {
+    std::vector<std::uint64_t> processes;
+    for (const played_scene& seed : in.seeds)
+        for (const row* r : run.of(seed, who)) processes.push_back(r->process);
+    std::ranges::sort(processes);
+    const auto twice = std::ranges::unique(processes);
+    processes.erase(twice.begin(), twice.end());
+    cells all(processes.size(), in.seeds.size());
+    for (std::size_t seed = 0; seed < in.seeds.size(); ++seed)
+        for (const row* r : run.of(in.seeds[seed], who)) {
+            const std::optional<double> own = log_ms(*r);
+            const std::optional<double> other = base ? log_ms_in(run.of(in.seeds[seed], *base), *r) : 0;
+            if (!own || !other) continue;
+            const auto process = std::ranges::lower_bound(processes, r->process) - processes.begin();
+            all.add(static_cast<std::size_t>(process), seed, *own - *other);
+        }
+    return all;
+}
+
+/// The first of whom both runs have times.
+std::optional<contender_name> base_of(const shared_scene& in, const played_scenes& a, const played_scenes& b) {
+    for (const contender_name& name : in.names)
+        if (!log_times(a, in, name, nullptr).empty() && !log_times(b, in, name, nullptr).empty()) return name;
+    return std::nullopt;
+}
+
+/// Of one player in a scene, in A and in B.
+struct line {
+    std::size_t scene;
+    std::string label;
+    cells a;
+    cells b;
+};
+
+/// Adds all to their scenes, judged together as one family of tests.
+void add_judged(std::span<const line> all, std::vector<compared_time> compared_scene::* to,
+                std::vector<compared_scene>& scenes) {
+    std::vector<compared_time> times;
+    std::vector<evidence> evidences;
+    for (const line& one : all) {
+        const estimate a = bootstrap(one.a);
+        const estimate b = bootstrap(one.b);
+        const estimate change = difference_of(b, a);
+        const interval around = change.range();
+        const double least = least_chance(size_of(one.a), size_of(one.b));
+        evidence& shown = evidences.emplace_back(evidence_of(change));
+        shown.p = std::max(shown.p, least);
+        compared_time& time = times.emplace_back();
+        time.label = one.label;
+        time.in_a = std::exp(a.value);
+        time.in_b = std::exp(b.value);
+        time.change = std::exp(change.value);
+        time.around = {std::exp(around.low), std::exp(around.high)};
+        time.too_few = decide({outcome::more, least * static_cast<double>(all.size())}) == outcome::undecided;
+    }
+    const std::vector<outcome> outcomes = decide_together(evidences);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        // Only a change needs the correction: hundreds of lines without one would else all be undecided.
+        times[i].found =
+            outcomes[i] == outcome::undecided && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
+        (scenes[all[i].scene].*to).push_back(std::move(times[i]));
+    }
+}
+
+using number = std::pair<std::string, std::optional<std::uint64_t>>;
+
+/// All that does not vary between repeats, by column.
+std::vector<number> numbers_of(const row& r) {
+    std::vector<number> all = {{"candidates", r.candidates}, {"contacts", r.contacts}};
+    for (std::size_t i = 0; i < r.counts.size(); ++i) all.emplace_back(aabb::work_names[i], r.counts[i]);
+    for (std::size_t i = 0; i < r.bytes.size(); ++i)
+        all.emplace_back("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
+    all.emplace_back("missing", r.missing);
+    all.emplace_back("invented", r.invented);
+    return all;
+}
+
+std::set<std::string> exact_digests(const played_scenes::players& players) {
+    std::set<std::string> digests;
+    for (const auto& [name, repeats] : players)
+        for (const row* r : repeats)
+            if (r->status == "exact") digests.insert(r->digest);
+    return digests;
+}
+
+std::string joined(const std::set<std::string>& texts) {
+    std::string all;
+    for (const std::string& text : texts) all += (all.empty() ? "" : " ") + text;
+    return all.empty() ? "-" : all;
+}
+
+void compare_answers(const played_scenes& a, const played_scenes& b, comparison& found) {
+    for (const auto& [scene, in_a] : a.scenes()) {
+        const auto in_b = b.scenes().find(scene);
+        if (in_b == b.scenes().end()) continue;
+        ++found.answers_compared;
+        const std::set<std::string> of_a = exact_digests(in_a);
+        const std::set<std::string> of_b = exact_digests(in_b->second);
+        std::set<std::string> both = of_a;
+        both.insert(of_b.begin(), of_b.end());
+        if (both.size() < 2) continue;
+        const row& any = *in_a.begin()->second.front();
+        found.answers.push_back({any.experiment, any.scene, joined(of_a), joined(of_b)});
+    }
+}
+
+/// @returns how many were compared
+std::size_t compare_numbers(const shared_scene& in, const played_scenes& a, const played_scenes& b,
+                            std::span<const std::string> labels, std::vector<changed_number>& changed) {
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < in.names.size(); ++i) {
+        std::vector<std::pair<std::vector<number>, std::vector<number>>> by_seed;  // of A and B
+        for (const played_scene& seed : in.seeds) {
+            const played_scenes::repeats& of_a = a.of(seed, in.names[i]);
+            const played_scenes::repeats& of_b = b.of(seed, in.names[i]);
+            if (!of_a.empty() && !of_b.empty())
+                by_seed.emplace_back(numbers_of(*of_a.front()), numbers_of(*of_b.front()));
+        }
+        for (std::size_t k = 0; !by_seed.empty() && k < by_seed[0].first.size(); ++k) {
+            changed_number sums{labels[i], by_seed[0].first[k].first};
+            bool is_compared = false;
+            bool differs = false;
+            for (const auto& [of_a, of_b] : by_seed) {
+                const std::optional<std::uint64_t>& before = of_a[k].second;
+                const std::optional<std::uint64_t>& after = of_b[k].second;
+                if (!before || !after) continue;
+                sums.in_a += *before;
+                sums.in_b += *after;
+                is_compared = true;
+                differs = differs || *before != *after;
+            }
+            compared += is_compared;
+            if (differs) changed.push_back(std::move(sums));
+        }
+    }
+    return compared;
+}
 
 std::size_t count_missing(const played_scenes& from, const played_scenes& in) {
     std::size_t count = 0;
@@ -50,8 +264,8 @@ comparison compare(const run_results& a, const run_results& b, compared what) {
                                 " have no scene in common: none of the same experiment, kind, parameters and seed");
     found.only_in_a = count_missing(of_a, of_b);
     found.only_in_b = count_missing(of_b, of_a);
-    family ratios(&compared_scene::ratios);
-    family times(&compared_scene::times);
+    std::vector<line> ratios;
+    std::vector<line> times;
     for (const shared_scene& shared : scenes_shared(a.rows, of_b)) {
         const std::size_t place = found.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
@@ -63,18 +277,19 @@ comparison compare(const run_results& a, const run_results& b, compared what) {
         if (!base) continue;
         for (std::size_t i = 0; i < labels.size(); ++i) {
             const contender_name& who = shared.names[i];
-            const auto both = [&](const contender_name* to) {
-                return two_sides{log_times(of_a, shared, who, to), log_times(of_b, shared, who, to)};
+            const auto add = [&](std::vector<line>& to, const contender_name* over) {
+                line one{place, labels[i], log_times(of_a, shared, who, over), log_times(of_b, shared, who, over)};
+                if (!one.a.empty() && !one.b.empty()) to.push_back(std::move(one));
             };
-            if (what == compared::ratios_and_times) times.add(place, labels[i], both(nullptr));
+            if (what == compared::ratios_and_times) add(times, nullptr);
             if (who == *base)
                 scene.base = labels[i];
             else
-                ratios.add(place, labels[i], both(&*base));
+                add(ratios, &*base);
         }
     }
-    ratios.decide(found.scenes);
-    times.decide(found.scenes);
+    add_judged(ratios, &compared_scene::ratios, found.scenes);
+    add_judged(times, &compared_scene::times, found.scenes);
     return found;
 }
 

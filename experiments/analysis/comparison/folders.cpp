@@ -1,9 +1,7 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.comparison;
 
 import aabb.base;
+import aabblab.fmt;
 
 namespace aabblab {
 

@@ -17,12 +17,6 @@ factors factors_of(const scene_choice& scene) {
     return all;
 }
 
-template <class Value>
-void add_values(cells& to, const std::vector<const row*>& rows, const row_value& of, Value value) {
-    for (const row* r : rows)
-        if (const std::optional<double> measured = of(*r); measured.value_or(0) > 0) value(to, *r, *measured);
-}
-
 }  // namespace
 
 std::string value_of(const factors& all, std::string_view name) {
@@ -75,21 +69,15 @@ condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(o
     std::ranges::sort(processes_);
 }
 
-double condition::triangles() const {
-    return rows_.empty() ? 0 : static_cast<double>(rows_.front()->triangles.value_or(0));
-}
-
 std::optional<double> condition::value(const selection& who, const row_value& of) const {
     const std::vector<const row*> rows = rows_of(who);
     return rows.empty() ? std::nullopt : of(*rows.front());
 }
 
-std::size_t condition::seed_index(const row& r) const {
-    return static_cast<std::size_t>(std::ranges::find(seeds_, r.scene.seed) - seeds_.begin());
-}
-
-std::size_t condition::process_index(const row& r) const {
-    return static_cast<std::size_t>(std::ranges::find(processes_, r.process) - processes_.begin());
+void condition::add(cells& to, const row& r, double value) const {
+    const auto process = std::ranges::find(processes_, r.process) - processes_.begin();
+    const auto seed = std::ranges::find(seeds_, r.scene.seed) - seeds_.begin();
+    to.add(static_cast<std::size_t>(process), static_cast<std::size_t>(seed), value);
 }
 
 std::vector<const row*> condition::rows_of(const selection& who) const {
@@ -102,21 +90,21 @@ std::vector<const row*> condition::rows_of(const selection& who) const {
 cells condition::log_ratios(const selection& arm, const selection& base, const row_value& of) const {
     cells all(processes(), seeds());
     const std::vector<const row*> against = rows_of(base);
-    add_values(all, rows_of(arm), of, [&](cells& to, const row& r, double value) {
+    for (const row* r : rows_of(arm)) {
+        const double value = of(*r).value_or(0);
+        if (!(value > 0)) continue;
         for (const row* b : against) {
-            if (b->repeat != r.repeat || b->scene != r.scene) continue;
-            if (const std::optional<double> other = of(*b); other.value_or(0) > 0)
-                to.add(process_index(r), seed_index(r), std::log(value / *other));
+            if (b->repeat != r->repeat || b->scene != r->scene) continue;
+            if (const double other = of(*b).value_or(0); other > 0) add(all, *r, std::log(value / other));
         }
-    });
+    }
     return all;
 }
 
 cells condition::logs(const selection& who, const row_value& of) const {
     cells all(processes(), seeds());
-    add_values(all, rows_of(who), of, [&](cells& to, const row& r, double value) {
-        to.add(process_index(r), seed_index(r), std::log(value));
-    });
+    for (const row* r : rows_of(who))
+        if (const double value = of(*r).value_or(0); value > 0) add(all, *r, std::log(value));
     return all;
 }
 
@@ -179,35 +167,16 @@ std::vector<std::string> measurements::experiments() const {
     return all;
 }
 
-const std::vector<condition>& measurements::of(const std::string& experiment) const {
-    return read(experiment).conditions;
-}
-
-manifest_summary measurements::manifest(const std::string& experiment) const {
-    return read_manifest(folder_ / experiment);
-}
-
 extent_of_results measurements::extent(const std::string& experiment) const {
-    extent_of_results all;
-    std::set<contender_name> names;
-    std::set<scene_choice> scenes;
-    std::set<std::optional<std::uint64_t>> seeds;
-    std::set<std::uint64_t> processes;
-    std::set<std::uint64_t> repeats;
-    for (const row& r : read(experiment).rows) {
-        ++all.rows;
-        names.insert(r.name);
-        scenes.insert(r.scene);
-        seeds.insert(r.scene.seed);
-        processes.insert(r.process);
-        repeats.insert(r.repeat);
-    }
-    all.processes = processes.size();
-    all.repeats = repeats.size();
-    all.compositions = names.size();
-    all.scenes = scenes.size();
-    all.seeds = seeds.size();
-    return all;
+    const std::vector<row>& rows = read(experiment).rows;
+    const auto distinct = [&](auto of) {
+        std::set<std::remove_cvref_t<decltype(std::invoke(of, rows.front()))>> values;
+        for (const row& r : rows) values.insert(std::invoke(of, r));
+        return values.size();
+    };
+    const auto seed = [](const row& r) { return r.scene.seed; };
+    return {rows.size(),    distinct(&row::name),  distinct(&row::scene), distinct(&row::process),
+            distinct(seed), distinct(&row::repeat)};
 }
 
 }  // namespace aabblab

@@ -55,7 +55,9 @@ public:
     [[nodiscard]] std::size_t processes() const { return std::max<std::size_t>(1, processes_.size()); }
     [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
     /// Triangles of its meshes, each counted once; 0 in a scene of boxes.
-    [[nodiscard]] double triangles() const;
+    [[nodiscard]] double triangles() const {
+        return rows_.empty() ? 0 : static_cast<double>(rows_.front()->triangles.value_or(0));
+    }
     /// What does not vary between repeats and seeds, of one composition; empty where it has no row (or was wrong).
     [[nodiscard]] std::optional<double> value(const selection& who, const row_value& of) const;
 
@@ -74,8 +76,8 @@ public:
 
 private:
     [[nodiscard]] std::vector<const row*> rows_of(const selection& who) const;
-    [[nodiscard]] std::size_t seed_index(const row& r) const;
-    [[nodiscard]] std::size_t process_index(const row& r) const;
+    /// Into the cell of the row's process and seed.
+    void add(cells& to, const row& r, double value) const;
 
     factors of_;
     std::vector<const row*> rows_;
@@ -91,18 +93,22 @@ struct extent_of_results {
 /// The results of experiments in the folders of one, each read when it is first asked for.
 class measurements {
 public:
-    explicit measurements(std::filesystem::path folder) : folder_(std::move(folder)) {}
     /// @param name by which reports call it
-    measurements(std::filesystem::path folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {}
+    explicit measurements(std::filesystem::path folder, std::string name = {})
+        : folder_(std::move(folder)), name_(std::move(name)) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Those that have results, in the order of their names.
     [[nodiscard]] std::vector<std::string> experiments() const;
     /// The conditions of an experiment in the order of its config; none where it has no results.
-    [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const;
+    [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const {
+        return read(experiment).conditions;
+    }
     [[nodiscard]] extent_of_results extent(const std::string& experiment) const;
-    [[nodiscard]] manifest_summary manifest(const std::string& experiment) const;
+    [[nodiscard]] manifest_summary manifest(const std::string& experiment) const {
+        return read_manifest(folder_ / experiment);
+    }
 
 private:
     struct experiment_results {

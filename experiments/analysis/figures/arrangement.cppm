@@ -2,7 +2,6 @@
 module aabblab.figures:arrangement;
 
 import aabb.std;
-import aabblab.scale;
 import :drawing;
 import :sheet;
 
@@ -39,16 +38,415 @@ struct arrangement {
     std::vector<words> texts;  ///< all but those of the ticks
 };
 
-[[nodiscard]] arrangement arranged(const drawing& d);
-
-/// The label of a tick as its axis shows it: a name is broken into short lines, a number stands in one.
-[[nodiscard]] std::vector<std::string> lines_of(const scale& axis, const tick& t, std::size_t length);
-
 // In ems.
 inline constexpr double line_height = 1.25;
 inline constexpr double tick_room = 0.9;  ///< of a tick and the gap to its label
 
+/// The label of a tick as its axis shows it: a name is broken into short lines, a number stands in one.
+[[nodiscard]] std::vector<std::string> lines_of(const scale& axis, const tick& t, std::size_t length) {
+    return axis.named ? lines_of(t.label, length) : std::vector{t.label};
+}
+
 /// The middles of lines of text below a place.
-[[nodiscard]] std::vector<place> lines_below(place top, std::size_t count);
+[[nodiscard]] std::vector<place> lines_below(place top, std::size_t count) {
+    std::vector<place> all;
+    for (std::size_t i = 0; i < count; ++i)
+        all.push_back({top.x, top.y - line_height * (static_cast<double>(i) + 0.5)});
+    return all;
+}
+
+// In ems.
+constexpr double figure_width = 36;  // on a phone of 400 pixels an em has ten of them
+constexpr double character = 0.6;    // the widest usual sans
+constexpr double legend_row = 1.4;
+constexpr double legend_sample = 6;  // of a line in the legend, with the gaps about it
+constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, with the gaps about it
+constexpr double gap = 0.6;
+
+// In characters, at which labels are broken into lines.
+constexpr std::size_t longest_name = 54;
+constexpr std::size_t end_label_length = 18;
+
+double width_of(const std::string& line) {
+    return character * static_cast<double>(characters(line));
+}
+
+double width_of(const std::vector<std::string>& lines) {
+    double widest = 0;
+    for (const std::string& line : lines) widest = std::max(widest, width_of(line));
+    return widest;
+}
+
+double height_of(const std::vector<std::string>& lines) {
+    return line_height * static_cast<double>(lines.size());
+}
+
+std::size_t length_in(double width) {
+    return static_cast<std::size_t>(std::max(width / character, 1.));
+}
+
+double width_of(const scale& axis, const tick& t, std::size_t name_length) {
+    return axis.named ? width_of(lines_of(axis, t, name_length)) : width_of(t.label + t.power);
+}
+
+/// The widest and the highest label of an axis.
+std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_length) {
+    double width = 0;
+    double height = 0;
+    for (const tick& t : axis.ticks) {
+        if (t.label.empty()) continue;
+        width = std::max(width, width_of(axis, t, name_length));
+        height = std::max(height, height_of(lines_of(axis, t, name_length)));
+    }
+    return {width, height};
+}
+
+/// The label of a line at its end.
+struct end_label {
+    const shown_label* of;
+    std::vector<std::string> lines;
+    double wanted;      ///< from the plot's lower edge, as is the following
+    double middle = 0;  ///< where it has place
+};
+
+struct legend {
+    std::vector<std::vector<std::string>> entries;  ///< the lines of each label; none where it has none
+    double left = 0;
+    double column = 0;  ///< its width
+    std::size_t rows = 0;
+    bool has_long_entries = false;
+
+    [[nodiscard]] double height() const { return rows == 0 ? 0 : legend_row * static_cast<double>(rows) + gap; }
+};
+
+/// The text of a mark, beside its line.
+struct flag {
+    double at;  ///< its line
+    double begin;
+    double end;
+    std::size_t row = 0;  ///< from below
+};
+
+/// Texts, so high that no line but their own runs through them.
+/// @returns how many rows they take
+std::size_t raise(std::vector<flag>& flags) {
+    const auto crosses = [](const flag& line, const flag& text) { return text.begin < line.at && line.at < text.end; };
+    // Each round settles one row at least, but for texts that each have the line of the other in them.
+    for (std::size_t round = 0; round < flags.size(); ++round)
+        for (flag& a : flags)
+            for (flag& b : flags) {
+                if (&a == &b) continue;
+                const bool must_be_above = crosses(b, a) && (!crosses(a, b) || &a < &b);
+                const bool meet = &a < &b && a.begin < b.end && b.begin < a.end;
+                if (must_be_above && a.row <= b.row)
+                    a.row = b.row + 1;
+                else if (meet && a.row == b.row)
+                    ++b.row;
+            }
+    std::size_t rows = 0;
+    for (const flag& one : flags) rows = std::max(rows, one.row + 1);
+    return rows;
+}
+
+class arranger {
+public:
+    explicit arranger(const drawing& d)
+        : d_(d),
+          panels_(d.panels.size()),
+          columns_(std::min<std::size_t>(panels_, 2)),
+          rows_((panels_ + columns_ - 1) / columns_) {}
+
+    arrangement arranged() && {
+        place_left();
+        const std::vector<end_label> ends = place_ends();
+        const double below_plot = tick_room + place_x_ticks();
+        std::vector<std::vector<flag>> flags;
+        std::size_t flag_rows = 0;
+        for (std::size_t i = 0; i < panels_; ++i) {
+            flags.push_back(flags_of(i));
+            flag_rows = std::max(flag_rows, raise(flags.back()));
+        }
+        const bool titled = std::ranges::any_of(d_.panels, [](const shown_panel& p) { return !p.title.empty(); });
+        const double marks = line_height * static_cast<double>(flag_rows);
+        const double row = plot_height_ + marks + (titled ? line_height + gap / 2 : 0);
+
+        // The last row of panels may leave a place free, which the legend can take.
+        legend labels;
+        bool is_free = false;
+        if (ends.empty()) {
+            labels = legend_of(plot_width());
+            is_free = panels_ % columns_ != 0 && labels.height() + below_plot <= row && !labels.has_long_entries;
+            if (!is_free) labels = legend_of(figure_width);
+            labels.left = is_free ? plot_left(panels_) + gap : std::min(labels.left, std::max(gap, left_));
+        }
+
+        const double low = (is_free ? 0 : labels.height()) + gap / 2;
+        const double bottom = add_x_label(low) + gap / 2 + below_plot;
+        constexpr double row_gap = 1.2;
+        const auto rows = static_cast<double>(rows_);
+        to_.width = figure_width;
+        to_.height = bottom + rows * row + (rows - 1) * row_gap + (titled ? gap / 2 : 1);
+        for (std::size_t i = 0; i < panels_; ++i) {
+            const std::size_t from_above = i / columns_;
+            const auto from_below = static_cast<double>(rows_ - 1 - from_above);
+            add_plot(i, bottom + from_below * (row + row_gap), marks, flags[i]);
+        }
+        add_y_label((bottom + to_.plots.front().top) / 2);
+        add_ends(ends, bottom);
+        add_legend(labels, is_free ? bottom + plot_height_ - labels.height() : gap / 2);
+        return std::move(to_);
+    }
+
+private:
+    [[nodiscard]] double plot_width() const {
+        const auto count = static_cast<double>(columns_);
+        return (figure_width - left_ - right_ - column_gap_ * (count - 1)) / count;
+    }
+    [[nodiscard]] double plot_left(std::size_t panel) const {
+        return left_ + static_cast<double>(panel % columns_) * (plot_width() + column_gap_);
+    }
+
+    /// The height of the plots, which grows with the number of names on the y axis, and the margin at the left.
+    void place_left() {
+        const auto [width, height] = extent_of_labels(d_.y, y_name_length);
+        plot_height_ = panels_ == 1 ? 17 : 10;
+        if (d_.y.named) plot_height_ = std::max(plot_height_, (height + gap) * static_cast<double>(d_.y.ticks.size()));
+        y_label_ = lines_of(d_.f.y.label, length_in(plot_height_ * static_cast<double>(rows_) + 1.5));
+        left_ = gap / 2 + height_of(y_label_) + gap + width + tick_room;
+    }
+
+    /// Leaves out numbers until none runs into the next.
+    void thin_x_ticks() {
+        std::vector<tick*> labelled;
+        for (tick& t : to_.x_ticks)
+            if (!t.label.empty()) labelled.push_back(&t);
+        const auto fits = [&](std::size_t step) {
+            for (std::size_t i = step; i < labelled.size(); i += step) {
+                const tick& one = *labelled[i - step];
+                const tick& next = *labelled[i];
+                if ((d_.x.place(next.at) - d_.x.place(one.at)) * plot_width() <
+                    (width_of(d_.x, one, 0) + width_of(d_.x, next, 0)) / 2 + gap)
+                    return false;
+            }
+            return true;
+        };
+        std::size_t step = 1;
+        while (step < labelled.size() && !fits(step)) ++step;
+        for (std::size_t i = 0; i < labelled.size(); ++i)
+            if (i % step != 0) labelled[i]->label.clear();
+    }
+
+    /// The ticks of the x axis: their height, and the right margin and the gap between plots, which the outer ones may
+    /// hang over.
+    double place_x_ticks() {
+        to_.x_name_length = longest_name;
+        to_.x_ticks = d_.x.ticks;
+        if (columns_ > 1) column_gap_ = 1.5;
+        std::vector<tick> labelled;
+        std::ranges::copy_if(d_.x.ticks, std::back_inserter(labelled), [](const tick& t) { return !t.label.empty(); });
+        if (labelled.empty()) return 0;
+        double nearest = 1;
+        for (std::size_t i = 1; i < labelled.size(); ++i)
+            nearest = std::min(nearest, d_.x.place(labelled[i].at) - d_.x.place(labelled[i - 1].at));
+        const double plot = plot_width();
+        const double slot = plot * nearest - gap;
+        if (d_.x.named) to_.x_name_length = length_in(slot);
+        const auto [width, height] = extent_of_labels(d_.x, to_.x_name_length);
+        if (!d_.x.named || (width <= slot && height <= 3 * line_height)) {
+            const auto beyond = [&](const tick& t, double to_edge) {
+                return width_of(d_.x, t, to_.x_name_length) / 2 - to_edge * plot;
+            };
+            const double before = beyond(labelled.front(), d_.x.place(labelled.front().at));
+            const double behind = beyond(labelled.back(), 1 - d_.x.place(labelled.back().at));
+            right_ = std::max(right_, behind + gap / 2);
+            if (columns_ > 1) column_gap_ = std::max(column_gap_, std::max(before, 0.) + std::max(behind, 0.) + gap);
+            if (!d_.x.named) thin_x_ticks();
+            return height;
+        }
+        // Slanted, each ends at its tick; upright where that puts one line upon the next or makes the plot narrow.
+        constexpr double slant = 30 * std::numbers::pi / 180;
+        constexpr double widest_margin = 16;
+        to_.x_name_length = longest_name;
+        double left = left_;
+        double longest = 0;
+        for (const tick& t : labelled) {
+            longest = std::max(longest, width_of(t.label));
+            left = std::max(left, width_of(t.label) * std::cos(slant) - d_.x.place(t.at) * plot + gap);
+        }
+        if (slot * std::sin(slant) >= 0.8 && left <= widest_margin) {
+            to_.x_name_angle = 30;
+            left_ = left;
+            return longest * std::sin(slant) + 0.5;
+        }
+        to_.x_name_angle = 90;
+        return longest;
+    }
+
+    /// Where the lines of a figure without panels end, if all with a label are lines that end near the right edge.
+    [[nodiscard]] std::vector<end_label> wanted_ends() const {
+        constexpr double near_edge = 0.9;
+        std::vector<end_label> ends;
+        if (panels_ > 1) return ends;
+        for (std::size_t i = 0; i < d_.labels.size(); ++i) {
+            if (d_.labels[i].text.empty()) continue;
+            const shown_series& s = d_.panels.front().lines[i];
+            const auto last = std::ranges::max_element(s.points, {}, &figure_point::x);
+            if (!s.is(series_style::level) && (!s.is_joined() || d_.x.place(last->x) < near_edge)) return {};
+            ends.push_back(
+                {&d_.labels[i], lines_of(d_.labels[i].text, end_label_length), d_.y.place(last->y) * plot_height_});
+        }
+        return ends;
+    }
+
+    /// Labels at the ends of lines, if there is room for them: none may be far from its line.
+    std::vector<end_label> place_ends() {
+        constexpr double furthest = 2.2;
+        std::vector<end_label> ends = wanted_ends();
+        double widest = 0;
+        for (end_label& end : ends) {
+            end.middle = end.wanted;
+            widest = std::max(widest, width_of(end.lines));
+            if (end.lines.size() > 3 || widest > character * static_cast<double>(end_label_length)) return {};
+        }
+        std::ranges::sort(ends, {}, &end_label::middle);
+        // How much two lack to stand above each other.
+        const auto missing = [&](std::size_t upper) {
+            const end_label& a = ends[upper - 1];
+            const end_label& b = ends[upper];
+            return (height_of(a.lines) + height_of(b.lines)) / 2 - (b.middle - a.middle);
+        };
+        // Those that meet share what they have to give way, again and again until none meet.
+        constexpr int enough = 200;
+        for (int round = 0; round < enough; ++round)
+            for (std::size_t i = 1; i < ends.size(); ++i) {
+                const double lack = std::max(missing(i), 0.);
+                ends[i - 1].middle -= lack / 2;
+                ends[i].middle += lack / 2;
+            }
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            if ((i > 0 && missing(i) > 0.1) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
+        if (!ends.empty()) right_ = std::max(right_, end_sign + widest + gap / 2);
+        return ends;
+    }
+
+    /// Column by column, at the right of a room so wide.
+    [[nodiscard]] legend legend_of(double width) const {
+        legend made;
+        const std::size_t most = length_in(width - legend_sample - gap);
+        std::size_t lines = 0;
+        double widest = 0;
+        for (const shown_label& label : d_.labels) {
+            const auto& entry = made.entries.emplace_back(lines_of(with_breaks(label.text, most), most));
+            lines += entry.size();
+            made.has_long_entries |= entry.size() > 1;
+            widest = std::max(widest, width_of(entry));
+        }
+        if (lines == 0) return made;
+        made.column = legend_sample + widest;
+        auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - gap) / made.column));
+        // Lines of one label must stay below each other.
+        if (made.has_long_entries) columns = 1;
+        made.rows = (lines + columns - 1) / columns;
+        columns = (lines + made.rows - 1) / made.rows;
+        made.left = std::max(gap, width - made.column * static_cast<double>(columns));
+        return made;
+    }
+
+    /// Each stands beside its line like a flag, on the side where there is room.
+    [[nodiscard]] std::vector<flag> flags_of(std::size_t panel) const {
+        std::vector<flag> flags;
+        for (const figure_mark& m : d_.panels[panel].marks) {
+            const double at = plot_left(panel) + d_.x.place(m.x) * plot_width();
+            const double length = width_of(m.label) + gap;
+            const bool right = at + length <= figure_width;
+            flags.push_back({at, right ? at : at - length, right ? at + length : at});
+        }
+        return flags;
+    }
+
+    void add(place at, const std::string& text, words::anchor end = words::anchor::left, int angle = 0) {
+        to_.texts.push_back({at, text, end, {}, angle});
+    }
+    void add(const std::vector<place>& at, const std::vector<std::string>& lines, words::anchor end) {
+        for (std::size_t i = 0; i < lines.size(); ++i) add(at[i], lines[i], end);
+    }
+
+    /// @returns its upper edge
+    double add_x_label(double bottom) {
+        const double middle = (left_ + figure_width - right_) / 2;
+        const double room = 2 * std::min(middle, figure_width - middle);
+        const std::vector<std::string> lines = lines_of(d_.f.x.label, length_in(room - gap));
+        const double top = bottom + height_of(lines);
+        add(lines_below({middle, top}, lines.size()), lines, words::anchor::middle);
+        return top;
+    }
+
+    void add_y_label(double middle) {
+        double left = gap / 2;
+        for (const std::string& line : y_label_) {
+            add({left + line_height / 2, middle}, line, words::anchor::middle, 90);
+            left += line_height;
+        }
+    }
+
+    void add_plot(std::size_t panel, double bottom, double marks, const std::vector<flag>& flags) {
+        const double left = plot_left(panel);
+        const double top = bottom + plot_height_;
+        arrangement::box& plot = to_.plots.emplace_back(left, left + plot_width(), bottom, top,
+                                                        panel + columns_ >= panels_, panel % columns_ == 0);
+        const shown_panel& shown = d_.panels[panel];
+        if (!shown.title.empty()) add({left, top + marks + gap / 2 + line_height / 2}, shown.title);
+        for (std::size_t i = 0; i < flags.size(); ++i) {
+            const flag& f = flags[i];
+            const double height = top + line_height * (static_cast<double>(f.row) + 0.5);
+            plot.mark_tops.push_back(height + 0.4);
+            if (f.at == f.begin)
+                add({f.at + gap / 2, height}, shown.marks[i].label);
+            else
+                add({f.at - gap / 2, height}, shown.marks[i].label, words::anchor::right);
+        }
+    }
+
+    /// Each behind the sign of its line, which may be a little off.
+    void add_ends(const std::vector<end_label>& ends, double bottom) {
+        const double left = to_.plots.front().right + 0.7;
+        for (const end_label& end : ends) {
+            const double middle = bottom + end.middle;
+            const bool has_sign = end.of->style != series_style::level;
+            if (has_sign) to_.samples.push_back({{left, middle}, end.of, true});
+            const place top{left + (has_sign ? 0.8 : -0.2), middle + height_of(end.lines) / 2};
+            add(lines_below(top, end.lines.size()), end.lines, words::anchor::left);
+        }
+    }
+
+    void add_legend(const legend& labels, double bottom) {
+        std::size_t entry = 0;
+        for (std::size_t i = 0; i < labels.entries.size(); ++i)
+            for (const std::string& text : labels.entries[i]) {
+                const std::size_t column = entry / labels.rows;
+                const auto from_below = static_cast<double>(labels.rows - 1 - entry % labels.rows);
+                const place at{labels.left + static_cast<double>(column) * labels.column,
+                               bottom + (from_below + 0.5) * legend_row};
+                if (&text == labels.entries[i].data()) to_.samples.push_back({at, &d_.labels[i], false});
+                add({at.x + legend_sample - 0.8, at.y}, text);
+                ++entry;
+            }
+    }
+
+    const drawing& d_;
+    arrangement to_{};
+    std::size_t panels_;
+    std::size_t columns_;
+    std::size_t rows_;
+    double left_ = 0;
+    double right_ = 1.5;
+    double column_gap_ = 0;
+    double plot_height_ = 0;
+    std::vector<std::string> y_label_;
+};
+
+[[nodiscard]] arrangement arranged(const drawing& d) {
+    return arranger(d).arranged();
+}
 
 }  // namespace aabblab

@@ -3,12 +3,22 @@ module aabblab.figures:drawing;
 
 import aabb.std;
 import aabblab.scale;
-import :figure;
+import aabblab.text;
+import aabblab.figures;
 
 namespace aabblab {
 
 /// The points of a series in NAME.csv: all that are finite, of a level the first.
-[[nodiscard]] std::vector<figure_point> points_of(const series& s);
+[[nodiscard]] std::vector<figure_point> points_of(const series& s) {
+    std::vector<figure_point> points;
+    for (figure_point p : s.points) {
+        if (!std::isfinite(p.y) || (s.style != series_style::level && !std::isfinite(p.x))) continue;
+        if (!std::isfinite(p.low) || !std::isfinite(p.high) || !(p.low < p.high)) p.low = p.high = p.y;
+        points.push_back(p);
+        if (s.style == series_style::level) break;
+    }
+    return points;
+}
 
 /// A series in the order of NAME.csv: those that all panels share, then panel by panel.
 struct numbered_series {
@@ -16,10 +26,26 @@ struct numbered_series {
     std::size_t number;         ///< from 1
     const figure_panel* panel;  ///< none, where all have it
 };
-[[nodiscard]] std::vector<numbered_series> numbered(const figure& f);
+
+[[nodiscard]] std::vector<numbered_series> numbered(const figure& f) {
+    std::vector<numbered_series> all;
+    for (const series& s : f.lines) all.push_back({&s, all.size() + 1, nullptr});
+    for (const figure_panel& panel : f.panels)
+        for (const series& s : panel.lines) all.push_back({&s, all.size() + 1, &panel});
+    return all;
+}
 
 /// Half the distance of the nearest names; a factor where the axis is logarithmic.
-[[nodiscard]] double half_gap(const figure_axis& axis);
+[[nodiscard]] double half_gap(const figure_axis& axis) {
+    double gap = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < axis.names.size(); ++i) {
+        const double one = axis.names[i - 1].first;
+        const double next = axis.names[i].first;
+        gap = std::min(gap, axis.logarithmic ? std::sqrt(next / one) : (next - one) / 2);
+    }
+    if (std::isfinite(gap)) return gap;
+    return axis.logarithmic ? 2 : 0.5;
+}
 
 /// A series as far as it has a place in the figure.
 struct shown_series {
@@ -47,9 +73,112 @@ struct shown_label {
 
 inline constexpr std::size_t y_name_length = 32;  ///< in characters, at which names on the y axis are broken into lines
 
+struct extent {
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -std::numeric_limits<double>::infinity();
+
+    void include(double value) {
+        least = std::min(least, value);
+        greatest = std::max(greatest, value);
+    }
+};
+
+[[nodiscard]] bool has_place(const figure_axis& axis, double value) {
+    return std::isfinite(value) && (!axis.logarithmic || value > 0);
+}
+
+/// What has no label has a look of its own, as every series has where there are no panels.
+[[nodiscard]] std::vector<std::size_t> looks_of(const figure& f, const std::vector<numbered_series>& all) {
+    std::vector<std::size_t> looks;
+    std::vector<const series*> first;
+    for (const numbered_series& s : all) {
+        const auto same = std::ranges::find_if(first, [&](const series* other) {
+            return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
+        });
+        looks.push_back(static_cast<std::size_t>(same - first.begin()));
+        if (same == first.end()) first.push_back(s.source);
+    }
+    return looks;
+}
+
+[[nodiscard]] std::vector<figure_mark> shown_marks(const figure& f, const figure_panel* panel) {
+    std::vector<figure_mark> marks = f.marks;
+    if (panel != nullptr) marks.insert(marks.end(), panel->marks.begin(), panel->marks.end());
+    std::erase_if(marks, [&](const figure_mark& m) { return !has_place(f.x, m.x); });
+    std::ranges::sort(marks, {}, &figure_mark::x);
+    return marks;
+}
+
+[[nodiscard]] std::vector<shown_panel> shown(const figure& f) {
+    const std::vector<numbered_series> all = numbered(f);
+    const std::vector<std::size_t> looks = looks_of(f, all);
+    std::vector<shown_panel> panels;
+    for (std::size_t i = 0; i < std::max<std::size_t>(f.panels.size(), 1); ++i) {
+        const figure_panel* const panel = f.panels.empty() ? nullptr : &f.panels[i];
+        shown_panel& to = panels.emplace_back(panel == nullptr ? "" : panel->title);
+        to.marks = shown_marks(f, panel);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            if (all[k].panel != nullptr && all[k].panel != panel) continue;
+            shown_series s{all[k].source, looks[k], points_of(*all[k].source), false};
+            std::erase_if(s.points, [&](const figure_point& p) {
+                return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
+            });
+            s.varies = std::ranges::any_of(s.points, [](const figure_point& p) { return p.low < p.high; });
+            if (!s.points.empty()) to.lines.push_back(std::move(s));
+        }
+    }
+    return panels;
+}
+
+/// Each look once.
+[[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
+    std::vector<shown_label> labels;
+    for (const shown_panel& panel : panels)
+        for (const shown_series& s : panel.lines) {
+            const bool is_dot = s.is(series_style::line) && !s.is_joined();
+            const series_style style = is_dot ? series_style::points : s.source->style;
+            const auto known = std::ranges::find(labels, s.look, &shown_label::look);
+            if (known == labels.end())
+                labels.push_back({s.source->label, s.look, style});
+            else if (s.is_joined())
+                known->style = style;
+        }
+    return labels;
+}
+
+[[nodiscard]] scale axis_scale(const figure_axis& axis, extent values, scale_end end) {
+    std::vector<tick> names;
+    const double half = half_gap(axis);
+    for (const auto& [at, name] : axis.names) {
+        if (!has_place(axis, at)) continue;
+        names.push_back({at, name, {}});
+        values.include(axis.logarithmic ? at / half : at - half);
+        values.include(axis.logarithmic ? at * half : at + half);
+    }
+    if (values.least > values.greatest) values = axis.logarithmic ? extent{1, 10} : extent{0, 1};
+    if (names.empty()) return scale_of(values.least, values.greatest, axis.logarithmic, end);
+    return {values.least, values.greatest, axis.logarithmic, names, true};
+}
+
 /// The figure must outlive it.
 struct drawing {
-    explicit drawing(const figure& of);
+    explicit drawing(const figure& of) : f(of), panels(shown(of)), labels(labels_of(panels)) {
+        extent x_values;
+        extent y_values;
+        for (const shown_panel& panel : panels) {
+            for (const shown_series& s : panel.lines)
+                for (const figure_point& p : s.points) {
+                    if (!s.is(series_style::level)) x_values.include(p.x);
+                    for (const double value : {p.low, p.y, p.high})
+                        if (has_place(f.y, value)) y_values.include(value);
+                }
+            for (const figure_mark& m : panel.marks) x_values.include(m.x);
+        }
+        x = axis_scale(f.x, x_values, scale_end::near_values);
+        y = axis_scale(f.y, y_values, scale_end::on_ticks);
+        if (y.named)
+            for (tick& name : y.ticks) name.label = with_breaks(name.label, y_name_length);
+    }
 
     const figure& f;
     std::vector<shown_panel> panels;
@@ -57,7 +186,9 @@ struct drawing {
     scale x;
     scale y;
 
-    [[nodiscard]] bool empty() const;
+    [[nodiscard]] bool empty() const {
+        return std::ranges::all_of(panels, [](const shown_panel& panel) { return panel.lines.empty(); });
+    }
 };
 
 }  // namespace aabblab

@@ -1,7 +1,5 @@
 module aabblab.figures;
 
-import aabblab.scale;
-import aabblab.text;
 import :drawing;
 import :arrangement;
 import :sheet;

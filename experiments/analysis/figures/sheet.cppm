@@ -2,7 +2,7 @@
 module aabblab.figures:sheet;
 
 import aabb.std;
-import :figure;
+import aabblab.figures;
 
 namespace aabblab {
 

@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.figures;
 
+import aabblab.fmt;
 import aabblab.markup;
 import :sheet;
 

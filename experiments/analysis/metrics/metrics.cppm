@@ -57,16 +57,3 @@ struct metric {
 [[nodiscard]] row_value a_triangle(row_value of);
 
 }  // namespace aabblab
-
-// What the metrics share.
-namespace aabblab {
-
-/// Frames after the first one; 1 where there is no other.
-[[nodiscard]] double frames_after_first(const row& r);
-/// A sum over those frames, a frame; empty where there are none.
-[[nodiscard]] row_value a_frame(std::optional<double> row::* sum);
-
-/// The work of a frame, of every kind that is counted.
-[[nodiscard]] std::vector<metric> work_metrics();
-
-}  // namespace aabblab

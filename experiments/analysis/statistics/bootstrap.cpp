@@ -56,10 +56,6 @@ double variance_of(const sample_size& size, level drawn, const std::function<dou
 
 }  // namespace
 
-bool cells::empty() const {
-    return std::ranges::all_of(values_, [](const std::vector<double>& repeats) { return repeats.empty(); });
-}
-
 sample_size cells::size() const {
     std::size_t repeats = 1;
     for (const std::vector<double>& cell : values_) repeats = std::max(repeats, cell.size());
@@ -89,10 +85,6 @@ double resample::mean_of(const cells& measured) const {
             ++count;
         }
     return count > 0 ? sum / static_cast<double>(count) : std::nan("");
-}
-
-bool estimate::known() const {
-    return std::isfinite(value);
 }
 
 interval estimate::range(double miss) const {
@@ -164,6 +156,32 @@ estimate difference_of(const estimate& a, const estimate& b) {
     const double sum = of_a + of_b;
     if (!(sum > 0)) return {a.value - b.value, 0, 1};
     return {a.value - b.value, std::sqrt(sum), sum * sum / (of_a * of_a / a.degrees + of_b * of_b / b.degrees)};
+}
+
+quartiles quartiles_of(std::vector<double> values) {
+    std::ranges::sort(values);
+    const auto at = [&](double share) {
+        const double place = share * static_cast<double>(values.size() - 1);
+        const auto below = static_cast<std::size_t>(place);
+        const std::size_t above = std::min(below + 1, values.size() - 1);
+        return values[below] + (values[above] - values[below]) * (place - static_cast<double>(below));
+    };
+    return {at(0.25), at(0.5), at(0.75)};
+}
+
+fitted_line line_through(std::span<const double> x, std::span<const double> y) {
+    const auto count = static_cast<double>(x.size());
+    double mean_x = 0, mean_y = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        mean_x += x[i] / count;
+        mean_y += y[i] / count;
+    }
+    double xx = 0, xy = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        xx += (x[i] - mean_x) * (x[i] - mean_x);
+        xy += (x[i] - mean_x) * (y[i] - mean_y);
+    }
+    return {xy / xx, mean_y};
 }
 
 }  // namespace aabblab

@@ -100,24 +100,13 @@ verdict_kind verdict_of(std::span<const support> primary) {
 }
 
 std::string text_of(support found) {
-    switch (found) {
-        case support::favours: return "for";
-        case support::no_difference: return "no difference";
-        case support::contradicts: return "against";
-        case support::undecided: break;
-    }
-    return "undecided";
+    constexpr std::array names{"for", "no difference", "against", "undecided"};
+    return names[static_cast<std::size_t>(found)];
 }
 
 std::string text_of(verdict_kind verdict) {
-    switch (verdict) {
-        case verdict_kind::holds: return "holds";
-        case verdict_kind::in_part: return "holds in part";
-        case verdict_kind::no_difference: return "no difference";
-        case verdict_kind::does_not_hold: return "does not hold";
-        case verdict_kind::undecided: break;
-    }
-    return "undecided";
+    constexpr std::array names{"holds", "holds in part", "no difference", "does not hold", "undecided"};
+    return names[static_cast<std::size_t>(verdict)];
 }
 
 }  // namespace aabblab

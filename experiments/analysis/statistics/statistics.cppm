@@ -14,6 +14,13 @@ struct quartiles {
 /// Interpolated between the nearest two values; `values` must not be empty.
 [[nodiscard]] quartiles quartiles_of(std::vector<double> values);
 
+/// A straight line through points, by least squares.
+struct fitted_line {
+    double slope;
+    double mean_y;
+};
+[[nodiscard]] fitted_line line_through(std::span<const double> x, std::span<const double> y);
+
 struct interval {
     double low;
     double high;
@@ -40,7 +47,9 @@ public:
     [[nodiscard]] std::span<const double> at(std::size_t process, std::size_t seed) const {
         return values_[process * seeds_ + seed];
     }
-    [[nodiscard]] bool empty() const;
+    [[nodiscard]] bool empty() const {
+        return std::ranges::all_of(values_, [](const auto& repeats) { return repeats.empty(); });
+    }
     [[nodiscard]] sample_size size() const;
 
 private:
@@ -76,7 +85,7 @@ struct estimate {
     double degrees = 1;  ///< of freedom
 
     /// Whether it was measured.
-    [[nodiscard]] bool known() const;
+    [[nodiscard]] bool known() const { return std::isfinite(value); }
     /// By Student's t. @param miss the chance that the true value lies below it, and above it
     [[nodiscard]] interval range(double miss = 0.025) const;
     /// One-sided p-values: how likely it is to see this if the true value were at the limit or above, or below.

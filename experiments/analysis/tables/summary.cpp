@@ -1,5 +1,7 @@
 module aabblab.tables;
 
+import aabblab.text;
+
 namespace aabblab {
 
 namespace {
@@ -11,10 +13,8 @@ std::optional<double> ms_a_frame(const row& r) {
     return frame(r);
 }
 
-void add(std::optional<std::uint64_t>& sum, const std::optional<std::uint64_t>& more) {
-    if (more) sum = sum.value_or(0) + *more;
-}
-void add(std::optional<double>& sum, const std::optional<double>& more) {
+template <class Number>
+void add(std::optional<Number>& sum, const std::optional<Number>& more) {
     if (more) sum = sum.value_or(0) + *more;
 }
 
@@ -29,10 +29,10 @@ void add_seed(const row& r, double share, summary_line& line) {
     line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
     const auto of_trees = measured("tree_bytes")(r);
     if (of_trees.value_or(0) > 0) line.bytes_a_triangle = std::max(line.bytes_a_triangle, of_trees);
-    if (r.box_inflation) add(line.box_inflation, *r.box_inflation * share);
+    if (r.box_inflation) add(line.box_inflation, std::optional(*r.box_inflation * share));
     const double frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
-        if (r.counts[i]) add(line.counts[i], static_cast<double>(*r.counts[i]) / frames * share);
+        if (r.counts[i]) add(line.counts[i], std::optional(static_cast<double>(*r.counts[i]) / frames * share));
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
         line.bytes_by_part[i] = std::max(line.bytes_by_part[i], r.bytes[i]);
 }
@@ -170,6 +170,45 @@ std::vector<const summary_line*> ranking_of(const scene_summary& scene) {
     };
     std::ranges::sort(lines, {}, key);
     return lines;
+}
+
+std::vector<aabb::strategy_kind> differing_kinds(std::span<const contender_name> names) {
+    std::vector<aabb::strategy_kind> kinds;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        std::set<std::string> values;
+        for (const contender_name& name : names)
+            if (name.engine.empty()) values.insert(name[kind]);
+        if (values.size() > 1) kinds.push_back(kind);
+    }
+    return kinds;
+}
+
+std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing) {
+    std::vector<column> columns{{row_number}};
+    for (const aabb::strategy_kind kind : differing) columns.push_back({std::string(name_of(kind)), false});
+    if (differing.empty()) columns.push_back({"composition", false});
+    return columns;
+}
+
+std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const contender_name& name,
+                                       std::size_t rank) {
+    std::vector<std::string> cells{std::to_string(rank)};
+    if (name.engine.empty())
+        for (const aabb::strategy_kind kind : differing) cells.push_back(name[kind]);
+    else
+        cells.push_back(name.engine);
+    if (cells.size() == 1) cells.push_back(only_name_of(name));
+    cells.resize(1 + std::max<std::size_t>(differing.size(), 1));
+    return cells;
+}
+
+std::string only_name_of(const contender_name& name) {
+    constexpr std::size_t most = 32;  // beside all columns of numbers, in a line of 80
+    std::string text;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string one = text_in_line(kind, name[kind]); !one.empty())
+            text += (text.empty() ? "" : " + ") + one;
+    return text.empty() || characters(text) > most ? "this composition" : text;
 }
 
 }  // namespace aabblab

@@ -12,14 +12,113 @@ std::vector<std::string> header_of(const table& t) {
     return names;
 }
 
+constexpr std::size_t gap = 2;  // between columns
+
+bool has_numbered_rows(const table& t) {
+    return !t.columns.empty() && t.columns[0].name == row_number;
+}
+
+/// The columns before the first value: a number, and what names a row.
+std::size_t name_count(const table& t) {
+    const auto names = t.columns.begin() + (has_numbered_rows(t) ? 1 : 0);
+    return static_cast<std::size_t>(std::ranges::find(names, t.columns.end(), true, &column::is_number) -
+                                    t.columns.begin());
+}
+
+std::size_t width_of(const table& t, std::size_t k) {
+    std::size_t width = characters(t.columns[k].name);
+    for (const auto& cells : t.rows) width = std::max(width, characters(cells[k]));
+    return width;
+}
+
+/// Of columns from `begin` to before `end`, with a gap after each but the last.
+std::size_t width_of(const table& t, std::size_t begin, std::size_t end) {
+    std::size_t width = 0;
+    for (std::size_t k = begin; k < end; ++k) width += width_of(t, k) + (k > begin ? gap : 0);
+    return width;
+}
+
+bool fits(const table& t, std::size_t width) {
+    return width_of(t, 0, t.columns.size()) <= width;
+}
+
+void remove_columns(table& t, std::size_t begin, std::size_t end) {
+    const auto remove = [&](auto& all) {
+        all.erase(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    remove(t.columns);
+    for (auto& cells : t.rows) remove(cells);
+}
+
+/// Removes spare columns until the table fits, as far as there are any, and says which.
+std::string leave_out(table& t, std::size_t width) {
+    std::string names;
+    while (!fits(t, width)) {
+        const auto spare = std::ranges::max_element(t.columns, {}, &column::spare);
+        if (spare == t.columns.end() || spare->spare == 0) break;
+        names += (names.empty() ? "" : ", ") + spare->name;
+        const auto k = static_cast<std::size_t>(spare - t.columns.begin());
+        remove_columns(t, k, k + 1);
+    }
+    return names.empty() ? "" : "left out, for want of room: " + names + "\n";
+}
+
+/// "a + b + c" after a number, in lines of at most `width` characters where a part is not longer.
+std::string legend_of(const std::string& number, const std::vector<std::string>& parts, std::size_t width) {
+    std::string text;
+    std::string line = number + std::string(gap, ' ');
+    const std::string indent(line.size(), ' ');
+    bool first = true;
+    for (const std::string& part : parts) {
+        if (part.empty()) continue;
+        if (!first) line += " +";
+        if (!first && characters(line) + 1 + characters(part) > width - gap) {
+            text += std::exchange(line, indent) + "\n";
+            first = true;
+        }
+        line += (first ? "" : " ") + part;
+        first = false;
+    }
+    return text + line + "\n";
+}
+
+/// Leaves a number in the place of what names a row, and returns what the numbers stand for.
+std::string number_rows(table& t, std::size_t width) {
+    if (!has_numbered_rows(t)) {
+        t.columns.insert(t.columns.begin(), {row_number});
+        std::size_t row = 0;
+        for (auto& cells : t.rows) cells.insert(cells.begin(), std::to_string(++row));
+    }
+    const std::size_t names = name_count(t);
+    std::string legend;
+    for (const auto& cells : t.rows)
+        legend += legend_of(std::string(width_of(t, 0) - cells[0].size(), ' ') + cells[0],
+                            {cells.begin() + 1, cells.begin() + static_cast<std::ptrdiff_t>(names)}, width);
+    remove_columns(t, 1, names);
+    return legend;
+}
+
+/// The names of the rows with columns from `begin` to before `end`.
+table block_of(table t, std::size_t names, std::size_t begin, std::size_t end) {
+    remove_columns(t, end, t.columns.size());
+    remove_columns(t, names, begin);
+    return t;
+}
+
 }  // namespace
+
+table empty_table(std::initializer_list<const char*> words, std::initializer_list<const char*> numbers,
+                  std::initializer_list<const char*> more_words) {
+    table t;
+    for (const char* name : words) t.columns.push_back({name, false});
+    for (const char* name : numbers) t.columns.push_back({name});
+    for (const char* name : more_words) t.columns.push_back({name, false});
+    return t;
+}
 
 std::string to_text(const table& t) {
     std::vector<std::size_t> widths;
-    for (std::size_t k = 0; k < t.columns.size(); ++k) {
-        widths.push_back(characters(t.columns[k].name));
-        for (const auto& cells : t.rows) widths[k] = std::max(widths[k], characters(cells[k]));
-    }
+    for (std::size_t k = 0; k < t.columns.size(); ++k) widths.push_back(width_of(t, k));
     std::string text;
     const auto add = [&](const std::vector<std::string>& cells) {
         std::string line;
@@ -57,6 +156,29 @@ std::string to_markdown(const table& t) {
     text += "\n";
     for (const auto& cells : t.rows) add(cells);
     return text;
+}
+
+std::string to_text(table t, std::size_t width) {
+    if (name_count(t) == t.columns.size()) return to_text(t);
+    table fewer = t;
+    std::string left_out = leave_out(fewer, width);
+    // Names that leave half of the width stay; longer ones would be repeated in every block.
+    const bool long_names = !fits(fewer, width) && width_of(t, 0, name_count(t)) > width / 2;
+    const std::string legend = long_names ? number_rows(t, width) : "";
+    if (long_names)
+        left_out = leave_out(t, width);
+    else
+        t = std::move(fewer);
+    const std::size_t names = name_count(t);
+    const std::size_t room = width - std::min(width, width_of(t, 0, names) + gap);
+    std::string text;
+    for (std::size_t begin = names; begin < t.columns.size();) {
+        std::size_t end = begin + 1;
+        while (end < t.columns.size() && width_of(t, begin, end + 1) <= room) ++end;
+        text += (text.empty() ? "" : "\n") + to_text(block_of(t, names, begin, end));
+        begin = end;
+    }
+    return text + (legend.empty() ? "" : "\n") + legend + left_out;
 }
 
 }  // namespace aabblab

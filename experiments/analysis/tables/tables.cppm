@@ -26,6 +26,11 @@ struct table {
     std::vector<column> columns;
     std::vector<std::vector<std::string>> rows;
 };
+/// Without rows: columns of words, then of numbers, then of words again.
+[[nodiscard]] table empty_table(std::initializer_list<const char*> words,
+                                std::initializer_list<const char*> numbers = {},
+                                std::initializer_list<const char*> more_words = {});
+
 /// A table of a report.
 struct named_table {
     std::string name;  ///< of its files
@@ -112,12 +117,6 @@ struct scene_summary {
 
 // What the parts of the module share.
 namespace aabblab {
-
-/// Bytes as KiB, with three digits that count.
-[[nodiscard]] std::string kib_text(std::uint64_t bytes);
-/// "0.98-1.02", or "-" where there is none.
-[[nodiscard]] std::string interval_text(const std::optional<interval>& around);
-[[nodiscard]] std::string text_or_dash(const std::optional<double>& value, int decimals);
 
 /// Those in which some of these names of compositions differ.
 [[nodiscard]] std::vector<aabb::strategy_kind> differing_kinds(std::span<const contender_name> names);

@@ -1,8 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.tables;
 
+import aabblab.fmt;
 import aabblab.text;
 
 namespace aabblab {

@@ -1,9 +1,120 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.pair_output;
 
+import aabblab.fmt;
+
 namespace aabblab {
+
+namespace {
+
+std::array<std::uint32_t, 2> words_of(const aabb::index_pair& pair) {
+    return {pair.a, pair.b};
+}
+
+std::array<std::uint32_t, 4> words_of(const aabb::contact& c) {
+    return {c.a, c.b, c.triangle_a, c.triangle_b};
+}
+
+/// Some bits of one of the words of a row.
+struct digit {
+    static constexpr std::size_t most_bits = 8;
+    static constexpr std::size_t values = std::size_t{1} << most_bits;
+
+    std::size_t word;
+    std::size_t shift;
+    std::uint32_t mask;
+
+    [[nodiscard]] std::size_t of(const auto& row) const { return words_of(row)[word] >> shift & mask; }
+};
+
+/// Of all bits in which rows differ, from the highest on.
+template <class Row>
+std::vector<digit> digits_of(std::span<const Row> rows) {
+    auto differing = words_of(rows[0]);
+    differing.fill(0);
+    const auto first = words_of(rows[0]);
+    for (const Row& row : rows) {
+        const auto words = words_of(row);
+        for (std::size_t i = 0; i < words.size(); ++i) differing[i] |= words[i] ^ first[i];
+    }
+    std::vector<digit> digits;
+    for (std::size_t i = 0; i < differing.size(); ++i) {
+        const auto lowest = static_cast<std::size_t>(std::countr_zero(differing[i]));
+        for (auto above = static_cast<std::size_t>(std::bit_width(differing[i])); above > lowest;) {
+            const std::size_t bits = std::min(digit::most_bits, above - lowest);
+            above -= bits;
+            digits.push_back({i, above, (std::uint32_t{1} << bits) - 1});
+        }
+    }
+    return digits;
+}
+
+/// Of rows that differ in these digits only.
+template <class Row>
+void sort_by(std::span<const digit> digits, std::span<Row> rows) {
+    // Fewer are sorted in the time in which the values of a digit are counted.
+    if (rows.size() <= digit::values / 4) {
+        std::ranges::sort(rows);
+        return;
+    }
+    if (digits.empty()) return;
+    const digit d = digits.front();
+    std::array<std::size_t, digit::values> ends{};
+    for (const Row& row : rows) ++ends[d.of(row)];
+    std::array<std::size_t, digit::values> next{};
+    std::exclusive_scan(ends.begin(), ends.end(), next.begin(), std::size_t{0});
+    std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
+    // Each row goes to where it belongs, and the one that was there goes on.
+    for (std::size_t value = 0; value <= d.mask; ++value)
+        while (next[value] < ends[value]) {
+            Row row = rows[next[value]];
+            for (std::size_t of_row = d.of(row); of_row != value; of_row = d.of(row))
+                std::swap(row, rows[next[of_row]++]);
+            rows[next[value]++] = row;
+        }
+    std::size_t begin = 0;
+    for (std::size_t value = 0; value <= d.mask; ++value) {
+        sort_by(digits.subspan(1), rows.subspan(begin, ends[value] - begin));
+        begin = ends[value];
+    }
+}
+
+template <class Row>
+void sort_whole(std::span<Row> rows) {
+    if (!std::ranges::is_sorted(rows)) sort_by(digits_of(std::span<const Row>(rows)), rows);
+}
+
+void append(std::string& text, char before, const aabb::vec3d& p) {
+    for (const double x : p.at) text += before + aabb::shortest(x);
+}
+
+}  // namespace
+
+void sort_rows(std::span<aabb::index_pair> pairs) {
+    sort_whole(pairs);
+}
+
+void sort_rows(std::span<aabb::contact> contacts) {
+    sort_whole(contacts);
+}
+
+std::string to_text(const aabb::triangle_intersection& common) {
+    std::string text = std::string(name_of(common.kind)) + ' ' + std::to_string(common.size);
+    for (std::uint32_t i = 0; i < common.size; ++i) append(text, ' ', common.corners[i]);
+    append(text, ' ', common.error);
+    return text;
+}
+
+std::string to_cells(const aabb::triangle_intersection& common) {
+    std::string cells = std::string(name_of(common.kind)) + ',' + std::to_string(common.size);
+    append(cells, ',', common.error);
+    for (std::uint32_t i = 0; i < common.corners.size(); ++i) {
+        if (i < common.size)
+            append(cells, ',', common.corners[i]);
+        else
+            cells += ",,,";
+    }
+    return cells;
+}
 
 void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where) {
     if (const auto twice = std::ranges::adjacent_find(pairs); twice != pairs.end())

@@ -1,10 +1,6 @@
 module aabblab.scenes:brownian;
 
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :drift;
-import :parameters;
 
 namespace aabblab {
 
@@ -17,9 +13,7 @@ public:
         "unit cubes that drift in a cube with reflecting walls; a hundredth of them turn every frame";
 
     struct config : scene_size {
-        /// Volume of all objects over the volume of the world.
         double density = 0.1;
-        /// The longest way an object moves in a frame, in edges of a cube. auto: 0.75 / 30 of the world's side.
         std::optional<double> displacement;
     };
     static constexpr auto parameters = std::tuple_cat(

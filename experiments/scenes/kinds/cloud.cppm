@@ -3,13 +3,7 @@ module;
 
 module aabblab.scenes:cloud;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :drift;
-import :random;
-import :sizes;
 
 namespace aabblab {
 
@@ -23,13 +17,11 @@ public:
         "cubes that drift in one cloud or in several apart; density, sizes and clustering are set one by one";
 
     struct config : motion_config {
-        /// The others rest.
         double moving = 1;
         double density = 0.1;
         /// Edge of the largest cube over that of the smallest, the others between them as in `mixed_sizes`.
         double ratio = 1;
         std::uint32_t clouds = 1;
-        /// Edge of a cell over that of the cloud in it.
         double apart = 4;
         /// Share of the cubes, as games keep them out of sight until they need them.
         double parked = 0;

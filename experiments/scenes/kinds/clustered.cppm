@@ -3,11 +3,7 @@ module;
 
 module aabblab.scenes:clustered;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :random;
 
 namespace aabblab {
 

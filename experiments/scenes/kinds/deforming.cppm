@@ -3,15 +3,8 @@ module;
 
 module aabblab.scenes:deforming;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
-import aabblab.vectors;
 import :circle;
-import :parameters;
 import :posed_meshes;
-import :random;
-import :rotation;
 
 namespace aabblab {
 
@@ -26,9 +19,7 @@ public:
 
     struct config {
         std::uint32_t frames = 20;
-        /// Between the centres, over the mean of the boxes' longest extents.
         double distance = 0.3;
-        /// Of the wave, over the longest extent of the mesh that it runs through.
         double amplitude = 0.05;
         scaling normalise = scaling::yes;
     };

@@ -1,15 +1,12 @@
+module;
+// Beside Eigen's headers, which a partition has, clang 19 does not see that of aabb.std.
+#include <tuple>
+
 module aabblab.scenes:dropped;
 
-import aabb.base;
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import aabblab.files;
-import aabblab.stepping;
 import :dropped_world;
-import :parameters;
 import :posed_meshes;
-import :rotation;
 
 namespace aabblab {
 

@@ -3,14 +3,7 @@ module;
 
 module aabblab.scenes:explosion;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
-import aabblab.vectors;
 import :boxes;
-import :drift;
-import :parameters;
-import :random;
 
 namespace aabblab {
 

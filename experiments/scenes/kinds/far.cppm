@@ -3,15 +3,11 @@ module;
 
 module aabblab.scenes:far;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes far from the origin, where floats lie far apart: ends that were different become equal, and cubes that
-/// were apart touch.
+/// Unit cubes far from the origin, where floats lie far apart: different ends become equal, and cubes apart touch.
 class far final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "far";

@@ -1,11 +1,9 @@
 module aabblab.scenes:flat;
 
-import aabb.std;
 import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes in one plane. All have the same extent on the third axis, where sorting and cutting are in vain.
 class flat final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "flat";

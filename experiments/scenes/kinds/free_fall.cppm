@@ -3,16 +3,12 @@ module;
 
 module aabblab.scenes:free_fall;
 
-import aabb.geometry;
-import aabb.std;
 import :boxes;
-import :random;
 
 namespace aabblab {
 
-/// Unit cubes that are released at rest above a floor, fall along z and bounce, losing half their speed each time; they
-/// pass through one another. The world is ten edges high and wide enough for each to overlap four others once all lie
-/// on the floor.
+/// Unit cubes that are released at rest above a floor, fall along z and bounce, losing half their speed each time, and
+/// pass through one another. The world is ten edges high and so wide that each overlaps four others on the floor.
 class free_fall final : public generated_boxes {
 public:
     static constexpr std::string_view name = "free_fall";

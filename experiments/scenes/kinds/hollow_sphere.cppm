@@ -3,11 +3,7 @@ module;
 
 module aabblab.scenes:hollow_sphere;
 
-import aabb.geometry;
-import aabb.std;
-import aabblab.vectors;
 import :boxes;
-import :random;
 
 namespace aabblab {
 

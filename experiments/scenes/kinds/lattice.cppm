@@ -3,11 +3,7 @@ module;
 
 module aabblab.scenes:lattice;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :parameters;
 
 namespace aabblab {
 
@@ -21,7 +17,6 @@ public:
         "unit cubes that touch on an integer lattice and move as one: nothing but ties; the seed does not matter";
 
     struct config : scene_size {
-        /// How far all cubes move along each axis in a frame, in edges.
         double displacement = 0.25;
     };
     static constexpr auto parameters =

@@ -1,11 +1,9 @@
 module aabblab.scenes:line;
 
-import aabb.std;
 import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes along one line. All have the same extents on the other two axes, where sorting and cutting are in vain.
 class line final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "line";

@@ -3,19 +3,12 @@ module;
 
 module aabblab.scenes:mesh_pair;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
-import :parameters;
 import :posed_meshes;
-import :random;
-import :rotation;
 
 namespace aabblab {
 
 /// Two meshes: the first stands still with its centre at the origin; the second passes through it on a straight line,
-/// turning about its own centre. Line, axis and first rotation come from the seed. With distance and turn 0 it
-/// stands still.
+/// turning about its own centre, unless distance and turn are 0. Line, axis and first rotation come from the seed.
 class mesh_pair final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_pair";
@@ -25,7 +18,6 @@ public:
 
     struct config {
         std::uint32_t frames = 20;
-        /// Between the centres in the first and the last frame, over the mean of the boxes' longest extents.
         double distance = 0.5;
         /// Of the second mesh a frame, in radians (small ones; at most half a turn).
         double turn = 0.1;

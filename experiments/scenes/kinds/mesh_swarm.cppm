@@ -3,15 +3,8 @@ module;
 
 module aabblab.scenes:mesh_swarm;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import aabblab.files;
-import :drift;
-import :parameters;
 import :posed_meshes;
-import :random;
-import :rotation;
 
 namespace aabblab {
 
@@ -29,9 +22,7 @@ public:
     struct config {
         std::uint32_t objects = 200;
         std::uint32_t frames = 20;
-        /// Volume of cubes as long as the objects over the volume of the world.
         double density = 0.5;
-        /// The longest way of an object in a frame, in mean extents; it turns by up to as many radians.
         double displacement = 0.05;
         scaling normalise = scaling::yes;
         /// How many objects are huge, and their longest extent over the side of the world, which the others decide.

@@ -3,12 +3,7 @@ module;
 
 module aabblab.scenes:mixed_sizes;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :drift;
-import :sizes;
 
 namespace aabblab {
 
@@ -21,7 +16,6 @@ public:
         "cubes that drift in a cube, their edges evenly spread in the logarithm from 1 to a ratio";
 
     struct config : motion_config {
-        /// Edge of the largest cube over that of the smallest.
         double ratio = 100;
     };
     static constexpr auto parameters = std::tuple_cat(
@@ -32,8 +26,7 @@ public:
         : drifting_boxes(name, c, seed, sizeof(double)),
           edges_(spread_edges(c.objects, c.ratio)),
           width_(width_around(edges_)) {
-        double sum = 0;
-        for (const double e : edges_) sum += e;
+        const double sum = std::accumulate(edges_.begin(), edges_.end(), 0.0);
         drift(c, width_, sum / std::max(c.objects, 1U), width_ + c.ratio);
     }
 

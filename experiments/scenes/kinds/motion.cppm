@@ -1,8 +1,6 @@
 module aabblab.scenes:motion;
 
-import aabb.geometry;
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 import aabblab.files;
 

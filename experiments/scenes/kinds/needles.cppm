@@ -3,16 +3,11 @@ module;
 
 module aabblab.scenes:needles;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :drift;
 
 namespace aabblab {
 
-/// Boxes that are long on one axis and thin on the other two; object i is long on axis i modulo 3. Cells and segments
-/// that fit one axis of a needle do not fit the others.
+/// Boxes that are thin on two axes; object i is long on axis i modulo 3. Cells that fit one axis do not fit the others.
 class needles final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "needles";

@@ -3,17 +3,11 @@ module;
 
 module aabblab.scenes:one_huge;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :drift;
-import :random;
 
 namespace aabblab {
 
-/// Unit cubes and one that is huge, or several, each of which overlaps whatever lies within it: by default an eighth of
-/// all objects.
+/// Unit cubes and one that is huge, or several, each of which overlaps what lies in it: by default an eighth of all.
 class one_huge final : public generated_boxes {
 public:
     static constexpr std::string_view name = "one_huge";
@@ -21,7 +15,6 @@ public:
         "unit cubes that drift in a cube, and one, or several, that span a large part of their world";
 
     struct config : motion_config {
-        /// Edge of the huge box over the world's side.
         double span = 0.5;
         /// The first objects are the huge ones.
         std::uint32_t huge = 1;
@@ -32,18 +25,17 @@ public:
             aabb::number_parameter{"span", &config::span, 0.0, 1.0, "edge of a huge box over the side of the world"},
             aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many boxes are huge"}});
 
-    one_huge(const config& c, std::uint64_t seed)
-        : one_huge(c, seed, std::min(c.objects, c.huge), width_for(c.objects, 3)) {}
-
-private:
-    one_huge(const config& c, std::uint64_t seed, std::uint32_t huge, double width)
-        : generated_boxes(name, c, seed, drifting_points::bytes_each), edge_(c.span * (width + 1)) {
+    one_huge(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, drifting_points::bytes_each) {
+        const std::uint32_t huge = std::min(c.objects, c.huge);
+        const double width = width_for(c.objects, 3);
+        edge_ = c.span * (width + 1);
         const double extent = (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U);
         const double step = step_of(c, extent, {width + 1, width + 1, width + 1});
         huge_ = {huge, 3, width + 1 - edge_, {step, step}, random_};
         unit_ = {c.objects - huge, 3, width, {step, step}, random_};
     }
 
+private:
     void advance() override {
         huge_.advance(random_);
         unit_.advance(random_);
@@ -54,7 +46,7 @@ private:
             boxes[i] = i < huge_.size() ? cube_at(huge_[i], edge_) : cube_at(unit_[i - huge_.size()], 1);
     }
 
-    double edge_;
+    double edge_ = 0;
     drifting_points huge_;
     drifting_points unit_;
 };

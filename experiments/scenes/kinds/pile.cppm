@@ -3,13 +3,7 @@ module;
 
 module aabblab.scenes:pile;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
-import aabblab.vectors;
 import :boxes;
-import :drift;
-import :random;
 
 namespace aabblab {
 
@@ -22,7 +16,6 @@ public:
 
     struct config : motion_config {
         config() { displacement = 0.02; }
-        /// How many others a box overlaps, mean.
         std::uint32_t neighbours = 20;
     };
     static constexpr auto parameters =

@@ -3,11 +3,7 @@ module;
 
 module aabblab.scenes:population;
 
-import aabb.geometry;
-import aabb.policy;
-import aabb.std;
 import :boxes;
-import :random;
 
 namespace aabblab {
 
@@ -20,7 +16,6 @@ public:
         "unit cubes that drift in a cube and come and go: about half of them are there at a time";
 
     struct config : motion_config {
-        /// Objects that come or go in a frame, over all objects.
         double turnover = 0.05;
     };
     static constexpr auto parameters = std::tuple_cat(

@@ -1,13 +1,11 @@
 module aabblab.scenes:recording;
 
 import aabb.pipeline;
-import aabb.policy;
 import aabb.std;
 import aabblab.files;
 
 namespace aabblab {
 
-/// Boxes of the user's own, as they were recorded.
 struct recording {
     static constexpr std::string_view name = "recording";
     static constexpr std::string_view summary = "boxes as a recording (.aabbs) has them, frame by frame";

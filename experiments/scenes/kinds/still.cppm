@@ -3,15 +3,10 @@ module;
 
 module aabblab.scenes:still;
 
-import aabb.geometry;
-import aabb.std;
 import :boxes;
-import :parameters;
-import :random;
 
 namespace aabblab {
 
-/// Unit cubes that never move: what was learnt in one frame stays true.
 class still final : public generated_boxes {
 public:
     static constexpr std::string_view name = "still";

@@ -3,15 +3,10 @@ module;
 
 module aabblab.scenes:teleport;
 
-import aabb.geometry;
-import aabb.std;
 import :boxes;
-import :parameters;
-import :random;
 
 namespace aabblab {
 
-/// Unit cubes without temporal coherence: what was learnt in one frame is worth nothing in the next.
 class teleport final : public generated_boxes {
 public:
     static constexpr std::string_view name = "teleport";

@@ -3,8 +3,6 @@ module;
 
 module aabblab.scenes;
 
-import aabb.base;
-import aabb.geometry;
 import :random;
 
 namespace aabblab {
@@ -28,8 +26,7 @@ template <class Real>
 constexpr format format_of{double{std::numeric_limits<Real>::denorm_min()}, double{std::numeric_limits<Real>::max()},
                            double{std::numeric_limits<Real>::epsilon()}};
 
-template <class Change>
-pair changed(pair p, Change change) {
+pair changed(pair p, auto change) {
     for (triangle* t : {&p.a, &p.b})
         for (Vector3d& corner : *t) corner = change(corner);
     return p;
@@ -81,7 +78,6 @@ pair vertex_on_plane(random_source& random, const format&) {
     return p;
 }
 
-/// An edge passes through a point of an edge of the other.
 pair edge_on_edge(random_source& random, const format&) {
     pair p = any_pair(random);
     const Vector3d meeting = p.a[0] + (p.a[1] - p.a[0]) * (1.5 * random.unit() - 0.25);
@@ -120,7 +116,6 @@ pair coplanar(random_source& random, const format&) {
     });
 }
 
-/// A millionth as high as long, and near each other.
 pair sliver(random_source& random, const format&) {
     pair p = any_pair(random);
     const Vector3d meeting = random.point(1);
@@ -134,7 +129,6 @@ pair sliver(random_source& random, const format&) {
     return p;
 }
 
-/// One triangle or both are segments or points.
 pair zero_area(random_source& random, const format&) {
     pair p = lattice_pair(random, 4);
     const auto flatten = [&](triangle& t) {
@@ -148,7 +142,6 @@ pair zero_area(random_source& random, const format&) {
     return p;
 }
 
-/// Multiples of the smallest number.
 pair denormal(random_source& random, const format& f) {
     return changed(lattice_pair(random, 64), [&](const Vector3d& p) -> Vector3d { return p * f.smallest; });
 }

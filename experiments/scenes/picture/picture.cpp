@@ -1,19 +1,186 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.picture;
 
-import aabb.geometry;
 import aabb.pipeline;
 import aabb.validation;
+import aabblab.fmt;
 import aabblab.markup;
 import aabblab.numbers;
+import aabblab.scale;
 import aabblab.text;
-import :panel;
 
 namespace aabblab {
 
 namespace {
+
+constexpr double panel_side = 490;
+constexpr double left_margin = 84;  // that the labels of an axis take, as the next
+constexpr double bottom_margin = 44;
+constexpr double gap = 30;  // between panels
+constexpr double wide_panel = 2 * panel_side + left_margin + gap;
+constexpr double narrowest = 1.0 / 8;  // a panel's one side over the other
+
+/// Which two axes are shown, and how lengths become pixels.
+struct view_plane {
+    /// Along z lies what falls or is piled up, so z is left out only where it is flat, or less than a quarter as wide
+    /// as both others. Where one of the two axes is much longer, each has a scale of its own.
+    view_plane(const aabb::box& world, const aabb::vec3d& sides) {
+        for (int k = 0; k < 3; ++k) {
+            const bool is_empty = world.min[k] > world.max[k];
+            least[k] = is_empty ? 0 : double{world.min[k]};
+            length[k] = is_empty ? 0 : double{world.max[k]} - least[k];
+            if (length[k] > 0) continue;
+            least[k] -= 0.5;
+            length[k] = 1;
+        }
+        // A single box has no flat axis to leave out.
+        aabb::vec3d weight = sides == aabb::vec3d{} ? length : sides;
+        weight[2] *= 4;
+        int left_out = 2;
+        for (const int k : {1, 0})
+            if (weight[k] < weight[left_out]) left_out = k;
+        across = left_out == 0 ? 1 : 0;
+        up = left_out == 2 ? 1 : 2;
+        const double ratio = length[up] / length[across];
+        const double shown = std::clamp(ratio, narrowest, 1 / narrowest);
+        equal_scales = ratio == shown;
+        width = shown < 0.4 ? wide_panel : shown <= 1 ? panel_side : panel_side / shown;
+        height = width * shown;
+        scale[across] = width / length[across];
+        scale[up] = height / length[up];
+    }
+
+    /// Too wide for another panel beside it.
+    [[nodiscard]] bool is_wide() const { return width > panel_side; }
+
+    /// From the left edge of the panel, from its upper edge.
+    [[nodiscard]] double x(double value) const { return (value - least[across]) * scale[across]; }
+    [[nodiscard]] double y(double value) const { return height - (value - least[up]) * scale[up]; }
+
+    int across = 0;
+    int up = 1;
+    double width = 0;
+    double height = 0;
+    bool equal_scales = true;
+    aabb::vec3d least{};   // by axis, as are the following
+    aabb::vec3d length{};  // shown
+    aabb::vec3d scale{};   // pixels a unit of length
+};
+
+struct pixel {
+    double x;
+    double y;
+};
+
+/// In pixels, from the corner of a panel.
+struct box_on_plane {
+    double left, top, width, height;
+};
+
+std::string words_at(double x, double y, std::string_view text, std::string_view kind = "",
+                     std::string_view anchor = "") {
+    return element("text", {{"class", kind}, {"x", x}, {"y", y}, {"text-anchor", anchor}}, markup_text(text)) + "\n";
+}
+
+/// @param kind a class of the style
+std::string rectangle(std::string_view kind, const box_on_plane& r) {
+    return element("rect", {{"class", kind}, {"x", r.left}, {"y", r.top}, {"width", r.width}, {"height", r.height}}) +
+           "\n";
+}
+
+/// "x", "y" or "z"
+std::string_view name_of_axis(int axis) {
+    return std::string_view("xyz").substr(static_cast<std::size_t>(axis), 1);
+}
+
+struct frame_drawing {
+    std::vector<std::size_t> drawn;         // objects, the largest first
+    std::size_t huge = 0;                   // how many of them are outlined above all others
+    std::vector<std::uint8_t> overlapping;  // by object
+    std::size_t present = 0;
+    std::size_t pairs = 0;
+};
+
+std::vector<double> ticks(const view_plane& view, int axis, double pixels, double pixels_each) {
+    const double length = view.length[axis];
+    return round_values(view.least[axis], view.least[axis] + length,
+                        round_step(length, std::max(2.0, pixels / pixels_each)));
+}
+
+std::string axes_of(const view_plane& view) {
+    const double below = view.height;
+    std::string svg;
+    for (const double value : ticks(view, view.across, view.width, 80))
+        svg += element("path", {{"class", "tick"},
+                                {"d", "M" + short_number(view.x(value)) + " " + short_number(below) + "v5"}}) +
+               words_at(view.x(value), below + 19, fmt::format("{:g}", value), "", "middle");
+    for (const double value : ticks(view, view.up, view.height, 40))
+        svg += element("path", {{"class", "tick"}, {"d", "M0 " + short_number(view.y(value)) + "h-5"}}) +
+               words_at(-9, view.y(value) + 4, fmt::format("{:g}", value), "", "end");
+    return svg + words_at(view.width / 2, below + 36, name_of_axis(view.across), "axis", "middle") +
+           words_at(8 - left_margin, below / 2 + 4, name_of_axis(view.up), "axis");
+}
+
+/// What is smaller than a pixel is still to be seen.
+box_on_plane shown(const view_plane& view, const aabb::box& b) {
+    const double left = view.x(b.min[view.across]);
+    const double top = view.y(b.max[view.up]);
+    return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
+}
+
+std::string boxes_of(const view_plane& view, const survey::frame& frame, const frame_drawing& drawing) {
+    double area = 0;
+    std::string boxes;
+    std::string outlines;
+    for (std::size_t i = 0; i < drawing.drawn.size(); ++i) {
+        const std::size_t object = drawing.drawn[i];
+        const box_on_plane r = shown(view, frame.boxes[object]);
+        area += r.width * r.height;
+        boxes += rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
+        if (i < drawing.huge) outlines += rectangle("huge", r);
+    }
+    // The more boxes lie behind one another, the more is seen through each.
+    const double depth = area / (view.width * view.height);
+    return element("g",
+                   {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
+                    {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}},
+                   boxes) +
+           outlines;
+}
+
+std::string path_of(const view_plane& view, const survey::path& path) {
+    std::string d;
+    bool pen_down = false;
+    for (const auto& place : path) {
+        if (place)
+            d += (pen_down ? "L" : "M") + short_number(view.x((*place)[view.across])) + " " +
+                 short_number(view.y((*place)[view.up]));
+        pen_down = place.has_value();
+    }
+    return d.empty() ? "" : element("path", {{"class", "way"}, {"d", d}}) + "\n";
+}
+
+std::string panel_of(const view_plane& view, pixel corner, std::string_view title, const survey::frame& frame,
+                     const frame_drawing& drawing, std::span<const survey::path> paths) {
+    std::string svg = "\n" + words_at(0, -10, title, "title") + rectangle("world", {0, 0, view.width, view.height}) +
+                      axes_of(view) + boxes_of(view, frame, drawing);
+    for (const survey::path& path : paths) svg += path_of(view, path);
+    return element("g", {{"transform", fmt::format("translate({:.1f} {:.1f})", corner.x, corner.y)}}, svg) + "\n";
+}
+
+/// How many of the paths can be drawn before they hide everything: at least one, where there is one.
+std::size_t clear_paths(const view_plane& view, std::span<const survey::path> paths) {
+    const double most = 8 * (view.width + view.height);
+    double length = 0;
+    std::size_t count = 0;
+    while (count < paths.size() && length < most) {
+        const survey::path& path = paths[count++];
+        for (std::size_t i = 1; i < path.size(); ++i)
+            if (path[i - 1] && path[i])
+                length += std::hypot(view.x((*path[i])[view.across]) - view.x((*path[i - 1])[view.across]),
+                                     view.y((*path[i])[view.up]) - view.y((*path[i - 1])[view.up]));
+    }
+    return count;
+}
 
 constexpr std::size_t most_boxes = 4000;
 constexpr std::size_t line_length = 135;  // characters that fit beside one another
@@ -89,11 +256,10 @@ std::vector<std::string> caption_lines(const survey& seen, const picture_caption
         for (const std::string& line : lines_of(text, line_length)) lines.push_back(line);
     lines.push_back(fmt::format("{}, {}; {}", counted(seen.first().boxes.size(), "object"),
                                 counted(seen.frames(), "frame"), displacement_text(seen)));
-    lines.push_back(
-        fmt::format("seen along {}: {} across, {} upwards{}{}", name_of_axis(3 - view.across() - view.up()),
-                    name_of_axis(view.across()), name_of_axis(view.up()),
-                    view.has_equal_scales() ? "" : ", each with a scale of its own",
-                    is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
+    lines.push_back(fmt::format(
+        "seen along {}: {} across, {} upwards{}{}", name_of_axis(3 - view.across - view.up), name_of_axis(view.across),
+        name_of_axis(view.up), view.equal_scales ? "" : ", each with a scale of its own",
+        is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
     return lines;
 }
 
@@ -125,7 +291,7 @@ std::string picture_of(const survey& seen, const picture_caption& caption) {
     const auto paths = seen.paths().first(clear_paths(view, seen.paths()));
     body += legend(y + 6, paths.size(), first.huge + last.huge > 0);
     const pixel left = {left_margin, y + 46};
-    const double panel_height = view.height() + bottom_margin;
+    const double panel_height = view.height + bottom_margin;
     const pixel right = view.is_wide() ? pixel{left.x, left.y + panel_height + gap}
                                        : pixel{left.x + panel_side + left_margin + gap, left.y};
     body += panel_of(view, left, title_of("first", 0, first), seen.first(), first, {});

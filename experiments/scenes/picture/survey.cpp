@@ -1,9 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.picture;
 
-import aabb.geometry;
+import aabblab.fmt;
 import aabblab.scenes;
 
 namespace aabblab {

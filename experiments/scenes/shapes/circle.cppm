@@ -1,5 +1,4 @@
-/// Sine and cosine that are the same on every machine: libraries differ in the last digit, additions and products do
-/// not.
+/// Sine and cosine that are the same everywhere: libraries differ in the last digit, additions and products do not.
 module aabblab.scenes:circle;
 
 import aabb.std;

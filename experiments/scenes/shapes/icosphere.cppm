@@ -3,10 +3,8 @@ module;
 
 module aabblab.scenes:icosphere;
 
-import aabb.geometry;
-import aabb.std;
 import aabblab.vectors;
-import :shape_size;
+import :shape;
 
 namespace aabblab {
 

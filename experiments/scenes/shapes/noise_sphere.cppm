@@ -3,18 +3,13 @@ module;
 
 module aabblab.scenes:noise_sphere;
 
-import aabb.geometry;
-import aabb.std;
-import aabblab.vectors;
 import :circle;
 import :random;
-import :rings;
-import :shape_size;
+import :shape;
 
 namespace aabblab {
 
-/// A sphere whose radius waves, like a scanned lump: dents and bumps of many sizes, always the same ones. Rings of
-/// latitude between two poles.
+/// A sphere with dents and bumps of many sizes, always the same, like a scanned lump: rings between two poles.
 struct noise_sphere {
     static constexpr std::string_view name = "noise_sphere";
     static constexpr std::string_view summary = "a sphere with dents and bumps";
@@ -59,7 +54,6 @@ private:
                 frequency *= 1.2;
             }
         }
-        /// The point of the surface in this direction.
         [[nodiscard]] aabb::vec3f surface(const Eigen::Vector3d& direction) const {
             double radius = 1;
             for (const wave& w : waves_)

@@ -1,8 +1,6 @@
 module aabblab.scenes:slivers;
 
-import aabb.geometry;
-import aabb.std;
-import :shape_size;
+import :shape;
 
 namespace aabblab {
 

@@ -1,9 +1,6 @@
 module aabblab.scenes:square;
 
-import aabb.geometry;
-import aabb.std;
-import :rings;
-import :shape_size;
+import :shape;
 
 namespace aabblab {
 

@@ -3,12 +3,9 @@ module;
 
 module aabblab.scenes:torus_knot;
 
-import aabb.geometry;
-import aabb.std;
 import aabblab.vectors;
 import :circle;
-import :rings;
-import :shape_size;
+import :shape;
 
 namespace aabblab {
 

@@ -1,11 +1,9 @@
 module aabblab.stiff;
 
 import :ball_world;
-import :oscillator;
 import :rules;
 import :simulation;
-import aabblab.figures;
-import aabblab.stepping;
+import aabblab.statistics;
 
 namespace aabblab {
 
@@ -51,20 +49,10 @@ std::string subject_of(const integrator_info& i, double scaled, const std::strin
 
 /// The slope of log error over log step.
 double order_of(std::span<const double> steps, std::span<const double> errors) {
-    double mean_x = 0;
-    double mean_y = 0;
-    const auto count = static_cast<double>(steps.size());
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        mean_x += std::log(steps[i]) / count;
-        mean_y += std::log(errors[i]) / count;
-    }
-    double covariance = 0;
-    double variance = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        covariance += (std::log(steps[i]) - mean_x) * (std::log(errors[i]) - mean_y);
-        variance += (std::log(steps[i]) - mean_x) * (std::log(steps[i]) - mean_x);
-    }
-    return covariance / variance;
+    std::vector<double> x, y;
+    for (const double step : steps) x.push_back(std::log(step));
+    for (const double error : errors) y.push_back(std::log(error));
+    return line_through(x, y).slope;
 }
 
 void convergence(const stiff_setting& setting, stiff_result& result) {
@@ -74,28 +62,25 @@ void convergence(const stiff_setting& setting, stiff_result& result) {
                 .caption =
                     "Error of the ball in contact over the step, of position and velocity together: each integrator "
                     "falls with its order.",
-                .x = {"step times angular frequency", true, {}},
-                .y = {"greatest error over the ball's own motion", true, {}},
-                .lines = {},
-                .marks = {}};
+                .x = {"step times angular frequency", true},
+                .y = {"greatest error over the ball's own motion", true}};
     for (const integrator_info& i : integrators()) {
         std::vector<double> errors;
-        series line{std::string(i.name), series_style::line, {}};
+        series line{std::string(i.name)};
         unless_it_gives_up(result, i.name, [&] {
             for (const double scaled : steps) {
                 const double error = bounce_of(contact, setting.who, i, scaled / contact.frequency, tolerance).error;
                 errors.push_back(error);
-                line.points.push_back({scaled, error, error, error});
+                line.points.push_back({scaled, error});
             }
         });
         if (errors.size() < steps.size()) continue;
         plot.lines.push_back(std::move(line));
         const std::string subject = subject_of(i, steps.back());
         // An integrator of first order is off by no more than a step.
-        result.rows.push_back(at_most(subject, "trajectory error", errors.back(), i.order == 1 ? steps.back() : 1e-3));
+        result.add(at_most(subject, "trajectory error", errors.back(), i.order == 1 ? steps.back() : 1e-3));
         if (!i.adaptive)
-            result.rows.push_back(
-                at_least(std::string(i.name), "order of convergence", order_of(steps, errors), i.order - 0.1));
+            result.add(at_least(std::string(i.name), "order of convergence", order_of(steps, errors), i.order - 0.1));
     }
     result.figures.push_back(std::move(plot));
 }
@@ -112,9 +97,8 @@ void stiffness(const stiff_setting& setting, stiff_result& result) {
                 // Boost's central differences take the dashpot's force a step late, which makes contacts shorter by ζ
                 // dt·ω.
                 const double share = i.order == 2 ? 0.015 : 0.01;
-                result.rows.push_back(
-                    within(subject, "contact time (s)", found.contact_time, contact.contact_time(), share));
-                result.rows.push_back(within(subject, "restitution", found.restitution, contact.restitution(), share));
+                result.add(within(subject, "contact time (s)", found.contact_time, contact.contact_time(), share));
+                result.add(within(subject, "restitution", found.restitution, contact.restitution(), share));
             });
         }
     }

@@ -1,26 +1,134 @@
 module aabblab.stiff;
 
-import :dropped_balls;
 import :method;
 import :rules;
-import aabblab.figures;
-import aabblab.stepping;
+import :simulation;
+import aabb.geometry;
+import aabblab.scenes;
 
 namespace aabblab {
 
 namespace {
 
+struct trajectory {
+    std::vector<std::vector<double>> positions;  ///< of all bodies, after each step that is kept
+    double detection_ms = 0;
+    double energy_error = 0;  ///< the root of the mean square of twenty looks, over the energy at the beginning
+    /// How deep two balls are in each other at most, taken for spheres, in diameters, at twenty times.
+    std::vector<double> times, depths;
+};
+
+/// Balls that fall in a lattice on a floor, with whoever finds their contacts.
+class dropped_balls {
+public:
+    /// @param side balls on an edge of the lattice
+    /// @param diameter m
+    dropped_balls(std::size_t side, double diameter) : diameter_(diameter) {
+        // The last half of a diameter; what is before it has a closed form.
+        const double fallen = 4.5 * diameter;
+        world_ = dropped_world({.balls = static_cast<std::uint32_t>(side * side * side),
+                                .height = 0.5,
+                                .speed = std::sqrt(2 * 9.81 * fallen)},
+                               {make_mesh("square").mesh, ball_of(diameter)}, 1);
+    }
+
+    /// What takes so long for balls of 1 m, scaled to these, s.
+    [[nodiscard]] double seconds(double of_large_ones) const { return of_large_ones * std::sqrt(diameter_); }
+
+    /// Ends early where bodies come beyond all poses.
+    /// @param kept positions are kept of every so many-th step
+    /// @throws aabb::input_error where it ends before the first of its twenty looks.
+    [[nodiscard]] trajectory play(const contender& who, const integrator_info& stepping, double step, std::size_t kept,
+                                  bool with_energy) const {
+        trajectory t;
+        simulation balls(world_, who, stepping);
+        const double began = dynamics(world_).mechanical_energy(balls.state());
+        const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
+        std::vector<double> squares;
+        const std::size_t looks = std::max<std::size_t>(steps / 20, 1);
+        for (std::size_t s = 1; s <= steps; ++s) {
+            try {
+                balls.advance(step);
+            } catch (const aabb::input_error&) {
+                if (t.depths.empty()) throw;
+                break;
+            }
+            if (s % kept == 0) t.positions.push_back(balls.state().position);
+            if (s % looks != 0) continue;
+            t.times.push_back(balls.state().time);
+            t.depths.push_back(greatest_depth(balls.state().position));
+            if (with_energy) squares.push_back(std::pow(energy_of(balls) / began - 1, 2));
+        }
+        if (with_energy)
+            t.energy_error =
+                std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size()));
+        t.detection_ms = balls.detection_ms();
+        return t;
+    }
+
+    /// The greatest distance of a body from where it should be, in diameters, after each step that both kept; infinite
+    /// once it ended before the other.
+    [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& right) const {
+        std::vector<double> all;
+        for (std::size_t s = 0; s < std::min(t.positions.size(), right.positions.size()); ++s) {
+            double greatest = 0;
+            for (std::size_t i = 0; i < t.positions[s].size(); ++i)
+                greatest = std::max(greatest, std::abs(t.positions[s][i] - right.positions[s][i]) / diameter_);
+            all.push_back(greatest);
+        }
+        all.resize(right.positions.size(), std::numeric_limits<double>::infinity());
+        return all;
+    }
+
+private:
+    static constexpr double end = 0.48;  // s, of balls of 1 m
+
+    [[nodiscard]] static aabb::mesh ball_of(double diameter) {
+        aabb::mesh ball = make_mesh("icosphere:triangles=80").mesh;
+        for (aabb::vec3f& v : ball.vertices)
+            for (float& coordinate : v.at) coordinate = static_cast<float>(coordinate * diameter / 2);
+        return ball;
+    }
+
+    [[nodiscard]] double energy_of(simulation& balls) const {
+        double sum = dynamics(world_).mechanical_energy(balls.state());
+        std::vector<aabb::pose> poses;
+        world_.place(balls.state().position, poses);
+        const auto placed = [&](std::uint32_t body) {
+            return placed_mesh{&world_.meshes[world_.bodies[body].mesh], poses[body]};
+        };
+        const std::span<const aabb::contact> contacts = balls.contacts();
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            const auto& [a, b, s, t] = contacts[i];
+            if (i > 0 && contacts[i - 1].a == a && contacts[i - 1].b == b) continue;
+            sum += world_.law.stiffness * overlap_volume(placed(a), a == 0, placed(b));
+        }
+        return sum;
+    }
+
+    [[nodiscard]] double greatest_depth(const std::vector<double>& p) const {
+        double least = diameter_;
+        for (std::size_t i = 1; 3 * i < p.size(); ++i)
+            for (std::size_t j = i + 1; 3 * j < p.size(); ++j)
+                least = std::min(
+                    least, std::hypot(p[3 * i] - p[3 * j], p[3 * i + 1] - p[3 * j + 1], p[3 * i + 2] - p[3 * j + 2]));
+        return 1 - least / diameter_;
+    }
+
+    double diameter_;
+    stepped_world world_;
+};
+
 std::vector<method> all_methods() {
     std::vector<method> all = triangle_methods();
     std::erase_if(all, [](const method& m) { return m.label == "exact"; });  // what the others are held against
-    for (const auto& more : {tree_methods(), list_methods()}) std::ranges::copy(more, std::back_inserter(all));
+    std::ranges::move(tree_and_list_methods(), std::back_inserter(all));
     return all;
 }
 
 series depth_line(const std::string& label, const trajectory& t) {
-    series line{label, series_style::line, {}};
-    for (std::size_t i = 0; i < t.times.size(); ++i)
-        line.points.push_back({t.times[i], t.depths[i], t.depths[i], t.depths[i]});
+    series line{label};
+    for (std::size_t i = 0; i < t.times.size(); ++i) line.points.push_back({t.times[i], t.depths[i]});
     return line;
 }
 
@@ -53,18 +161,15 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
         .caption = "How far balls of " + size +
                    " are from where exact contacts take them, because of a triangle "
                    "test, an engine or a stale list; what never departs is not drawn, and of others no more than nine.",
-        .x = {"time (s)", false, {}},
-        .y = {"greatest distance over a ball's diameter", true, {}},
-        .lines = {},
-        .marks = {}};
+        .x = {"time (s)", false},
+        .y = {"greatest distance over a ball's diameter", true}};
     figure depth{.name = "depth_" + file,
                  .caption = "How deep balls of " + size +
                             " are in each other at most, with exact contacts and with those "
                             "of the methods that depart.",
-                 .x = {"time (s)", false, {}},
-                 .y = {"greatest depth over a ball's diameter", false, {}},
-                 .lines = {depth_line("exact", right)},
-                 .marks = {}};
+                 .x = {"time (s)", false},
+                 .y = {"greatest depth over a ball's diameter", false},
+                 .lines = {depth_line("exact", right)}};
     const std::vector<method> all = all_methods();
     const std::vector<trajectory> played = played_by(all, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
@@ -75,24 +180,22 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
         const std::string subject = all[m].label + ", " + size;
         const double greatest = std::ranges::max(far);
         if (all[m].who.exact && all[m].who.exact_boxes) {
-            result.rows.push_back(at_most(subject, "greatest departure (diameters)", greatest, 0));
+            result.add(at_most(subject, "greatest departure (diameters)", greatest, 0));
             continue;
         }
-        result.rows.push_back(told(subject, "greatest departure (diameters)", greatest));
+        result.add(told(subject, "greatest departure (diameters)", greatest));
         if (first == far.end()) continue;
-        result.rows.push_back(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
-        result.rows.push_back(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
-        result.rows.push_back(told(subject, "energy error, RMS", t.energy_error));
+        result.add(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
+        result.add(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
+        result.add(told(subject, "energy error, RMS", t.energy_error));
         if (plot.lines.size() == most_drawn) continue;
-        series line{all[m].label, series_style::line, {}};
-        for (std::size_t s = 0; s < far.size(); ++s)
-            line.points.push_back({step * static_cast<double>(s + 1), far[s], far[s], far[s]});
+        series line{all[m].label};
+        for (std::size_t s = 0; s < far.size(); ++s) line.points.push_back({step * static_cast<double>(s + 1), far[s]});
         plot.lines.push_back(std::move(line));
         depth.lines.push_back(depth_line(all[m].label, t));
     }
-    result.rows.push_back(
-        told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(right.depths)));
-    result.rows.push_back(told("exact, " + size, "energy error, RMS", right.energy_error));
+    result.add(told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(right.depths)));
+    result.add(told("exact, " + size, "energy error, RMS", right.energy_error));
     if (plot.lines.empty()) return;
     result.figures.push_back(std::move(plot));
     result.figures.push_back(std::move(depth));
@@ -104,10 +207,8 @@ void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_
                 .caption =
                     "Error of a trajectory over the time that detection takes for it: each integrator over its "
                     "step, and a stale list over the frames from search to search, with steps of 1 ms.",
-                .x = {"detection (ms)", true, {}},
-                .y = {"greatest distance from the right place (diameters)", true, {}},
-                .lines = {},
-                .marks = {}};
+                .x = {"detection (ms)", true},
+                .y = {"greatest distance from the right place (diameters)", true}};
     const std::vector<double> all = setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
     const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(all.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
@@ -116,29 +217,28 @@ void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, right).back(); };
     for (const integrator_info& i : integrators()) {
         if (i.adaptive || i.order == 5) continue;
-        series line{std::string(i.name), series_style::line, {}};
+        series line{std::string(i.name)};
         std::vector<double> energy_errors;
         for (const double dt : all) {
             const trajectory t = balls.play(setting.who, i, dt, kept(dt), true);
             const double error = error_of(t);
-            line.points.push_back({t.detection_ms, error, error, error});
+            line.points.push_back({t.detection_ms, error});
             const std::string subject = std::string(i.name) + ", " + short_number(dt) + " s";
-            result.rows.push_back(told(subject, "trajectory error at the end (diameters)", error));
-            result.rows.push_back(told(subject, "energy error, RMS", t.energy_error));
+            result.add(told(subject, "trajectory error at the end (diameters)", error));
+            result.add(told(subject, "energy error, RMS", t.energy_error));
             energy_errors.push_back(t.energy_error);
         }
         cost.lines.push_back(std::move(line));
         // Each step is half of the one before.
         const double order =
             std::log2(energy_errors.front() / energy_errors.back()) / static_cast<double>(all.size() - 1);
-        result.rows.push_back(at_least(std::string(i.name), "order of the energy error", order, i.order - 0.3));
+        result.add(at_least(std::string(i.name), "order of the energy error", order, i.order - 0.3));
     }
-    series stale{"velocity_verlet, neighbour_list:margin=0", series_style::line, {}};
+    series stale{"velocity_verlet, neighbour_list:margin=0"};
     for (const char* const every : {"8", "16", "32", "64"}) {
         const method m = composed(std::string("prepare neighbour_list:margin=0,every=") + every);
         const trajectory t = balls.play(m.who, verlet, 1e-3, kept(1e-3), false);
-        const double error = error_of(t);
-        stale.points.push_back({t.detection_ms, error, error, error});
+        stale.points.push_back({t.detection_ms, error_of(t)});
     }
     cost.lines.push_back(std::move(stale));
     result.figures.push_back(std::move(cost));
@@ -152,8 +252,8 @@ stiff_result play_dropped(const stiff_setting& setting) {
     const dropped_balls balls(side, 1);
     hold_steps(balls, setting, result);
     // The mean of the squared error over their run, J², of 34,454 J.
-    result.rows.push_back(told("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
-    result.rows.push_back(
+    result.add(told("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
+    result.add(
         told("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
     hold_methods(balls, "1_m", "1 m", setting, result);
     hold_methods(dropped_balls(side, 0.01), "10_mm", "10 mm", setting, result);

@@ -1,10 +1,8 @@
 module aabblab.stiff;
 
 import :ball_world;
-import :oscillator;
 import :rules;
 import :simulation;
-import aabblab.stepping;
 
 namespace aabblab {
 
@@ -40,18 +38,16 @@ stiff_result play_overdamped(const stiff_setting& setting) {
                 simulation ball(world, setting.who, i, 1e-6 * gravity / k);
                 const double sinking = 1 / (frequency * (damping - std::sqrt(damping * damping - 1)));
                 ball.advance(sinking);
-                result.rows.push_back(within(subject, "depth while it sinks over depth at rest",
-                                             depth_of_ball(ball.state()) * k / gravity,
-                                             share_of_rest(frequency, sinking), 1e-3));
+                result.add(within(subject, "depth while it sinks over depth at rest",
+                                  depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, sinking), 1e-3));
                 while (ball.state().time < end * (1 - 1e-9)) ball.advance(std::min(end / 20, end - ball.state().time));
-                result.rows.push_back(within(subject, "depth after 1 s over depth at rest",
-                                             depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, end),
-                                             1e-3));
+                result.add(within(subject, "depth after 1 s over depth at rest",
+                                  depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, end), 1e-3));
                 const auto detections = static_cast<double>(ball.detections());
                 if (i.name == "bdf")
-                    result.rows.push_back(at_most(subject, "detections", detections, 2000));
+                    result.add(at_most(subject, "detections", detections, 2000));
                 else
-                    result.rows.push_back(told(subject, "detections", detections));
+                    result.add(told(subject, "detections", detections));
             });
         }
     }

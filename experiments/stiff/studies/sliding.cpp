@@ -3,9 +3,7 @@ module aabblab.stiff;
 import :method;
 import :rules;
 import :shapes;
-import aabb.geometry;
 import aabb.pipeline;
-import aabblab.figures;
 import aabblab.stepping;
 
 namespace aabblab {
@@ -111,10 +109,9 @@ stiff_result play_sliding(const stiff_setting& setting) {
                 .caption =
                     "The force between two meshes of 10 mm that slide along each other, oblique and pressed by a "
                     "100,000th, over the one that 64 teeth share; what keeps it is not drawn.",
-                .x = {"way over size", false, {}},
-                .y = {"force over the right one", false, {}},
-                .lines = {{"exact", series_style::level, {{0, 1, 1, 1}}}},
-                .marks = {}};
+                .x = {"way over size", false},
+                .y = {"force over the right one", false},
+                .lines = {{"exact", series_style::level, {{0, 1}}}}};
     const std::vector<method> methods = triangle_methods();
     std::size_t done = 0;
     for (const lie& l : lies)
@@ -127,20 +124,17 @@ stiff_result play_sliding(const stiff_setting& setting) {
             const double greatest = std::ranges::max(forces);
             if (l.pressed < 0) {
                 const std::string quantity = "greatest force before they touch";
-                result.rows.push_back(m.who.exact ? at_most(subject, quantity, greatest, 0)
-                                                  : told(subject, quantity, greatest));
+                result.add(m.who.exact ? at_most(subject, quantity, greatest, 0) : told(subject, quantity, greatest));
                 continue;
             }
             const std::string jumps = "greatest jump of the force";
             const std::string lost = "least force";
-            result.rows.push_back(m.who.exact ? at_most(subject, jumps, jump, 1e-3) : told(subject, jumps, jump));
-            result.rows.push_back(m.who.exact ? within(subject, lost, least, 1, 1e-3) : told(subject, lost, least));
+            result.add(m.who.exact ? at_most(subject, jumps, jump, 1e-3) : told(subject, jumps, jump));
+            result.add(m.who.exact ? within(subject, lost, least, 1, 1e-3) : told(subject, lost, least));
             if (l.size == 0.01 && least < 0.999 && plot.lines.size() < 10) {
-                series line{m.label, series_style::line, {}};
-                for (int i = 0; i < positions; ++i) {
-                    const double f = forces[static_cast<std::size_t>(i)];
-                    line.points.push_back({way * i, f, f, f});
-                }
+                series line{m.label};
+                for (int i = 0; i < positions; ++i)
+                    line.points.push_back({way * i, forces[static_cast<std::size_t>(i)]});
                 plot.lines.push_back(std::move(line));
             }
         }

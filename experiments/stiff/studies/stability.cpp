@@ -6,8 +6,6 @@ module aabblab.stiff;
 import :ball_world;
 import :rules;
 import :simulation;
-import aabblab.figures;
-import aabblab.stepping;
 
 namespace aabblab {
 
@@ -103,29 +101,28 @@ stiff_result play_stability(const stiff_setting& setting) {
                 .caption = "Relative drift of a ball's energy over " + std::to_string(periods) +
                            " periods in contact, without sign, over the step; marked are the usual advice and the "
                            "steps from which on an oscillation grows.",
-                .x = {"step times angular frequency", true, {}},
-                .y = {"relative energy drift", true, {}},
-                .lines = {},
+                .x = {"step times angular frequency", true},
+                .y = {"relative energy drift", true},
                 .marks = {{0.157, "5 %"}, {0.314, "10 % of the contact time"}}};
     for (const integrator_info& i : integrators()) {
-        series line{std::string(i.name), series_style::line, {}};
+        series line{std::string(i.name)};
         std::vector<double> steps = {0.05, 0.1, 0.157, 0.314, 0.8};
         if (!i.adaptive && i.stable_below > 1.5) steps.insert(steps.end(), {1.6, 1.9});
         unless_it_gives_up(result, i.name, [&] {
             for (const double scaled : steps) {
                 const double drift = drift_of(setting.who, i, scaled, periods, 1e-6 * at_rest / 100);
-                line.points.push_back({scaled, std::abs(drift), std::abs(drift), std::abs(drift)});
+                line.points.push_back({scaled, std::abs(drift)});
                 const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled);
                 if (i.adaptive) {
-                    result.rows.push_back(told(subject, "energy drift", drift));
+                    result.add(told(subject, "energy drift", drift));
                 } else if (i.order < 5) {
-                    result.rows.push_back(
+                    result.add(
                         at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
                     const double lost = std::pow(kept_by_dormand_prince(scaled),
                                                  0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled) -
                                         1;
-                    result.rows.push_back(within(subject, "energy drift", drift, lost, 0.01));
+                    result.add(within(subject, "energy drift", drift, lost, 0.01));
                 }
             }
         });
@@ -133,7 +130,7 @@ stiff_result play_stability(const stiff_setting& setting) {
         if (i.adaptive) continue;
         unless_it_gives_up(result, i.name, [&] {
             const double limit = limit_of(setting.who, i);
-            result.rows.push_back(within(std::string(i.name), "greatest stable dt·ω", limit, i.stable_below, 0.005));
+            result.add(within(std::string(i.name), "greatest stable dt·ω", limit, i.stable_below, 0.005));
             if (i.order > 1) plot.marks.push_back({limit, std::string(i.name) + " " + short_number(limit)});
         });
     }

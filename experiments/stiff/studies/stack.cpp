@@ -3,7 +3,6 @@ module aabblab.stiff;
 import :rules;
 import :shapes;
 import :simulation;
-import aabblab.stepping;
 
 namespace aabblab {
 
@@ -66,10 +65,9 @@ stiff_result play_stack(const stiff_setting& setting) {
                     worst = std::max(worst, std::abs(depth_of(stack.state(), b) * stiffness / (above * gravity) - 1));
                 }
                 const std::string subject = std::string(i.name) + ", masses 1 to " + short_number(ratio) + " kg";
-                result.rows.push_back(
-                    within(subject, "greatest depth (m)", greatest, above * gravity / stiffness, 0.01));
-                result.rows.push_back(at_most(subject, "error of a depth at rest over mg/k", worst, 1e-3));
-                result.rows.push_back(told(subject, "detections", static_cast<double>(stack.detections())));
+                result.add(within(subject, "greatest depth (m)", greatest, above * gravity / stiffness, 0.01));
+                result.add(at_most(subject, "error of a depth at rest over mg/k", worst, 1e-3));
+                result.add(told(subject, "detections", static_cast<double>(stack.detections())));
             });
         }
     }

@@ -1,5 +1,4 @@
-/// JSON that anybody may have written or altered: each member is asked for by its type, and one of another type gets
-/// one sentence with the file and the way to it.
+/// JSON that anybody may have written: members are asked for by type, and one of another is refused by its place.
 export module aabblab.json;
 
 import aabb.std;
@@ -32,14 +31,10 @@ public:
 
     // The same, empty where there is no such member.
     [[nodiscard]] std::optional<json_value> member(const std::string& key) const;
-    [[nodiscard]] std::optional<std::string> text(const std::string& key) const {
-        return typed(key, &json_value::text);
-    }
-    [[nodiscard]] std::optional<double> number(const std::string& key) const { return typed(key, &json_value::number); }
-    [[nodiscard]] std::optional<std::size_t> index(const std::string& key) const {
-        return typed(key, &json_value::index);
-    }
-    [[nodiscard]] std::optional<bool> flag(const std::string& key) const { return typed(key, &json_value::flag); }
+    [[nodiscard]] std::optional<std::string> text(const std::string& key) const { return as(key, &json_value::text); }
+    [[nodiscard]] std::optional<double> number(const std::string& key) const { return as(key, &json_value::number); }
+    [[nodiscard]] std::optional<std::size_t> index(const std::string& key) const { return as(key, &json_value::index); }
+    [[nodiscard]] std::optional<bool> flag(const std::string& key) const { return as(key, &json_value::flag); }
     [[nodiscard]] std::vector<json_value> objects(const std::string& key) const;
     [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;
     [[nodiscard]] std::vector<std::size_t> indices(const std::string& key) const;
@@ -61,9 +56,9 @@ private:
     void read_numbers(double* to, std::size_t count) const;
 
     template <class T>
-    [[nodiscard]] std::optional<T> typed(const std::string& key, T (json_value::*as)() const) const {
+    [[nodiscard]] std::optional<T> as(const std::string& key, T (json_value::*type)() const) const {
         const auto found = member(key);
-        return found ? std::optional<T>((*found.*as)()) : std::nullopt;
+        return found ? std::optional<T>((*found.*type)()) : std::nullopt;
     }
 
     std::shared_ptr<const document> in_;

@@ -1,7 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.markup;
+
+import aabblab.fmt;
 
 namespace aabblab {
 

@@ -1,7 +1,6 @@
-module;
-#include <fmt/format.h>
-
 module aabblab.numbers;
+
+import aabblab.fmt;
 
 namespace aabblab {
 
@@ -21,6 +20,14 @@ std::string three_digits(double value) {
     const double rounded = std::strtod(fmt::format("{:.2e}", value).c_str(), nullptr);
     const int before_point = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + 1;
     return fmt::format("{:.{}f}", value, std::clamp(3 - before_point, 0, 6));
+}
+
+std::string fifteen_digits(double value) {
+    return fmt::format("{:.15g}", value);
+}
+
+double whole_nanoseconds(double ms) {
+    return std::round(ms * 1e6) / 1e6;
 }
 
 }  // namespace aabblab

@@ -1,5 +1,4 @@
 module;
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -9,6 +8,8 @@ module;
 module aabblab.output;
 
 import aabb.base;
+import aabblab.fmt;
+import aabblab.text;
 
 namespace aabblab {
 
@@ -46,12 +47,6 @@ std::optional<std::size_t> width_of_terminal(int stream) {
     winsize window{};
     if (ioctl(stream, TIOCGWINSZ, &window) != 0 || window.ws_col == 0) return std::nullopt;
     return std::max<std::size_t>(window.ws_col, least_width);
-}
-
-/// In characters, not bytes.
-std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
 }
 
 std::string made_visible(std::string_view text, bool keep_lines) {
@@ -103,10 +98,10 @@ std::string wrapped(std::string_view text, std::size_t most) {
     for (std::size_t from = 0; from < text.size();) {
         const std::size_t to = std::min(text.find(' ', from), text.size());
         const std::string_view word = text.substr(from, to - from);
-        const std::size_t with_word = width + 1 + width_of(word);
+        const std::size_t with_word = width + 1 + characters(word);
         const bool fits = with_word <= most;
         if (width > 0) lines += fits ? " " : "\n";
-        width = width > 0 && fits ? with_word : width_of(word);
+        width = width > 0 && fits ? with_word : characters(word);
         lines += word;
         from = to + 1;
     }
@@ -118,7 +113,7 @@ void print_paragraph(std::string_view text) {
 }
 
 std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
-    const std::size_t indent = width_of(before);
+    const std::size_t indent = characters(before);
     const std::string lines = wrapped(text, most > indent ? most - indent : 0);
     std::string all(before);
     for (const char c : lines) {
@@ -131,7 +126,7 @@ std::string hanging(std::string_view before, std::string_view text, std::size_t 
 std::string entry(std::string_view name, std::string_view text) {
     const std::size_t column = std::min<std::size_t>(30, output_width() / 2);
     const std::string pad(column, ' ');
-    const std::size_t width = width_of(name);
+    const std::size_t width = characters(name);
     if (text.empty()) return std::string(name) + "\n";
     if (width >= column) return std::string(name) + "\n" + hanging(pad, text) + "\n";
     return hanging(std::string(name) + pad.substr(width), text) + "\n";

@@ -30,7 +30,6 @@ void flush_output();
 /// The text in lines of at most so many characters, as far as no word is longer.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t most = paragraph_width());
 
-/// Prints it so.
 void print_paragraph(std::string_view text);
 
 /// The same behind what stands before its first line; further lines are indented as far.
@@ -39,8 +38,7 @@ void print_paragraph(std::string_view text);
 /// A line of a list, with its end: a name, and in a second column what is said of it, below a name that is too long.
 [[nodiscard]] std::string entry(std::string_view name, std::string_view text);
 
-/// For commands whose work is not what they print: from now on, when whoever read standard output has gone, what is
-/// printed is lost and the work goes on.
+/// For commands whose work is not what they print: once the reader of standard output has gone, only the work goes on.
 void outlive_reader();
 
 /// A note for the user, on standard error: one line, made visible; on a terminal, lines that fit it.

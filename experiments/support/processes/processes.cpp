@@ -14,6 +14,9 @@ extern "C" {
 
 module aabblab.processes;
 
+import aabb.base;
+import aabblab.output;
+
 namespace aabblab {
 
 namespace {
@@ -85,8 +88,7 @@ void kill_descendants() {
 }
 
 /// Goes on in a new process, which is to become the program, and waits until that one ends, or TERM comes, as it does
-/// when the parent ends. Then it kills all that was started, whatever sessions that went to, and ends as the program
-/// did.
+/// when the parent ends. Then it kills all that was started, in whatever session, and ends as the program did.
 /// @returns in the new process; false where there can be none
 [[nodiscard]] bool keep(int output, int refusal, pid_t parent) {
     sigset_t awaited;
@@ -166,7 +168,6 @@ std::string read_all(int input, const std::optional<clock::time_point>& end = {}
     }
 }
 
-/// Whether a child ends before that time.
 bool ends_before(pid_t child, clock::time_point end) {
     const int handle = pidfd_open(child, 0);
     // Without a handle nobody tells.
@@ -213,6 +214,38 @@ child_result run_child(const std::string& program, const std::vector<std::string
     if (result.timed_out) kill(child, where.kept ? SIGTERM : SIGKILL);
     while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
     return result;
+}
+
+ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                         const std::filesystem::path& log) {
+    flush_output();
+    const child_result ended = run_child(program.string(), arguments, {.folder = {}, .input = {}, .errors = log});
+    if (ended.refused != 0)
+        throw aabb::input_error(program.string() + " cannot be started: " + std::strerror(ended.refused));
+    const int status = ended.status;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) > 1)
+        throw aabb::input_error(program.filename().string() +
+                                (WIFEXITED(status) ? " ended with status " + std::to_string(WEXITSTATUS(status))
+                                                   : " was ended by signal " + std::to_string(WTERMSIG(status))) +
+                                (log.empty() ? "" : ", see " + log.string()) +
+                                "; what is finished is kept, and the same command continues");
+    ended_process result{WEXITSTATUS(status), {}};
+    std::istringstream printed(ended.printed);
+    for (std::string line; std::getline(printed, line);) result.lines.push_back(line);
+    return result;
+}
+
+std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments) {
+    // Not by its name, which may be another build's by now.
+    ended_process ended = run_to_end("/proc/self/exe", arguments, {});
+    if (ended.status != 0 && ended.lines.empty())
+        throw aabb::input_error("a process of " + arguments[1] +
+                                " failed; what is finished is kept, and the same command continues");
+    return std::move(ended.lines);
+}
+
+std::filesystem::path own_folder() {
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
 folder_guard::folder_guard(std::filesystem::path folder) : folder_(std::move(folder)) {

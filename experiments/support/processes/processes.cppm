@@ -14,7 +14,6 @@ struct surroundings {
     std::chrono::seconds timeout{0};  ///< after which it is killed; 0: never
 };
 
-/// What a program left.
 struct child_result {
     int refused;     ///< errno where it could not be started, otherwise 0
     int status;      ///< of waitpid
@@ -22,8 +21,7 @@ struct child_result {
     std::string printed;
 };
 
-/// Runs a program to its end. It does not outlive the thread that calls this, however that ends, nor does anything that
-/// it starts where it is kept.
+/// Runs a program to its end. It does not outlive the calling thread, however that ends, nor, if kept, what it starts.
 /// @param program a path, or a name without slashes to be looked up in PATH
 [[nodiscard]] child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                      const surroundings& where);
@@ -44,7 +42,6 @@ struct ended_process {
 /// @throws aabb::input_error also where it ends with 1 and has not said why.
 [[nodiscard]] std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments);
 
-/// The folder of this program.
 [[nodiscard]] std::filesystem::path own_folder();
 
 /// A folder that is removed with this, and with this process, by whatever signal it ends.

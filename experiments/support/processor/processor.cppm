@@ -16,8 +16,7 @@ public:
     ~idlest_processor();
 
     /// Calls `work` while this thread, and threads that it starts, may run wherever this one might before.
-    template <class Work>
-    void without(Work&& work) const {
+    void without(auto&& work) const {
         leave();
         work();
         stay();

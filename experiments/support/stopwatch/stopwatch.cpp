@@ -17,8 +17,7 @@ double wall_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// By how much a clock moves at once, or from one reading to the next. The least of some, for who is interrupted misses
-/// steps; short enough is enough.
+/// By how much a clock moves at once, the least of some, for who is interrupted misses steps; short enough is enough.
 double step_of(double (*clock)()) {
     double step = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10 && step > longest_step_ms; ++i) {

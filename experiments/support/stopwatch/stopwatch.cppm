@@ -10,8 +10,7 @@ export namespace aabblab {
 void require_fine_clock();
 
 /// Wall time of one call, in milliseconds.
-template <class Work>
-[[nodiscard]] double milliseconds_of(Work&& work) {
+[[nodiscard]] double milliseconds_of(auto&& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -35,8 +34,7 @@ struct elapsed {
 [[nodiscard]] double empty_cpu_ms();
 
 /// Wall time and processor time of one call. The wall clock is read inside, where it costs nothing to speak of.
-template <class Work>
-[[nodiscard]] elapsed elapsed_in(Work&& work) {
+[[nodiscard]] elapsed elapsed_in(auto&& work) {
     const double start = thread_cpu_ms();
     const double wall = milliseconds_of(work);
     const double cpu = thread_cpu_ms() - start - empty_cpu_ms();

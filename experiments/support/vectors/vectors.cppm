@@ -1,10 +1,9 @@
 module;
 #include <Eigen/Core>
 
-/// What scenes and bodies do with Eigen's vectors beside adding and scaling them, which is done for each component by
-/// itself. Sums are taken from left to right, while the order of Eigen's follows from the processor. A vector stands
-/// before the number that scales it: where several module files bring Eigen along, clang 19 emits no friends of its
-/// templates, and linking fails.
+/// What is done with Eigen's vectors beside adding and scaling them, which is done by components. Sums are taken from
+/// left to right, while the order of Eigen's follows from the processor. A vector stands before the number that scales
+/// it: where several module files bring Eigen along, clang 19 emits no friends of its templates, and linking fails.
 export module aabblab.vectors;
 
 import aabb.geometry;

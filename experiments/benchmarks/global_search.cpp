@@ -1,0 +1,306 @@
+#include <benchmark/benchmark.h>
+
+#include "stages.hpp"
+
+import aabb.columns;
+import aabb.std;
+import aabb.strategies;
+import aabblab.cases;
+import aabblab.stopwatch;
+
+namespace aabblab {
+
+namespace {
+
+template <class Run>
+auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std::uint32_t objects,
+               std::string_view displacement, const Run& run) {
+    return benchmark::RegisterBenchmark(case_name(stage, choice, objects, displacement).c_str(), run)
+        ->Unit(benchmark::kMicrosecond);
+}
+
+// Sorts.
+
+using list_of_frame = std::vector<aabb::projection>;
+
+/// The list of one axis for several frames: each with the keys of its frame in the order of the frame before. So many
+/// that the processor does not learn their comparisons by heart.
+std::vector<list_of_frame> play_lists(std::uint32_t objects, std::string_view displacement) {
+    constexpr std::uint32_t frames = 16;
+    constexpr int axis = 0;
+    const auto scene = drifting_boxes(objects, frames, displacement);
+    std::vector<aabb::box> boxes;
+    scene->next(boxes);
+    list_of_frame list = sorted_list(boxes, axis);
+    std::vector<list_of_frame> lists;
+    while (scene->next(boxes)) {
+        for (aabb::projection& p : list) p.key = boxes[p.id].min[axis];
+        lists.push_back(list);
+        std::ranges::sort(list, aabb::precedes);
+    }
+    return lists;
+}
+
+/// Kept for all sorts, and since a benchmark is called several times before its time is taken.
+const std::vector<list_of_frame>& lists_of(std::uint32_t objects, std::string_view displacement) {
+    static std::map<std::pair<std::uint32_t, std::string_view>, std::vector<list_of_frame>> known;
+    std::vector<list_of_frame>& lists = known[{objects, displacement}];
+    if (lists.empty()) lists = play_lists(objects, displacement);
+    return lists;
+}
+
+template <class Sort>
+void count_work(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
+    aabb::work_counters counted;
+    aabb::inversion_counter inversions;
+    list_of_frame sorted;
+    for (const list_of_frame& list : lists) {
+        counted.add(aabb::work::inversions, inversions.count(list));
+        sorted = list;
+        sort.sort(std::span(sorted), counted);
+    }
+    const auto elements = static_cast<double>(lists.size() * lists.front().size());
+    const auto per_element = [&](aabb::work what) { return static_cast<double>(counted[what]) / elements; };
+    state.counters["inversions/n"] = per_element(aabb::work::inversions);
+    state.counters["comparisons/n"] = per_element(aabb::work::comparisons);
+    // A sort that moves entries out of sight counts no moves.
+    if (counted[aabb::work::moves] > 0) state.counters["moves/n"] = per_element(aabb::work::moves);
+}
+
+template <class Sort>
+void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
+    aabb::no_counters none;
+    list_of_frame list;
+    std::size_t next = 0;
+    for (auto _ : state) {
+        list = lists[next];
+        next = (next + 1) % lists.size();
+        benchmark::DoNotOptimize(list.data());
+        state.SetIterationTime(milliseconds_of([&] {
+                                   sort.sort(std::span(list), none);
+                                   benchmark::ClobberMemory();
+                               }) /
+                               1000);
+    }
+}
+
+// Partitions.
+
+constexpr aabb::axis_set swept = 0b001;
+
+template <class Partition>
+void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
+    const sorted_frame frame(objects);
+    const aabb::axis_set cut = partition.axes(frame.boxes(), frame.objects(), swept);
+    const aabb::whole_subset all = frame.with_lists(cut | swept);
+    aabb::subset_lists subsets;
+    aabb::no_counters none;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(partition.axes(frame.boxes(), frame.objects(), swept));
+        partition.fit(all);
+        subsets.distribute(partition, all, swept, none);
+        benchmark::ClobberMemory();
+    }
+    aabb::work_counters counted;
+    subsets.distribute(partition, all, swept, counted);
+    state.counters["copies/n"] = static_cast<double>(counted[aabb::work::subset_copies]) / objects;
+    state.counters["subsets"] = subsets.size();
+    if constexpr (aabb::SegmentingPartition<Partition>) {
+        state.counters["segments_wanted"] = static_cast<double>(partition.segments().wanted);
+        state.counters["segments_got"] = static_cast<double>(partition.segments().got);
+    }
+    state.counters["bytes"] = static_cast<double>(aabb::bytes_of(partition) + subsets.bytes());
+}
+
+/// A partition that cuts first brings boxes to columns bucket by bucket.
+template <class Partition>
+void time_column_search(benchmark::State& state, Partition partition, std::uint32_t objects) {
+    const sorted_frame frame(objects);
+    aabb::column_search<aabb::bucket_sort, Partition, aabb::simd_sweep, aabb::work_counters> counted({}, partition, {});
+    aabb::column_search<aabb::bucket_sort, Partition, aabb::simd_sweep, aabb::no_counters> search({}, partition, {});
+    aabb::work_counters work;
+    aabb::no_counters none;
+    counted.update(frame.boxes(), frame.objects(), work);
+    for (auto _ : state) {
+        search.update(frame.boxes(), frame.objects(), none);
+        benchmark::ClobberMemory();
+    }
+    state.counters["copies/n"] = static_cast<double>(work[aabb::work::subset_copies]) / objects;
+    state.counters["subsets"] = static_cast<double>(work[aabb::work::subsets]);
+    state.counters["bytes"] = static_cast<double>(search.partition_bytes());
+}
+
+// Sweeps.
+
+void report(benchmark::State& state, const aabb::work_counters& counted, std::size_t pairs, double objects) {
+    state.counters["box_tests/n"] = static_cast<double>(counted[aabb::work::box_tests]) / objects;
+    state.counters["pairs/n"] = static_cast<double>(pairs) / objects;
+}
+
+template <aabb::ListSweep Sweep>
+[[nodiscard]] aabb::axis_set swept_axes(Sweep& sweep, const sorted_frame& frame) {
+    return sweep.axes(frame.boxes(), frame.objects());
+}
+
+/// A sweep over several lists may walk every pair that overlaps on any of them, and all_axes does so for each block of
+/// its bits: with the largest scene that is no micro-benchmark.
+template <aabb::ListSweep Sweep>
+[[nodiscard]] bool takes_one_list(const aabb::strategy_choice& choice) {
+    Sweep sweep = made<Sweep>(choice);
+    return std::popcount(swept_axes(sweep, sorted_frame(sizes.front()))) == 1;
+}
+
+template <aabb::ListSweep Sweep>
+void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
+    const sorted_frame frame(objects);
+    const aabb::whole_subset all = frame.with_lists(swept_axes(sweep, frame));
+    std::vector<aabb::index_pair> pairs;
+    aabb::work_counters counted;
+    sweep.sweep(all, pairs, counted);  // which grows the buffers too
+    report(state, counted, pairs.size(), objects);
+    aabb::no_counters none;
+    for (auto _ : state) {
+        pairs.clear();
+        sweep.sweep(all, pairs, none);
+        benchmark::DoNotOptimize(pairs.data());
+        benchmark::ClobberMemory();
+    }
+}
+
+/// Over the columns of a whole frame, cut and filled before.
+template <aabb::ColumnSweep Sweep>
+void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
+    const sorted_frame frame(objects);
+    aabb::column_lists columns;
+    aabb::bucket_sort sort;
+    aabb::no_counters none;
+    constexpr auto any_number = std::numeric_limits<std::uint64_t>::max();
+    const aabb::column_plan plan = aabb::columns_partition().plan(frame.boxes(), aabb::everywhere);
+    if (columns.fill(frame.boxes(), {}, plan, false, any_number, sort, none) != aabb::fill_result::whole)
+        throw std::logic_error("the scene has a box that is not valid");
+    std::vector<aabb::index_pair> pairs;
+    aabb::work_counters counted;
+    sweep.sweep(columns.block(), pairs, any_number, counted);
+    report(state, counted, pairs.size(), objects);
+    for (auto _ : state) {
+        pairs.clear();
+        benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, any_number, none));
+        benchmark::ClobberMemory();
+    }
+}
+
+template <aabb::CoherentSweep Sweep, class Sort, class... Sorts>
+[[nodiscard]] auto sort_for(aabb::type_list<Sort, Sorts...>) {
+    if constexpr (aabb::refusal<Sort, Sweep>().empty())
+        return Sort{};
+    else
+        return sort_for<Sweep>(aabb::type_list<Sorts...>{});
+}
+
+/// Plays frames forth and back, so that a step is always one frame long, however often.
+template <aabb::CoherentSweep Sweep>
+class moving_sweep {
+public:
+    moving_sweep(Sweep sweep, std::span<const std::vector<aabb::box>> frames)
+        : sweep_(std::move(sweep)), frames_(frames) {
+        for (std::uint32_t id = 0; id < frames_[0].size(); ++id) objects_.insert(id);
+        aabb::no_counters none;
+        sweep_.update(frames_[0], objects_, sort_, none);
+        objects_.settle();
+    }
+
+    /// Until it is back at the first frame.
+    [[nodiscard]] std::size_t period() const noexcept { return 2 * (frames_.size() - 1); }
+
+    template <aabb::CounterPolicy Counters>
+    void step(std::vector<aabb::index_pair>& pairs, Counters& counters) {
+        step_ = (step_ + 1) % period();
+        sweep_.update(frames_[std::min(step_, period() - step_)], objects_, sort_, counters);
+        sweep_.search(pairs);
+    }
+
+private:
+    Sweep sweep_;
+    decltype(sort_for<Sweep>(aabb::sorts{})) sort_;
+    std::span<const std::vector<aabb::box>> frames_;
+    aabb::membership objects_;
+    std::size_t step_ = 0;
+};
+
+template <aabb::CoherentSweep Sweep>
+void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std::string_view displacement) {
+    constexpr std::uint32_t last_frame = 16;
+    const auto scene = drifting_boxes(objects, last_frame, displacement);
+    std::vector<std::vector<aabb::box>> frames(scene->frames());
+    for (auto& boxes : frames) scene->next(boxes);
+    moving_sweep<Sweep> moving(std::move(sweep), frames);
+    std::vector<aabb::index_pair> pairs;
+    aabb::work_counters counted;
+    for (std::size_t i = 0; i < moving.period(); ++i) moving.step(pairs, counted);  // which grows the buffers too
+    report(state, counted, pairs.size(), static_cast<double>(objects * moving.period()));
+    aabb::no_counters none;
+    for (auto _ : state) {
+        pairs.clear();
+        moving.step(pairs, none);
+        benchmark::DoNotOptimize(pairs.data());
+        benchmark::ClobberMemory();
+    }
+}
+
+template <aabb::ListSweep Sweep>
+void add(const aabb::strategy_choice& choice) {
+    const std::size_t cases = takes_one_list<Sweep>(choice) ? sizes.size() : sizes.size() - 1;
+    for (const std::uint32_t objects : std::span(sizes).first(cases))
+        add_case("sweep", choice, objects, {},
+                 [=](benchmark::State& state) { time_sweep(state, made<Sweep>(choice), objects); });
+    if constexpr (aabb::ColumnSweep<Sweep>)
+        for (const std::uint32_t objects : sizes)
+            add_case("sweep_columns", choice, objects, {},
+                     [=](benchmark::State& state) { time_columns(state, made<Sweep>(choice), objects); });
+}
+
+template <aabb::CoherentSweep Sweep>
+void add(const aabb::strategy_choice& choice) {
+    for (const std::uint32_t objects : std::span(sizes).first(sizes.size() - 1))
+        for (const std::string_view displacement : displacements)
+            add_case("sweep", choice, objects, displacement,
+                     [=](benchmark::State& state) { time_steps(state, made<Sweep>(choice), objects, displacement); });
+}
+
+}  // namespace
+
+void add_sort_benchmarks() {
+    for_each_strategy(aabb::sorts{}, []<class Sort>(aabb::type_list<Sort>) {
+        for (const aabb::strategy_choice& choice : choices_of<Sort>())
+            for (const std::uint32_t objects : sizes)
+                for (const std::string_view displacement : displacements)
+                    add_case("sort", choice, objects, displacement, [=](benchmark::State& state) {
+                        const auto& lists = lists_of(objects, displacement);
+                        time_sort(state, made<Sort>(choice), lists);
+                        count_work(state, made<Sort>(choice), lists);
+                    })->UseManualTime();
+    });
+}
+
+void add_partition_benchmarks() {
+    for_each_strategy(aabb::partitions{}, []<class Partition>(aabb::type_list<Partition>) {
+        for (const aabb::strategy_choice& choice : choices_of<Partition>())
+            for (const std::uint32_t objects : sizes) {
+                if constexpr (aabb::ColumnPartition<Partition>)
+                    add_case("partition", choice, objects, {}, [=](benchmark::State& state) {
+                        time_column_search(state, made<Partition>(choice), objects);
+                    });
+                if constexpr (aabb::CuttingPartition<Partition>)
+                    add_case("partition", choice, objects, {},
+                             [=](benchmark::State& state) { time_partition(state, made<Partition>(choice), objects); });
+            }
+    });
+}
+
+void add_sweep_benchmarks() {
+    for_each_strategy(aabb::sweeps{}, []<class Sweep>(aabb::type_list<Sweep>) {
+        for (const aabb::strategy_choice& choice : choices_of<Sweep>()) add<Sweep>(choice);
+    });
+}
+
+}  // namespace aabblab

@@ -1,0 +1,385 @@
+#include <benchmark/benchmark.h>
+
+#include <random>
+
+#include "stages.hpp"
+
+import aabb.build.median;
+import aabb.pipeline;
+import aabb.std;
+import aabb.strategies;
+import aabb.tree.canonical;
+import aabb.triangle.exact;
+import aabblab.cases;
+import aabblab.rotated_boxes;
+import aabblab.scenes;
+
+namespace aabblab {
+
+namespace {
+
+// What a walk over two meshes tests, so that each test can be made again by itself.
+
+using walked_tree = aabb::canonical_tree;
+
+/// A pair of nodes of which one is a leaf that has just been reached.
+struct reached_leaf {
+    walked_tree::cursor a;
+    walked_tree::cursor b;
+    std::uint32_t triangle;  ///< of the leaf
+    aabb::box other;         ///< of the other node, in A's frame: the walk had it in hand for the test before
+};
+
+/// Two leaves whose boxes overlap.
+struct met_triangles {
+    std::uint32_t a;
+    std::uint32_t b;
+    aabb::triangle3f b_image;  ///< in A's frame
+};
+
+/// A noise sphere and a torus knot of about 5,000 triangles each, half-way into each other as in the scene `mesh_pair`,
+/// and the pairs that `local_detection` tests between them: the same descent, with the tree `canonical`. So hits and
+/// misses mix as they do there, and boxes are about as large as those that they meet.
+class walked_pairs {
+public:
+    /// @throws std::logic_error when local detection has come to test other pairs
+    walked_pairs() {
+        walk();
+        aabb::local_detection<walked_tree, aabb::exact_triangle, aabb::work_counters> detection;
+        static_cast<void>(detection.count_pairs(a_, poses_[0], b_, poses_[1]));
+        if (detection.counters()[aabb::work::box_tests] != box_tests_ ||
+            detection.counters()[aabb::work::triangle_tests] != triangles_.size())
+            throw std::logic_error("these are not the pairs that local detection tests");
+    }
+
+    [[nodiscard]] const aabb::model<walked_tree>& a() const noexcept { return a_; }
+    [[nodiscard]] const aabb::model<walked_tree>& b() const noexcept { return b_; }
+    [[nodiscard]] const aabb::relative_pose& to_a() const noexcept { return to_a_; }
+
+    [[nodiscard]] const rotated_boxes& rotated() const noexcept { return rotated_; }
+
+    /// Leaves of A, each with the node of B, a leaf or not, that it is tested against when it is reached; and of B.
+    [[nodiscard]] const std::vector<reached_leaf>& leaves_of_a() const noexcept { return leaves_of_a_; }
+    [[nodiscard]] const std::vector<reached_leaf>& leaves_of_b() const noexcept { return leaves_of_b_; }
+    [[nodiscard]] const std::vector<met_triangles>& triangles() const noexcept { return triangles_; }
+
+private:
+    using cursor = walked_tree::cursor;
+
+    struct node_pair {
+        cursor a;
+        cursor b;
+        aabb::box b_bounds;
+    };
+
+    [[nodiscard]] static std::vector<aabb::pose> first_poses(aabb::mesh_scene& scene) {
+        std::vector<aabb::pose> poses;
+        scene.next(poses);
+        return poses;
+    }
+
+    void walk() {
+        test({a_.root(), b_.root(), to_a_(b_.bounds())});
+        while (!open_.empty()) {
+            const node_pair at = open_.back();
+            open_.pop_back();
+            const bool a_is_leaf = a_.tree().is_leaf(at.a);
+            const bool b_is_leaf = b_.tree().is_leaf(at.b);
+            if (a_is_leaf && b_is_leaf)
+                meet(a_.tree().triangle(at.a), b_.tree().triangle(at.b));
+            else if (b_is_leaf || (!a_is_leaf && length(a_.tree().bounds(at.a)) >= length(at.b_bounds)))
+                for (const cursor child : a_.tree().children(at.a, a_.triangles())) reach_a({child, at.b, at.b_bounds});
+            else
+                for (const cursor child : b_.tree().children(at.b, b_.triangles()))
+                    reach_b({at.a, child, to_a_(b_.tree().bounds(child))});
+        }
+    }
+
+    void reach_a(const node_pair& next) {
+        if (a_.tree().is_leaf(next.a))
+            leaves_of_a_.push_back({next.a, next.b, a_.tree().triangle(next.a), next.b_bounds});
+        test(next);
+    }
+
+    void reach_b(const node_pair& next) {
+        if (b_.tree().is_leaf(next.b))
+            leaves_of_b_.push_back({next.a, next.b, b_.tree().triangle(next.b), a_.tree().bounds(next.a)});
+        test(next);
+    }
+
+    void test(const node_pair& next) {
+        ++box_tests_;
+        if (overlaps(a_.tree().bounds(next.a), next.b_bounds)) open_.push_back(next);
+    }
+
+    void meet(std::uint32_t a, std::uint32_t b) { triangles_.push_back({a, b, to_a_(b_.triangles().triangle(b))}); }
+
+    /// By which the walk chooses the node to open.
+    [[nodiscard]] static float length(const aabb::box& b) noexcept {
+        const int k = aabb::longest_axis(b);
+        return b.max[k] - b.min[k];
+    }
+
+    std::unique_ptr<aabb::mesh_scene> scene_ =
+        make_mesh_scene({"mesh_pair",
+                         {{"frames", "0"}, {"distance", "0.25"}},
+                         {"noise_sphere:triangles=5000", "torus_knot:triangles=5000"}});
+    aabb::model<walked_tree> a_{scene_->meshes[0], aabb::median_build()};
+    aabb::model<walked_tree> b_{scene_->meshes[1], aabb::median_build()};
+    std::vector<aabb::pose> poses_ = first_poses(*scene_);
+    aabb::relative_pose to_a_{poses_[0], poses_[1], b_.bounds()};
+    rotated_boxes rotated_{poses_[0], poses_[1], b_.bounds()};
+    std::vector<node_pair> open_;
+    std::vector<reached_leaf> leaves_of_a_;
+    std::vector<reached_leaf> leaves_of_b_;
+    std::vector<met_triangles> triangles_;
+    std::size_t box_tests_ = 0;
+};
+
+/// Kept for all benchmarks, and since one is called several times before its time is taken.
+const walked_pairs& walked() {
+    static const walked_pairs pairs;
+    return pairs;
+}
+
+// How it is timed.
+
+/// The pairs in random order, and again in others, 65,536 in all. A processor learns the answers to 5,000 tests by
+/// heart when they come in one order again and again, and then a box test takes a third of its time.
+template <class Pair>
+std::vector<Pair> in_random_order(std::vector<Pair> pairs) {
+    constexpr std::size_t count = 1 << 16;
+    std::mt19937_64 random(1);  // NOLINT(*-msc51-cpp): the same order in every run
+    std::vector<Pair> order;
+    while (order.size() < count) {
+        for (std::size_t left = pairs.size(); left > 1; --left) std::swap(pairs[left - 1], pairs[random() % left]);
+        order.insert(order.end(), pairs.begin(), pairs.end());
+    }
+    order.resize(count);
+    return order;
+}
+
+/// An iteration is one test, and the branch on its answer with which a walk goes on or turns back: what the processor
+/// loses where it guesses wrongly is a part of what the test costs.
+/// @param test with `[[gnu::always_inline]]`: it is called twice here, and the compiler would make it a function of its
+/// own, which a walk does not call.
+template <class Pair, class Test>
+void time_tests(benchmark::State& state, const std::vector<Pair>& pairs, const Test& test) {
+    std::size_t hits = 0;
+    std::size_t next = 0;
+    for (auto _ : state) {
+        if (test(pairs[next])) benchmark::DoNotOptimize(++hits);
+        if (++next == pairs.size()) next = 0;
+    }
+    const auto all = static_cast<double>(pairs.size());
+    state.counters["hits"] = static_cast<double>(std::ranges::count_if(pairs, test)) / all;
+}
+
+/// A leaf of B that has just been reached. What is tested of it is read, in B's frame, and carried into A's: the box in
+/// its tree becomes the box around it as it stands there, the triangle in its mesh three other corners.
+struct leaf_of_b {
+    static constexpr std::string_view suffix;
+    const walked_pairs& at;
+
+    [[nodiscard]] const std::vector<reached_leaf>& pairs() const { return at.leaves_of_b(); }
+    [[nodiscard]] aabb::box box(const reached_leaf& p) const { return at.to_a()(at.b().tree().bounds(p.b)); }
+    [[nodiscard]] aabb::triangle3f triangle(const reached_leaf& p) const {
+        return at.to_a()(at.b().triangles().triangle(p.triangle));
+    }
+};
+
+/// A leaf of A that has just been reached. What is tested of it is read; there is nothing to carry.
+struct leaf_of_a {
+    static constexpr std::string_view suffix = "/frame:a";
+    const walked_pairs& at;
+
+    [[nodiscard]] const std::vector<reached_leaf>& pairs() const { return at.leaves_of_a(); }
+    [[nodiscard]] const aabb::box& box(const reached_leaf& p) const { return at.a().tree().bounds(p.a); }
+    [[nodiscard]] aabb::triangle3f triangle(const reached_leaf& p) const {
+        return at.a().triangles().triangle(p.triangle);
+    }
+};
+
+/// In a tree with leaf boxes.
+template <class Leaf>
+struct box_test {
+    static constexpr std::string_view name = "test/box";
+    Leaf leaf;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+        return overlaps(leaf.box(p), p.other);
+    }
+};
+
+/// With `leaf_test=triangle_box`.
+template <class Leaf>
+struct triangle_box_test {
+    static constexpr std::string_view name = "test/triangle_box";
+    Leaf leaf;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+        return triangle_meets_box(leaf.triangle(p), p.other);
+    }
+};
+
+/// With `leaf_test=triangle_aabb`; the making of the box is included.
+template <class Leaf>
+struct triangle_aabb_test {
+    static constexpr std::string_view name = "test/triangle_aabb";
+    Leaf leaf;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+        return overlaps(bounds_of(leaf.triangle(p)), p.other);
+    }
+};
+
+/// Möller's original of `triangle_box` (Akenine-Möller 2001), without the margin that keeps rounding from parting what
+/// touches.
+template <class Leaf>
+struct triangle_box_moller_test {
+    static constexpr std::string_view name = "test/triangle_box_moller";
+    static constexpr bool exact = false;
+    Leaf leaf;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+        return moller_triangle_meets_box(leaf.triangle(p), p.other);
+    }
+};
+
+/// The boxes of both trees as they stand: nothing is carried or boxed anew, whichever is the leaf. Six axes.
+template <class Leaf>
+struct rotated_box_6_test {
+    static constexpr std::string_view name = "test/rotated_box_6";
+    Leaf leaf;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+        const walked_pairs& at = leaf.at;
+        return at.rotated().meet_by_faces(at.rotated().pair_of(at.a().tree().bounds(p.a), at.b().tree().bounds(p.b)));
+    }
+};
+
+/// The same with all fifteen.
+template <class Leaf>
+struct rotated_box_15_test {
+    static constexpr std::string_view name = "test/rotated_box_15";
+    Leaf leaf;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+        const walked_pairs& at = leaf.at;
+        const box_pair boxes = at.rotated().pair_of(at.a().tree().bounds(p.a), at.b().tree().bounds(p.b));
+        return at.rotated().meet_by_faces(boxes) && at.rotated().meet_by_edges(boxes);
+    }
+};
+
+[[nodiscard]] std::vector<std::uint32_t> triangles_below(const aabb::model<walked_tree>& m, walked_tree::cursor node) {
+    std::vector<std::uint32_t> found;
+    std::vector<walked_tree::cursor> open{node};
+    while (!open.empty()) {
+        const walked_tree::cursor at = open.back();
+        open.pop_back();
+        if (m.tree().is_leaf(at))
+            found.push_back(m.tree().triangle(at));
+        else
+            for (const walked_tree::cursor child : m.tree().children(at, m.triangles())) open.push_back(child);
+    }
+    return found;
+}
+
+[[nodiscard]] bool any_intersect(const walked_pairs& at, const reached_leaf& p) {
+    for (const std::uint32_t of_b : triangles_below(at.b(), p.b)) {
+        const aabb::triangle3f image = at.to_a()(at.b().triangles().triangle(of_b));
+        for (const std::uint32_t of_a : triangles_below(at.a(), p.a))
+            if (aabb::exact_triangle::intersects(at.a().triangles().triangle(of_a), image)) return true;
+    }
+    return false;
+}
+
+/// How often the test says no to nodes below which triangles intersect.
+template <class Test>
+[[nodiscard]] std::size_t lost_by(const Test& test) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        test.leaf.pairs(), [&](const reached_leaf& p) { return !test(p) && any_intersect(test.leaf.at, p); }));
+}
+
+template <class Test>
+constexpr bool may_lose = requires { requires !Test::exact; };
+
+/// What a test loses that must not lose anything is an error; of one that may it is reported.
+/// @throws std::logic_error
+template <class Test>
+void time_leaf_test(benchmark::State& state) {
+    const Test test{{walked()}};
+    static const std::size_t lost = lost_by(test);
+    if (lost > 0 && !may_lose<Test>)
+        throw std::logic_error(std::string(Test::name) + " says no to triangles that intersect");
+    static const std::vector<reached_leaf> pairs = in_random_order(test.leaf.pairs());
+    time_tests(state, pairs, test);
+    // Not how many are lost: of a zero in every repetition Google Benchmark tells a spread that is no number.
+    if (may_lose<Test>)
+        state.counters["kept"] = 1 - static_cast<double>(lost) / static_cast<double>(test.leaf.pairs().size());
+}
+
+template <template <class> class Test, class Leaf>
+void add() {
+    const std::string name = std::string(Test<Leaf>::name) + std::string(Leaf::suffix);
+    benchmark::RegisterBenchmark(name.c_str(), time_leaf_test<Test<Leaf>>);
+}
+
+template <class Leaf>
+void add_all() {
+    add<box_test, Leaf>();
+    add<rotated_box_6_test, Leaf>();
+    add<rotated_box_15_test, Leaf>();
+    add<triangle_box_test, Leaf>();
+    add<triangle_box_moller_test, Leaf>();
+    add<triangle_aabb_test, Leaf>();
+}
+
+/// The triangle of B is carried into A's frame for the first of the triangles of A that it meets …
+template <class Triangle>
+struct carried_test {
+    Triangle triangle;
+    const walked_pairs& at;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const met_triangles& p) const {
+        return triangle.intersects(at.a().triangles().triangle(p.a), at.to_a()(at.b().triangles().triangle(p.b)));
+    }
+};
+
+/// … and kept for those that follow.
+template <class Triangle>
+struct kept_test {
+    Triangle triangle;
+    const walked_pairs& at;
+
+    [[nodiscard, gnu::always_inline]] bool operator()(const met_triangles& p) const {
+        return triangle.intersects(at.a().triangles().triangle(p.a), p.b_image);
+    }
+};
+
+template <class Test>
+void add(const std::string& name, const aabb::strategy_choice& choice) {
+    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+        static const std::vector<met_triangles> pairs = in_random_order(walked().triangles());
+        time_tests(state, pairs, Test{made<decltype(Test::triangle)>(choice), walked()});
+    });
+}
+
+}  // namespace
+
+void add_leaf_test_benchmarks() {
+    add_all<leaf_of_b>();
+    add_all<leaf_of_a>();
+}
+
+void add_triangle_test_benchmarks() {
+    for_each_strategy(aabb::triangles{}, []<class Triangle>(aabb::type_list<Triangle>) {
+        for (const aabb::strategy_choice& choice : choices_of<Triangle>()) {
+            const std::string name = "test/triangle/" + to_text(choice);
+            add<carried_test<Triangle>>(name, choice);
+            add<kept_test<Triangle>>(name + "/frame:a", choice);
+        }
+    });
+}
+
+}  // namespace aabblab

@@ -1,0 +1,247 @@
+module aabblab.extreme;
+
+import aabb.pipeline;
+import aabb.registry;
+import aabb.validation;
+import aabblab.progress;
+
+namespace aabblab {
+
+namespace {
+
+/// With each named value of each parameter; a default is not written.
+std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, const std::string& name) {
+    const auto info = std::ranges::find(aabb::strategies(kind), name, &aabb::strategy_info::name);
+    std::vector<aabb::strategy_choice> all{{name, {}}};
+    for (const aabb::parameter_info& parameter : info->parameters) {
+        const auto* const named = std::get_if<aabb::name_values>(&parameter.values);
+        if (!named) continue;
+        std::vector<aabb::strategy_choice> more;
+        for (const std::string& value : named->names) {
+            if (value == parameter.fallback) continue;
+            for (aabb::strategy_choice choice : all) {
+                choice.settings.push_back({parameter.name, value});
+                more.push_back(std::move(choice));
+            }
+        }
+        all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+    }
+    return all;
+}
+
+std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
+    std::vector<aabb::composition> all{c};
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        if (info_of(kind).stage != stage) continue;
+        std::vector<aabb::composition> longer;
+        for (const aabb::composition& shorter : all)
+            for (const aabb::strategy_choice& choice : with_named_values(kind, c[kind].name))
+                longer.emplace_back(shorter)[kind] = choice;
+        all = std::move(longer);
+    }
+    return all;
+}
+
+/// Every combination of a stage that makes sense, exact ones only; with each value of those parameters that have names
+/// for their values, where that is asked for.
+std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_values) {
+    std::vector<aabb::composition> all = aabb::every_composition(stage);
+    if (named_values) {
+        std::vector<aabb::composition> more;
+        for (const aabb::composition& c : all) std::ranges::move(with_named_values(c, stage), std::back_inserter(more));
+        all = std::move(more);
+    }
+    // Scenes of meshes have a global search of their own.
+    std::erase_if(all, [&](const aabb::composition& c) {
+        return !is_exact(c, stage) || !refusal_of(c, stage).empty() || !needs_meshes(c).empty();
+    });
+    return all;
+}
+
+/// The usual local detection with each triangle test that is inexact.
+std::vector<aabb::composition> inexact_compositions() {
+    std::vector<aabb::composition> all;
+    for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle)) {
+        aabb::composition c;
+        c[aabb::strategy_kind::triangle] = {info.name, {}};
+        if (!is_exact(c, aabb::stage::local_detection)) all.push_back(std::move(c));
+    }
+    return all;
+}
+
+struct named_test {
+    std::string name;
+    bool exact;
+    std::unique_ptr<aabb::triangle_test> test;
+};
+
+/// Strategies with each named value of their parameters, and tests of libraries.
+std::vector<named_test> all_triangle_tests() {
+    std::vector<named_test> all;
+    for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle))
+        for (const aabb::strategy_choice& choice : with_named_values(aabb::strategy_kind::triangle, info.name)) {
+            aabb::composition c;
+            c[aabb::strategy_kind::triangle] = choice;
+            all.push_back(
+                {to_text(choice), is_exact(c, aabb::stage::local_detection), aabb::make_triangle_test(choice)});
+        }
+    for (const aabb::library_test_info& info : aabb::library_tests())
+        all.push_back({info.name, info.exact, aabb::make_library_test({info.name, {}})});
+    return all;
+}
+
+extreme_row row_of(const aabb::triangle_case& one, std::string contender, contender_role role, bool must_be_exact) {
+    return {row_group::cases, one.name, one.about, one.kind, std::move(contender), role, must_be_exact, true, {}};
+}
+
+/// Counts an answer that is not the true one.
+void hold(bool answer, bool truth, extreme_row& row) {
+    if (answer == truth) return;
+    ++(truth ? row.made.missing : row.made.invented);
+    row.made.said = aabb::verdict::wrong;
+    row.made.reason = truth ? "says that they do not intersect" : "says that they intersect";
+    row.as_expected = !row.must_be_exact;
+}
+
+template <class Real>
+extreme_row played(const aabb::triangle_case& one, const named_test& test, bool truth, const char* precision) {
+    extreme_row row = row_of(one, test.name + " in " + precision, contender_role::triangle_test, test.exact);
+    for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(one))
+        hold(test.test->intersects(pair.a, pair.b), truth, row);
+    return row;
+}
+
+void play_tests(std::span<const aabb::triangle_case> cases, std::vector<extreme_row>& rows) {
+    for (const named_test& test : all_triangle_tests())
+        for (const aabb::triangle_case& one : cases) {
+            rows.push_back(played<float>(one, test, one.intersect, "float"));
+            if (test.test->takes_double()) rows.push_back(played<double>(one, test, one.intersect_double, "double"));
+        }
+}
+
+/// The first triangle of each case, then the second, a mesh each.
+std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
+    std::vector<aabb::mesh> all;
+    for (const aabb::triangle_case& one : cases)
+        for (const aabb::triangle3d* t : {&one.first, &one.second}) {
+            const aabb::triangle3f corners = aabb::in_float(*t);
+            all.push_back({{corners[0], corners[1], corners[2]}, {{0, 1, 2}}});
+        }
+    return all;
+}
+
+/// Either triangle against the other, by every query.
+void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
+                aabb::local_stage& stage, const extreme_row& form, std::vector<extreme_row>& rows) {
+    for (const aabb::mesh& m : meshes) stage.add_model(m);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        extreme_row row = row_of(cases[i], form.contender, form.role, form.must_be_exact);
+        const auto first = static_cast<std::uint32_t>(2 * i);
+        for (const auto [a, b] : {std::array{first, first + 1}, std::array{first + 1, first}}) {
+            std::vector<aabb::index_pair> pairs;
+            stage.all_pairs(a, {}, b, {}, pairs);
+            hold(!pairs.empty(), cases[i].intersect, row);
+            hold(stage.first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
+            hold(stage.count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
+        }
+        rows.push_back(std::move(row));
+    }
+}
+
+constexpr auto uncounted = aabb::instrumentation::none;
+
+/// Those who play scenes of boxes, or of meshes.
+template <class Stage>
+struct contender {
+    std::string name;
+    contender_role role;
+    bool must_be_exact;
+    bool lists_candidates;  ///< all of them before it decides on the first
+    std::function<std::unique_ptr<Stage>()> make;
+};
+
+std::vector<contender<aabb::global_stage>> box_contenders(bool named_values) {
+    std::vector<contender<aabb::global_stage>> all;
+    for (const aabb::composition& c : exact_compositions(aabb::stage::global_search, named_values))
+        all.push_back({to_text(c, aabb::stage::global_search), contender_role::composition, true, false,
+                       [c] { return aabb::compose_global_search(c, uncounted); }});
+    // Boxes are compared, not computed with: every engine must be exact.
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (engine.searches_boxes)
+            all.push_back({engine.name, contender_role::engine, true, false,
+                           [name = engine.name] { return aabb::make_box_engine(name); }});
+    return all;
+}
+
+std::vector<contender<aabb::local_stage>> mesh_contenders(bool named_values) {
+    std::vector<contender<aabb::local_stage>> all;
+    const auto add = [&](const aabb::composition& c, contender_role role, std::string name) {
+        all.push_back({std::move(name), role, role == contender_role::composition, false,
+                       [c] { return aabb::compose_local_detection(c, uncounted); }});
+    };
+    for (const aabb::composition& c : exact_compositions(aabb::stage::local_detection, named_values))
+        add(c, contender_role::composition, to_text(c, aabb::stage::local_detection));
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (engine.collides_meshes)
+            all.push_back({engine.name, contender_role::engine, engine.exact, true,
+                           [name = engine.name] { return aabb::make_mesh_engine(name); }});
+    for (const aabb::composition& c : inexact_compositions())
+        add(c, contender_role::triangle_test, to_text(c[aabb::strategy_kind::triangle]));
+    return all;
+}
+
+template <class Stage>
+void play_scene(const aabb::extreme_judge& judge, row_group group, const std::vector<contender<Stage>>& contenders,
+                std::vector<extreme_row>& rows) {
+    const aabb::extreme_scene& scene = judge.scene();
+    for (const contender<Stage>& who : contenders) {
+        if (who.lists_candidates && scene.asked == aabb::extreme_query::first_pair) continue;
+        extreme_row row{group, scene.name, scene.summary, "", who.name, who.role, who.must_be_exact, true, {}};
+        row.made = judge.judge(who.make);
+        if (who.role == contender_role::composition) require_stated_memory(scene, row.made);
+        row.as_expected = is_as_expected(scene, row.made, who.must_be_exact);
+        rows.push_back(std::move(row));
+    }
+}
+
+}  // namespace
+
+std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases) {
+    std::vector<extreme_row> rows;
+    play_tests(cases, rows);
+    const std::vector<aabb::mesh> meshes = meshes_of(cases);
+    extreme_row form;
+    for (const aabb::composition& c : exact_compositions(aabb::stage::local_detection, true)) {
+        form.contender = to_text(c, aabb::stage::local_detection);
+        play_stage(cases, meshes, *aabb::compose_local_detection(c, aabb::instrumentation::none), form, rows);
+    }
+    form.role = contender_role::engine;
+    for (const aabb::engine_info& engine : aabb::engines()) {
+        if (!engine.collides_meshes) continue;
+        form.contender = engine.name;
+        form.must_be_exact = engine.exact;
+        play_stage(cases, meshes, *aabb::make_mesh_engine(engine.name), form, rows);
+    }
+    return rows;
+}
+
+std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
+    const bool named_values = size == aabb::extreme_size::full;
+    const auto of_boxes = box_contenders(named_values);
+    const auto of_meshes = mesh_contenders(named_values);
+    // Of as many triangles, parameters would show nothing new and take minutes.
+    const auto of_many = mesh_contenders(false);
+    std::vector<extreme_row> rows;
+    progress shown("extreme scenes", scenes.size());
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const aabb::extreme_judge judge(scenes[i]);
+        if (scenes[i].make_boxes)
+            play_scene(judge, row_group::boxes, of_boxes, rows);
+        else
+            play_scene(judge, row_group::meshes, scenes[i].most_bytes > 0 ? of_many : of_meshes, rows);
+        shown.at(i + 1);
+    }
+    return rows;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,201 @@
+module;
+#include <archive.h>
+#include <archive_entry.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+module aabblab.archive;
+
+import aabb.base;
+import aabblab.files;
+
+namespace aabblab {
+
+namespace {
+
+/// A folder of a new name, for nobody else to read.
+std::filesystem::path make_temporary_folder() {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
+    if (error || !mkdtemp(name.data()))
+        throw aabb::input_error("an archive cannot be unpacked: there is no folder for temporary files (TMPDIR)");
+    return name;
+}
+
+/// Where an entry goes: below `top`, and by no detour.
+std::filesystem::path place_of(const std::string& name, const std::string& top, const std::string& archive) {
+    const std::filesystem::path path(name);
+    const bool detours = std::ranges::any_of(
+        path, [](const std::filesystem::path& part) { return part.empty() || part == "." || part == ".."; });
+    if (path.empty() || path.is_absolute() || detours || *path.begin() != top)
+        throw aabb::input_error(archive + " is not an archive of " + top + ": it has the entry '" + name + "'");
+    return path.lexically_relative(top);
+}
+
+struct deleter {
+    void operator()(archive* a) const { archive_free(a); }
+    void operator()(archive_entry* e) const { archive_entry_free(e); }
+};
+
+class reader {
+public:
+    reader(const std::filesystem::path& file, const archive_limits& limits)
+        : file_(file.string()), limits_(limits), archive_(archive_read_new()) {
+        archive_read_support_filter_xz(archive_.get());
+        archive_read_support_format_tar(archive_.get());
+        if (access(file_.c_str(), R_OK) != 0) fail("cannot be read");
+        // Opening a named pipe without a writer would block.
+        if (!std::filesystem::is_regular_file(file)) fail("is not a regular file");
+        if (archive_read_open_filename(archive_.get(), file_.c_str(), std::size_t{1} << 16U) != ARCHIVE_OK)
+            fail_reading();
+    }
+
+    void unpack(const std::string& top, const std::filesystem::path& into) {
+        std::set<std::filesystem::path> places;
+        std::size_t folders = 0;
+        archive_entry* entry = nullptr;
+        while (has_next(entry)) {
+            const char* given = archive_entry_pathname(entry);
+            const auto type = archive_entry_filetype(entry);
+            std::string name = given ? given : "";
+            if (type == AE_IFDIR && name.ends_with('/')) name.pop_back();
+            const std::filesystem::path place = place_of(name, top, file_);
+            if (archive_entry_hardlink(entry) || (type != AE_IFREG && type != AE_IFDIR))
+                fail("has an entry that is neither a file nor a folder: '" + place.string() + "'");
+            if (type == AE_IFDIR) {
+                if (++folders > limits_.files)
+                    fail("has more than " + std::to_string(limits_.files) + " folders, which no results have");
+                continue;
+            }
+            if (!places.insert(place).second) fail("has the file '" + place.string() + "' twice");
+            if (places.size() > limits_.files)
+                fail("has more than " + std::to_string(limits_.files) + " files, which no results have");
+            take(into / place);
+        }
+        if (places.empty()) fail("is empty");
+    }
+
+private:
+    [[nodiscard]] bool has_next(archive_entry*& entry) {
+        const int result = archive_read_next_header(archive_.get(), &entry);
+        if (result == ARCHIVE_EOF) return false;
+        if (result != ARCHIVE_OK) fail_reading();
+        begun_ = true;
+        return true;
+    }
+
+    void take(const std::filesystem::path& file) {
+        std::error_code error;
+        std::filesystem::create_directories(file.parent_path(), error);
+        if (error) fail("cannot be unpacked: " + error.message());
+        output_file out(file);
+        std::array<char, std::size_t{1} << 16U> buffer{};
+        for (;;) {
+            const la_ssize_t size = archive_read_data(archive_.get(), buffer.data(), buffer.size());
+            if (size < 0) fail_reading();
+            if (size == 0) break;
+            // As it comes, whatever the header of the entry says.
+            bytes_ += static_cast<std::uint64_t>(size);
+            if (bytes_ > limits_.bytes)
+                fail("unpacks to more than " + std::to_string(limits_.bytes >> 20U) + " MiB, which no results have");
+            out.write(buffer.data(), static_cast<std::size_t>(size));
+        }
+        out.commit();
+    }
+
+    [[noreturn]] void fail_reading() const {
+        const char* why = archive_error_string(archive_.get());
+        if (!begun_) fail("is not an archive of results, which is tar compressed by xz");
+        fail(std::string("is damaged or cut off: ") + (why ? why : "it cannot be read to its end"));
+    }
+    [[noreturn]] void fail(const std::string& what) const { throw aabb::input_error(file_ + " " + what); }
+
+    std::string file_;
+    archive_limits limits_;
+    std::unique_ptr<archive, deleter> archive_;
+    std::uint64_t bytes_ = 0;
+    bool begun_ = false;
+};
+
+/// Where the bytes go, for functions of C, through which no exception may pass.
+class sink {
+public:
+    explicit sink(const std::filesystem::path& file) : out_(file) {}
+
+    static la_ssize_t write(archive*, void* client, const void* bytes, std::size_t size) {
+        auto& self = *static_cast<sink*>(client);
+        try {
+            self.out_.write(bytes, size);
+            return static_cast<la_ssize_t>(size);
+        } catch (...) {
+            self.failure_ = std::current_exception();
+            return -1;
+        }
+    }
+    void rethrow() const {
+        if (failure_) std::rethrow_exception(failure_);
+    }
+    void commit() { out_.commit(); }
+
+private:
+    output_file out_;
+    std::exception_ptr failure_;
+};
+
+class writer {
+public:
+    explicit writer(const std::filesystem::path& file) : file_(file), sink_(file), archive_(archive_write_new()) {
+        require(archive_write_add_filter_xz(archive_.get()));
+        require(archive_write_set_format_pax_restricted(archive_.get()));
+        // The last block as it is, in place of a tape's.
+        require(archive_write_set_bytes_in_last_block(archive_.get(), 1));
+        require(archive_write_open(archive_.get(), &sink_, nullptr, &sink::write, nullptr));
+    }
+
+    void add(const std::string& name, const std::string& bytes) {
+        const std::unique_ptr<archive_entry, deleter> entry(archive_entry_new());
+        archive_entry_set_pathname(entry.get(), name.c_str());
+        archive_entry_set_filetype(entry.get(), AE_IFREG);
+        archive_entry_set_perm(entry.get(), 0644);
+        archive_entry_set_mtime(entry.get(), 0, 0);
+        archive_entry_set_size(entry.get(), static_cast<la_int64_t>(bytes.size()));
+        require(archive_write_header(archive_.get(), entry.get()));
+        if (std::cmp_not_equal(archive_write_data(archive_.get(), bytes.data(), bytes.size()), bytes.size()))
+            require(ARCHIVE_FATAL);
+    }
+
+    void finish() {
+        require(archive_write_close(archive_.get()));
+        sink_.commit();
+    }
+
+private:
+    void require(int result) const {
+        if (result == ARCHIVE_OK) return;
+        sink_.rethrow();
+        const char* why = archive_error_string(archive_.get());
+        throw aabb::input_error(file_.string() + " cannot be written: " + (why ? why : "an error of the archive"));
+    }
+
+    std::filesystem::path file_;
+    sink sink_;
+    std::unique_ptr<archive, deleter> archive_;
+};
+
+}  // namespace
+
+void write_archive(const std::filesystem::path& archive, const std::string& top, const std::filesystem::path& folder,
+                   std::span<const std::filesystem::path> files) {
+    writer out(archive);
+    for (const std::filesystem::path& file : files)
+        out.add(top + "/" + file.generic_string(), bytes_of_file(folder / file));
+    out.finish();
+}
+
+unpacked_archive::unpacked_archive(const std::filesystem::path& archive, const std::string& top,
+                                   const archive_limits& limits)
+    : guard_(make_temporary_folder()) {
+    reader(archive, limits).unpack(top, folder());
+}
+
+}  // namespace aabblab

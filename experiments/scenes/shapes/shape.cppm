@@ -1,0 +1,57 @@
+/// What shapes share: their one parameter; of those of rings, how many of how many vertices, and what lies between.
+module aabblab.scenes:shape;
+
+import aabb.geometry;
+import aabb.policy;
+import aabb.std;
+
+namespace aabblab {
+
+/// @tparam Usual how many triangles where nothing is said
+template <std::uint32_t Usual>
+struct shape_size {
+    std::uint32_t triangles = Usual;
+
+    [[nodiscard]] static constexpr auto parameters(std::uint32_t least, std::string_view help) {
+        return std::tuple{aabb::integer_parameter{"triangles", &shape_size::triangles, least, 100'000'000U, help}};
+    }
+};
+
+struct ring_counts {
+    std::uint32_t rings;
+    std::uint32_t around;  ///< vertices of a ring
+};
+
+/// 2 · rings · around triangles, as near to `triangles` as rings of a fitting size allow; the nearest in size to
+/// rings = aspect · around where several are equally near.
+[[nodiscard]] inline ring_counts rings_for(std::uint32_t triangles, double aspect) {
+    const double half = triangles / 2.0;
+    const double ideal = std::fmax(3, std::sqrt(half / aspect));
+    ring_counts best{3, 3};
+    double best_error = 1e300;
+    for (auto around = static_cast<std::uint32_t>(std::fmax(3, ideal * 0.7)); around <= ideal * 1.4; ++around) {
+        const double rings = std::fmax(3, std::floor(half / around + 0.5));
+        const double off_shape = std::fabs(around / ideal - 1);
+        const double error = std::fabs(rings * around - half) + off_shape / 2;
+        if (error >= best_error) continue;
+        best = {static_cast<std::uint32_t>(rings), around};
+        best_error = error;
+    }
+    return best;
+}
+
+/// Four corners as two triangles, which meet between the first and the third.
+inline void add_quad(aabb::mesh& m, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    m.triangles.push_back({a, b, c});
+    m.triangles.push_back({a, c, d});
+}
+
+/// The band from each ring to the next, and around it.
+/// @param at the number of a vertex, by ring and place in the ring, which may be one beyond the last
+void add_bands(aabb::mesh& m, std::uint32_t bands, std::uint32_t around, auto at) {
+    for (std::uint32_t ring = 0; ring < bands; ++ring)
+        for (std::uint32_t i = 0; i < around; ++i)
+            add_quad(m, at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1));
+}
+
+}  // namespace aabblab

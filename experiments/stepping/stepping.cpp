@@ -1,0 +1,239 @@
+module;
+#include <Eigen/Geometry>
+
+module aabblab.stepping;
+
+import aabb.triangle.intersection;
+import aabblab.vectors;
+
+namespace aabblab {
+
+namespace {
+
+using Eigen::Vector3d;
+using corners = std::array<Vector3d, 3>;
+
+/// Of a triangle where its mesh is.
+corners corners_of(const placed_mesh& m, std::uint32_t triangle) {
+    const auto t = m.triangle(triangle);
+    return {in_eigen(t[0]), in_eigen(t[1]), in_eigen(t[2])};
+}
+
+Vector3d normal_of(const corners& t) {
+    return (t[1] - t[0]).cross(t[2] - t[0]);
+}
+
+/// A vertex below a plane.
+struct depth_of_vertex {
+    std::uint32_t vertex;
+    double depth;
+    Vector3d normal;  // of length 1
+};
+
+/// Every vertex of a reported triangle of the second body below the plane of the triangle of the first, at it, or no
+/// further above it than springs reach; a vertex that several pairs report as often.
+std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, const placed_mesh& first,
+                                       const placed_mesh& second, double rest) {
+    std::vector<depth_of_vertex> all;
+    for (const aabb::contact& c : contacts) {
+        const corners plane = corners_of(first, c.triangle_a);
+        const Vector3d normal = normal_of(plane);
+        const double length = length_of(normal);
+        if (length == 0) continue;
+        const corners t = corners_of(second, c.triangle_b);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (const double depth = -dot(normal, t[i] - plane[0]) / length; depth >= -rest)
+                all.push_back({second.mesh->triangles[c.triangle_b][i], depth, normal * (1 / length)});
+    }
+    return all;
+}
+
+/// Leaves of what several pairs say of a vertex the deepest.
+void keep_deepest_of_each(std::vector<depth_of_vertex>& all) {
+    std::ranges::sort(all, [](const depth_of_vertex& a, const depth_of_vertex& b) {
+        return a.vertex != b.vertex ? a.vertex < b.vertex : a.depth > b.depth;
+    });
+    const auto repeated = std::ranges::unique(all, {}, &depth_of_vertex::vertex);
+    all.erase(repeated.begin(), repeated.end());
+}
+
+void keep_deepest(std::vector<depth_of_vertex>& all) {
+    const auto deepest = std::ranges::max_element(all, {}, &depth_of_vertex::depth);
+    if (deepest != all.end()) all = {*deepest};
+}
+
+contact_force springs_at(const contact_law& law, std::span<const depth_of_vertex> all, const Vector3d& approach) {
+    Vector3d force = Vector3d::Zero();
+    double energy = 0;
+    for (const depth_of_vertex& at : all) {
+        const double compressed = at.depth + law.rest;
+        force += at.normal * (law.stiffness * compressed - law.damping * dot(at.normal, approach));
+        energy += law.stiffness * compressed * compressed / 2;
+    }
+    return {from_eigen(force), energy};
+}
+
+contact_force pressure(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
+                       const placed_mesh& second, const Vector3d& approach) {
+    Vector3d area = Vector3d::Zero();  // of the second body's surface inside the first, along its outward normal
+    std::optional<Vector3d> origin;
+    for (const aabb::contact& c : contacts) {
+        const aabb::triangle_intersection common =
+            aabb::intersection_of(first.triangle(c.triangle_a), second.triangle(c.triangle_b));
+        if (common.size != 2) continue;
+        if (!origin) origin = in_eigen(common.corners[0]);
+        const Vector3d p = in_eigen(common.corners[0]) - *origin;
+        const Vector3d q = in_eigen(common.corners[1]) - *origin;
+        // The part inside the first body lies to the left of the curve, seen from outside the second.
+        const Vector3d along =
+            normal_of(corners_of(second, c.triangle_b)).cross(normal_of(corners_of(first, c.triangle_a)));
+        area += p.cross(q) * (dot(q - p, along) < 0 ? -0.5 : 0.5);
+    }
+    const double size = length_of(area);
+    if (size == 0) return {};
+    return {from_eigen(area * -(law.stiffness + law.damping * dot(area, approach) / size)), 0};
+}
+
+/// n·x <= offset is inside.
+struct half_space {
+    Vector3d normal;
+    double offset;
+};
+
+using polygon = std::vector<Vector3d>;
+
+half_space below(const corners& t) {
+    const Vector3d normal = normal_of(t);
+    return {normal, dot(normal, t[0])};
+}
+
+std::vector<half_space> half_spaces_of(const placed_mesh& m, std::uint32_t most) {
+    std::vector<half_space> all;
+    for (std::uint32_t t = 0; t < std::min(most, m.mesh->triangle_count()); ++t) all.push_back(below(corners_of(m, t)));
+    return all;
+}
+
+/// What of a convex polygon is inside (Sutherland and Hodgman 1974).
+polygon clipped(const polygon& p, const half_space& h) {
+    polygon kept;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Vector3d& from = p[i];
+        const Vector3d& to = p[(i + 1) % p.size()];
+        const double d_from = dot(h.normal, from) - h.offset;
+        const double d_to = dot(h.normal, to) - h.offset;
+        if (d_from <= 0) kept.push_back(from);
+        if ((d_from < 0 && d_to > 0) || (d_from > 0 && d_to < 0)) {
+            kept.emplace_back(from + (to - from) * (d_from / (d_from - d_to)));
+        }
+    }
+    return kept;
+}
+
+/// Six times the volume of the cone from the origin over what is left of the triangles.
+double cones_over(const placed_mesh& m, std::span<const half_space> inside, const Vector3d& origin) {
+    double sum = 0;
+    for (std::uint32_t t = 0; t < m.mesh->triangle_count(); ++t) {
+        polygon left;
+        for (const Vector3d& corner : corners_of(m, t)) left.emplace_back(corner - origin);
+        for (const half_space& h : inside) {
+            left = clipped(left, {h.normal, h.offset - dot(h.normal, origin)});
+            if (left.size() < 3) break;
+        }
+        for (std::size_t i = 2; i < left.size(); ++i) sum += dot(left[0], left[i - 1].cross(left[i]));
+    }
+    return sum;
+}
+
+/// Of a body among all, three numbers each.
+auto vector_at(std::span<const double> all, std::size_t body) {
+    return Eigen::Map<const Eigen::Vector3d>(all.subspan(3 * body, 3).data());
+}
+auto vector_at(std::span<double> all, std::size_t body) {
+    return Eigen::Map<Eigen::Vector3d>(all.subspan(3 * body, 3).data());
+}
+
+}  // namespace
+
+aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(pose.rotation.data());
+    const aabb::triangle3f local = mesh->triangle(index);
+    const auto at = [&](int i) {
+        return from_eigen(product(rotation, in_eigen(local[i])) + in_eigen(pose.translation));
+    };
+    return {{at(0), at(1), at(2)}};
+}
+
+contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
+                       const placed_mesh& second, const aabb::vec3d& approach) {
+    if (law.geometry == contact_geometry::shared_volume)
+        return pressure(law, contacts, first, second, in_eigen(approach));
+    std::vector<depth_of_vertex> depths = depths_of(contacts, first, second, law.rest);
+    if (law.geometry == contact_geometry::deepest_vertex)
+        keep_deepest(depths);
+    else
+        keep_deepest_of_each(depths);
+    return springs_at(law, depths, in_eigen(approach));
+}
+
+double overlap_volume(const placed_mesh& first, bool is_floor, const placed_mesh& second) {
+    // Seen from a point of the floor, what lies in its plane has no volume.
+    const Vector3d origin = corners_of(first, 0)[0];
+    double sum = cones_over(second, half_spaces_of(first, is_floor ? 1 : first.mesh->triangle_count()), origin);
+    if (!is_floor) sum += cones_over(first, half_spaces_of(second, second.mesh->triangle_count()), origin);
+    return sum / 6;
+}
+
+motion_state stepped_world::start() const {
+    motion_state state;
+    for (const body& b : bodies) {
+        state.position.insert(state.position.end(), std::begin(b.position.at), std::end(b.position.at));
+        state.velocity.insert(state.velocity.end(), std::begin(b.velocity.at), std::end(b.velocity.at));
+    }
+    return state;
+}
+
+std::vector<std::uint32_t> stepped_world::mesh_of() const {
+    std::vector<std::uint32_t> meshes_of_bodies;
+    for (const body& b : bodies) meshes_of_bodies.push_back(b.mesh);
+    return meshes_of_bodies;
+}
+
+void stepped_world::place(std::span<const double> position, std::vector<aabb::pose>& poses) const {
+    poses.resize(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) poses[i] = {bodies[i].rotation, from_eigen(vector_at(position, i))};
+}
+
+void dynamics::accelerate(std::span<const double> position, std::span<const double> velocity,
+                          std::span<const aabb::contact> contacts, std::span<double> acceleration) {
+    const std::vector<body>& bodies = world_.bodies;
+    world_.place(position, poses_);
+    std::ranges::fill(acceleration, 0.0);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (std::isfinite(bodies[i].mass)) acceleration[3 * i + 2] = -world_.gravity;
+    spring_energy_ = 0;
+    for (auto from = contacts.begin(); from != contacts.end();) {
+        const std::uint32_t a = from->a;
+        const std::uint32_t b = from->b;
+        const auto to = std::find_if(from, contacts.end(), [&](const auto& c) { return c.a != a || c.b != b; });
+        const contact_force found = force_of(world_.law, {from, to}, {&world_.meshes[bodies[a].mesh], poses_[a]},
+                                             {&world_.meshes[bodies[b].mesh], poses_[b]},
+                                             from_eigen(vector_at(velocity, b) - vector_at(velocity, a)));
+        vector_at(acceleration, a) -= in_eigen(found.force) / bodies[a].mass;
+        vector_at(acceleration, b) += in_eigen(found.force) / bodies[b].mass;
+        spring_energy_ += found.energy;
+        from = to;
+    }
+}
+
+double dynamics::mechanical_energy(const motion_state& state) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
+        const double mass = world_.bodies[i].mass;
+        if (!std::isfinite(mass)) continue;
+        const auto v = vector_at(state.velocity, i);
+        sum += mass * (dot(v, v) / 2 + world_.gravity * state.position[3 * i + 2]);
+    }
+    return sum;
+}
+
+}  // namespace aabblab

@@ -1,0 +1,125 @@
+module aabblab.claims;
+
+import aabblab.numbers;
+
+namespace aabblab {
+
+bool has(const factors& place, const factors& wanted) {
+    return std::ranges::all_of(wanted, [&](const auto& one) { return value_of(place, one.first) == one.second; });
+}
+
+std::vector<const condition*> having(const std::vector<condition>& all, const factors& wanted) {
+    std::vector<const condition*> found;
+    for (const condition& c : all)
+        if (has(c.of(), wanted)) found.push_back(&c);
+    return found;
+}
+
+std::string mesh_of(const condition& c) {
+    return value_of(c.of(), "meshes");
+}
+
+bool is_brownian(const condition& c) {
+    return value_of(c.of(), "scene") == "brownian";
+}
+
+endpoint endpoint_of(const condition& c, const selection& arm, const selection& base, const std::string& metric,
+                     factors more) {
+    endpoint made;
+    made.where = c.of();
+    made.where.insert(made.where.end(), more.begin(), more.end());
+    made.source = c.experiment() + ": " + metric + " of " + text_of(arm) + " over " + text_of(base);
+    const cells ratios = c.log_ratios(arm, base, measured(metric));
+    made.log_ratios = {ratios.empty() ? estimate{std::nan("")} : bootstrap(ratios)};
+    return made;
+}
+
+estimate between(const cells& above, const cells& below) {
+    if (above.empty() || below.empty()) return {std::nan("")};
+    return bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); });
+}
+
+endpoint told(endpoint e, const std::string& subject, const std::string& along, quantity compared) {
+    e.subject = subject;
+    e.along = along;
+    e.compared = compared;
+    return e;
+}
+
+endpoint& draft::add(endpoint e) {
+    e.is_primary = std::ranges::any_of(primary, [&](const factors& wanted) { return has(e.where, wanted); });
+    return endpoints.emplace_back(std::move(e));
+}
+
+std::optional<double> median_of(const condition& c, const selection& who, const row_value& of) {
+    const std::optional<quartiles> spread = c.spread(who, of);
+    return spread ? std::optional(spread->median) : std::nullopt;
+}
+
+std::optional<double> inversions_of(const condition& c) {
+    return median_of(c, {{kind::sort, "insertion"}}, an_object(measured("inversions")));
+}
+
+std::string digits_cell(const std::optional<double>& value) {
+    return value ? three_digits(*value) : "-";
+}
+
+std::string ratio_cell(const endpoint& e) {
+    return e.known() ? ratio_text(decided_alone(e)) : "-";
+}
+
+void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods) {
+    for (const method& one : methods.subspan(1)) {
+        t.columns.push_back({one.label});
+        for (std::size_t i = 0; i < conditions.size(); ++i)
+            t.rows[i].push_back(ratio_cell(endpoint_of(conditions[i], one.who, methods.front().who, "frame_cpu_ms")));
+    }
+}
+
+figure log_log(const std::string& name, const std::string& caption, const std::string& x, const std::string& y) {
+    return {name, caption, {x, true}, {y, true}};
+}
+
+figure_point point_of(double x, const endpoint& e) {
+    const estimate ratio = e.log_ratio();
+    const interval range = ratio.range();
+    return {x, std::exp(ratio.value), std::exp(range.low), std::exp(range.high)};
+}
+
+series level_of(const std::string& label, double x) {
+    return {label, series_style::level, {{x, 1}}};
+}
+
+series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
+                 const selection& who, const row_value& of) {
+    series s{label};
+    for (const condition* c : conditions) {
+        const double place = x == "triangles" ? c->triangles() : number_of(c->of(), x);
+        if (const auto point = c->point(place, who, of)) s.points.push_back(*point);
+    }
+    std::ranges::sort(s.points, {}, &figure_point::x);
+    return s;
+}
+
+std::vector<series> series_of(std::span<const method> methods, std::span<const condition* const> conditions,
+                              const std::string& x, const row_value& of) {
+    std::vector<series> all;
+    for (const method& one : methods) all.push_back(series_of(one.label, conditions, x, one.who, of));
+    return all;
+}
+
+std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted) {
+    std::map<std::string, series> by_span;
+    for (const endpoint& e : ratios) {
+        const std::string span = value_of(e.where, "span");
+        if (span.empty() || !e.known() || !has(e.where, wanted)) continue;
+        series& line = by_span[span];
+        line.label = "edge " + span + " of the world";
+        line.points.push_back(point_of(number_of(e.where, "huge"), e));
+    }
+    std::vector<series> lines;
+    for (auto& [span, line] : by_span) lines.push_back(std::move(line));
+    return lines;
+}
+
+}  // namespace aabblab

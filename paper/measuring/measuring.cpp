@@ -1,0 +1,357 @@
+module aabblab.measuring;
+
+import aabb.base;
+import aabblab.archive;
+import aabblab.atlas;
+import aabblab.claims;
+import aabblab.conditions;
+import aabblab.errors;
+import aabblab.files;
+import aabblab.fmt;
+import aabblab.output;
+import aabblab.processes;
+import aabblab.record;
+import aabblab.results;
+import aabblab.sha256;
+import aabblab.suites;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+/// The project's studies of error against run time, as far as they have something to plot.
+std::vector<error_study> studies_with_curves(bool quick) {
+    std::vector<error_study> studies;
+    for (const std::filesystem::path& config : error_configs()) {
+        error_study study = read_error_study(config, quick ? experiment_size::quick : experiment_size::full);
+        if (!study.curves.empty()) studies.push_back(std::move(study));
+    }
+    return studies;
+}
+
+std::filesystem::path folder_of_study(const std::filesystem::path& folder, const error_study& study) {
+    return folder / "errors" / study.name;
+}
+
+/// The suites of `validate` that stand in the report: "extreme", "stiff".
+std::filesystem::path file_of_suite(const std::filesystem::path& folder, const std::string& suite) {
+    return folder / suite / "report.json";
+}
+
+/// The elementary tests of claim C6, timed by Google Benchmark in processes of their own. What is there of the same
+/// build and size stays.
+/// @returns a sentence where they are wrong
+std::vector<std::string> time_tests(const std::filesystem::path& folder, bool quick) {
+    constexpr std::size_t processes = 5;
+    const std::string repetitions = quick ? "3" : "9";
+    // Tests of leaves decide the claim; those of two triangles stand beside them in the table.
+    const std::string filter = quick ? "^test/[^/]+(/frame:a)?$" : "^test/";
+    const std::string made = build_description() + "repetitions " + repetitions + " of " + filter + "\n";
+    const std::filesystem::path maker = folder / "made_by.txt";
+    const auto file_of = [&](std::size_t process) { return folder / ("process-" + std::to_string(process) + ".json"); };
+    if (!std::filesystem::exists(maker) || bytes_of_file(maker) != made)
+        for (std::size_t process = 0; std::filesystem::remove(file_of(process));) ++process;
+    std::filesystem::create_directories(folder);
+    std::ofstream(maker, std::ios::binary) << made;
+    for (std::size_t process = 0; process < processes; ++process) {
+        if (std::filesystem::exists(file_of(process))) continue;
+        const std::filesystem::path part = file_of(process).string() + ".part";
+        const std::filesystem::path log = folder / "benchmarks.log";
+        const ended_process ended = run_to_end(
+            own_folder() / "aabblab_benchmarks",
+            {"--benchmark_filter=" + filter, "--benchmark_out_format=json", "--benchmark_out=" + part.string(),
+             "--benchmark_enable_random_interleaving=true", "--benchmark_repetitions=" + repetitions},
+            log);
+        if (ended.status != 0) return {"an elementary test of c6 is wrong; see " + log.string()};
+        std::filesystem::rename(part, file_of(process));
+    }
+    return {};
+}
+
+/// What was wrong stands beside the results, a sentence a line, since a later judgement has to say it too.
+std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
+    return folder / "failures.txt";
+}
+void keep_failures(const std::filesystem::path& folder, const std::vector<std::string>& failures) {
+    std::string text;
+    for (const std::string& failure : failures) text += failure + "\n";
+    write_file(file_of_failures(folder), text);
+}
+
+/// @returns what is not as it must be
+std::vector<std::string> play_suites(const std::filesystem::path& folder, bool quick) {
+    std::vector<std::string> failures;
+    const auto keep = [&](const std::string& suite, const suite_report& report) {
+        keep_report(file_of_suite(folder, suite), report);
+        failures.insert(failures.end(), report.failures.begin(), report.failures.end());
+    };
+    note("the extreme scenes");
+    keep("extreme", play_extreme_suite(folder / "extreme", usual_cases(), quick, false));
+    note("the stiff scenes");
+    keep("stiff", play_stiff_suite(folder / "stiff", {}, quick, false));
+    return failures;
+}
+
+/// What was finished is not measured again, so it must be what was measured then. Experiments see to that themselves.
+void forget_altered_tests(const std::filesystem::path& folder) {
+    try {
+        verify_record(folder);
+    } catch (const aabb::input_error& altered) {
+        note(std::string(altered.what()) + "; the elementary tests of c6 are timed again");
+        std::filesystem::remove_all(folder / "c6");
+    }
+}
+
+/// Error against run time, from the results of the studies that are there.
+report_section errors_section(const std::filesystem::path& folder, bool quick) {
+    report_section section{
+        .id = "errors",
+        .title = "Error against run time",
+        .paragraphs = {"Beyond the paper: what methods get wrong, and what that saves. Every answer is held against "
+                       "the exact one; a method that gets nothing wrong stands at one wrong answer in all."},
+        .figures = {},
+        .tables = {}};
+    for (const error_study& study : studies_with_curves(quick)) {
+        const std::filesystem::path results = folder_of_study(folder, study);
+        if (!study.whole && std::filesystem::exists(results / "errors.csv")) {
+            const std::vector<error_point> points = read_error_rows(results / "errors.csv");
+            for (const pair_group group : groups_in(points)) {
+                section.paragraphs.push_back(group_statement(points, group));
+                section.figures.push_back(group_figure(points, group));
+                section.tables.push_back(
+                    {section.figures.back().name,
+                     fmt::format("In {}: shares of pairs with a wrong answer, of intersecting ones that were missed, "
+                                 "of others that were invented.",
+                                 title_of(group)),
+                     error_summary(points, group)});
+            }
+        } else if (study.whole && std::filesystem::exists(results / "results.csv")) {
+            const std::vector<scene_summary> scenes = summarise(verified_rows(results));
+            std::ranges::copy(metric_statements(study, scenes), std::back_inserter(section.paragraphs));
+            std::ranges::copy(metric_figures(study, scenes), std::back_inserter(section.figures));
+            for (const scene_summary& scene : scenes)
+                section.tables.push_back({fmt::format("{}_{}", study.name, &scene - scenes.data() + 1),
+                                          heading_of(scene), table_of(scene, study.whole->shown)});
+        }
+    }
+    return section;
+}
+
+/// Of a suite, where it was played.
+std::optional<report_section> suite_section(const std::filesystem::path& folder, const std::string& suite,
+                                            const std::string& title, const std::string& about) {
+    if (!std::filesystem::exists(file_of_suite(folder, suite))) return std::nullopt;
+    suite_report report = kept_report(file_of_suite(folder, suite));
+    report_section section{suite, title, {about}, std::move(report.figures), std::move(report.tables)};
+    std::ranges::move(report.paragraphs, std::back_inserter(section.paragraphs));
+    return section;
+}
+
+/// The small atlas, where it was measured.
+std::optional<report_section> atlas_section(const std::filesystem::path& folder) {
+    const std::vector<atlas_scene> atlas = measured_atlas(folder_of_atlas(folder));
+    if (atlas.empty()) return std::nullopt;
+    return report_section{
+        "atlas",
+        "Atlas of global search",
+        {fmt::format("Beyond the paper: which composition or engine is the fastest in each of {} small scenes. "
+                     "`./aabblab atlas` plays the whole atlas, and judges statements of others on it.",
+                     atlas.size())},
+        atlas_figures(atlas),
+        {{"winners", "Who wins a frame after the first.", winners_table(atlas)},
+         {"regrets", "What it costs to use one everywhere: a frame's time over that of the fastest of each scene.",
+          regrets_table(atlas, span_of_time::frame)},
+         {"regrets_whole", "The same of all frames, the first and the making included.",
+          regrets_table(atlas, span_of_time::whole)}}};
+}
+
+/// What was wrong, a sentence each.
+std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
+    std::vector<std::string> failures;
+    if (!std::filesystem::exists(file_of_failures(folder))) return failures;
+    for (line_stream lines(file_of_failures(folder)); lines.next();) failures.emplace_back(lines.line());
+    return failures;
+}
+
+/// Plays every experiment of the paper, and the studies and suites of the report, into a folder, and keeps what is
+/// wrong as soon as it is found. What is there already of the same build and size stays. At the end the folder is
+/// sealed.
+void measure_reproduction(const std::filesystem::path& folder, bool quick) {
+    forget_altered_tests(folder);
+    std::vector<experiment> experiments;
+    for (const std::filesystem::path& config : configs_in(AABBLAB_CONFIGS))
+        experiments.push_back(open_experiment(config.string(), quick));
+    const std::vector<error_study> studies = studies_with_curves(quick);
+    const std::size_t all = experiments.size() + 1 + studies.size();
+    std::vector<std::string> failures;
+    const auto add = [&](const std::vector<std::string>& found) {
+        failures.insert(failures.end(), found.begin(), found.end());
+        keep_failures(folder, failures);
+    };
+    unseal_record(folder);
+    std::filesystem::remove(file_of_failures(folder));
+    for (const experiment& e : experiments) {
+        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, all, e.name));
+        add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
+    }
+    note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, all));
+    add(time_tests(folder / "c6", quick));
+    for (const error_study& study : studies) {
+        note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&study - studies.data()), all,
+                         study.name));
+        add(measure_study(study, folder_of_study(folder, study), printed::nothing));
+    }
+    add(play_suites(folder, quick));
+    // Whatever the size of the run: the whole atlas takes half an hour by itself.
+    add(measure_atlas(folder_of_atlas(folder), true));
+    seal_record(folder);
+}
+
+/// What the reports have behind the claims, from what was measured in the folder: errors against run time, the extreme
+/// scenes, the stiff ones, the atlas.
+std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick) {
+    std::vector<report_section> sections;
+    if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
+        sections.push_back(std::move(errors));
+    if (auto extreme =
+            suite_section(folder, "extreme", "Extreme scenes",
+                          "Beyond the paper: every composition and engine where exactness is hardest, exact, "
+                          "refused with the reason, or wrong."))
+        sections.push_back(*std::move(extreme));
+    if (auto stiff = suite_section(folder, "stiff", "Stiff scenes",
+                                   "Beyond the paper: bodies stepped in time, pushed by the contacts that are found, "
+                                   "and held against closed forms and published results."))
+        sections.push_back(*std::move(stiff));
+    if (auto atlas = atlas_section(folder)) sections.push_back(*std::move(atlas));
+    return sections;
+}
+
+std::filesystem::path folder_of(const reproduce_request& request) {
+    if (request.out) return *request.out;
+    if (!request.sources.empty()) return "results/reproduce-judged";
+    return request.quick ? "results/reproduce-quick" : "results/reproduce";
+}
+
+void require_sense(const reproduce_request& request) {
+    if (!request.sources.empty() && !request.judge)
+        throw aabb::input_error(request.sources.front() + " is named, but only --judge takes results that are there");
+    if (request.archive && request.sources.size() > 1)
+        throw aabb::input_error("--archive takes the results of one run, and several are named");
+}
+
+/// The results of one run, read and verified.
+/// @param name as the user knows it
+measurements verified_measurements(const std::filesystem::path& folder, const std::string& name) {
+    const std::vector<std::string> experiments = recorded_experiments(folder);
+    if (experiments.empty()) throw aabb::input_error("there are no results of a reproduction in " + name);
+    verify_record(folder);
+    if (!is_sealed_record(folder)) note(name + ": " + unsealed_note);
+    measurements results(folder, name);
+    for (const std::string& experiment : experiments) (void)results.of(experiment);
+    return results;
+}
+
+/// The verdicts as a terminal shows them.
+std::string verdict_text(const reproduction& all) {
+    std::string text;
+    if (!all.disturbance.empty()) text += all.disturbance + "\n\n";
+    for (const std::string& sentence : all.headline) text += sentence + "\n";
+    text += "\n";
+    for (const claim_result& c : all.claims)
+        text += fmt::format("{:<4} {}\n     {}. {}\n", c.id, c.claim, text_of(c), c.sentence);
+    return text;
+}
+
+/// Which size of the paper's experiments a run has.
+bool is_quick(const std::filesystem::path& folder) {
+    return read_manifest(folder / recorded_experiments(folder).front()).quick;
+}
+
+/// A run and its copy are no two machines that agree.
+void require_different(std::span<const measurements> runs) {
+    std::map<std::string, std::string> names;  // by what seals them
+    for (const measurements& run : runs) {
+        if (!is_sealed_record(run.folder())) continue;
+        const auto [known, is_new] = names.emplace(seal_of_record(run.folder()), run.name());
+        if (!is_new) throw aabb::input_error(known->second + " and " + run.name() + " are the same run");
+    }
+}
+
+/// How verdicts compare with those of the published run of the same size; empty where it is not there, or damaged.
+std::string agreement_with_published(std::span<const measurements> runs, const reproduction& all) {
+    const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
+    const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
+    if (!std::filesystem::exists(archive)) return {};
+    const std::string published = "the published run, paper/archive/" + name;
+    try {
+        const std::string file = archive.string();
+        const source_list sources({&file, 1});
+        const results_source& source = sources.all().front();
+        const measurements results = verified_measurements(source.folder, source.name);
+        const auto is_published = [&](const measurements& run) {
+            return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
+        };
+        if (std::ranges::all_of(runs, is_published)) return "These results are " + published + ".";
+        return agreement_of(all.claims, judged(results).claims, published);
+    } catch (const aabb::input_error& error) {
+        note("verdicts are not compared with the published ones: " + std::string(error.what()));
+        return {};
+    }
+}
+
+/// Judges what was measured and writes the report.
+/// @returns the exit status
+int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
+    std::vector<std::string> failures;
+    for (const measurements& run : runs) std::ranges::copy(kept_failures(run.folder()), std::back_inserter(failures));
+    const measurements& first = runs.front();
+    for (const measurements& run : runs)
+        if (is_quick(run.folder()) != is_quick(first.folder()))
+            throw aabb::input_error(first.name() + " and " + run.name() +
+                                    " are of different sizes, quick and full, and cannot be judged together");
+    require_different(runs);
+    const reproduction all = judged(runs);
+    const std::string agreement = agreement_with_published(runs, all);
+    write_reproduction(out, runs, all, sections_of_reproduction(first.folder(), is_quick(first.folder())), failures,
+                       agreement);
+    print(verdict_text(all));
+    if (!failures.empty())
+        print(fmt::format("\n{} answers were wrong; compositions among them have no times:\n", failures.size()));
+    for (const std::string& failure : failures) print("  " + failure + "\n");
+    print("\nThe report is " + visible((out / "report.html").string()) + "\n");
+    if (!agreement.empty()) print_paragraph(agreement);
+    return failures.empty() ? 0 : 1;
+}
+
+/// Packs what a judgement reads, and says how large it is and what its checksum is.
+void archive_reproduction(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    write_archive(file, record_top, folder, archived_files(folder));
+    const std::string bytes = bytes_of_file(file);
+    print(fmt::format("The archive is {} ({:.1f} MiB), SHA-256 {}\n", visible(file.string()),
+                      static_cast<double>(bytes.size()) / (1 << 20), sha256_of(bytes)));
+}
+
+}  // namespace
+
+int reproduce(const reproduce_request& request) {
+    outlive_reader();
+    require_sense(request);
+    const std::filesystem::path out = folder_of(request);
+    if (request.judge && request.sources.empty() && recorded_experiments(out).empty())
+        throw aabb::input_error("there are no results of a reproduction in " + out.string());
+    source_list sources(request.sources);
+    const folder_lock alone(out);
+    if (!request.judge) measure_reproduction(out, request.quick);
+    if (request.sources.empty()) sources.add(out);
+    return sources.with_names_of_user([&] {
+        std::vector<measurements> runs;
+        for (const results_source& source : sources.all())
+            runs.push_back(verified_measurements(source.folder, source.name));
+        const int status = judge(out, runs);
+        if (request.archive) archive_reproduction(runs.front().folder(), *request.archive);
+        return status;
+    });
+}
+
+}  // namespace aabblab
