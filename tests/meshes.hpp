@@ -4,11 +4,15 @@
 
 #include "sheets.hpp"
 
-import aabb;
-
 /// In the corner of a cube of that edge.
 inline aabb::mesh tetrahedron(float edge) {
     return {{{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
+[[nodiscard]] inline aabb::pose shifted(const aabb::vec3d& by) {
+    aabb::pose p;
+    p.translation = by;
+    return p;
 }
 
 /// The test says where things are, and moves vertices itself.

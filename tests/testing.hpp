@@ -1,12 +1,13 @@
 #pragma once
 
-// What most tests include: Catch2, and what they name of the standard library. Modules are imported after it.
+// What most tests include: Catch2, and what they name of the standard library. Other modules are imported after it.
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_exception.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -23,5 +24,48 @@
 #include <utility>
 #include <vector>
 
+import aabb.std;
+
+/// The value lies between these two.
+#define CHECK_BETWEEN(low, value, high) \
+    do {                                \
+        CHECK((value) > (low));         \
+        CHECK((value) < (high));        \
+    } while (false)
+
 /// The call is refused in this sentence.
 #define CHECK_REFUSED(call, sentence) CHECK_THROWS_MATCHES(call, aabb::input_error, Catch::Matchers::Message(sentence))
+
+[[nodiscard]] inline bool holds(std::string_view text, std::string_view part) {
+    return text.find(part) != std::string_view::npos;
+}
+
+[[nodiscard]] inline std::size_t count_of(std::string_view part, std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+/// With `by` in place of the first `what`, which must be there.
+[[nodiscard]] inline std::string replaced(std::string text, std::string_view what, std::string_view by) {
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, what.size(), by);
+}
+
+template <class T, class Allocator>
+[[nodiscard]] std::vector<T, Allocator> sorted(std::vector<T, Allocator> all) {
+    std::ranges::sort(all);
+    return all;
+}
+
+/// The sentence with which a call is refused; "accepted" where it is not.
+template <class Error, class Call>
+std::string refusal_in(Call call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}

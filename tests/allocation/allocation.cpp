@@ -5,8 +5,6 @@
 #include "../meshes.hpp"
 #include "counted_new.hpp"
 
-import aabb.std;
-
 using namespace aabb;
 
 namespace {
@@ -71,8 +69,7 @@ TEST_CASE("local detection allocates nothing in steady state") {
         for (int round = 0; round < 2; ++round) {
             if (round == 1) before = allocations.made;
             for (int step = 0; step < 5; ++step) {
-                pose moved;
-                moved.translation = {0.3 * step, 0.2, 0.1};
+                const pose moved = shifted({0.3 * step, 0.2, 0.1});
                 pairs.clear();
                 stage->all_pairs(model, {}, model, moved, pairs);
                 if (!stage->first_pair(model, {}, model, moved)) std::abort();

@@ -5,9 +5,6 @@
 #include "../strategies/overlapping.hpp"
 #include "counted_new.hpp"
 
-import aabb.std;
-import aabb;
-import aabb.registry;
 import aabb.validation;
 
 using namespace aabb;
@@ -174,25 +171,6 @@ void require_of_search(Make make, bool frees_all) {
     require_exact_or_refusing(life, frees_all);
 }
 
-}  // namespace
-
-TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses", "[long]") {
-    for (const aabb::composition& composition : all_global_compositions()) {
-        INFO(text_of_global(composition));
-        require_of_search([&] { return global_of(composition, instrumentation::counters); }, true);
-    }
-}
-
-TEST_CASE("an engine for boxes that runs out of memory is exact afterwards, or refuses") {
-    for (const engine_info& engine : engines()) {
-        if (!engine.searches_boxes || breaks_for_good(engine.name)) continue;
-        INFO(engine.name);
-        require_of_search([&] { return make_box_engine(engine.name); }, !loses_memory(engine.name));
-    }
-}
-
-namespace {
-
 /// Squares on a side of a sheet.
 constexpr std::uint32_t few_squares = 3;
 constexpr std::uint32_t squares_for_fronts = 12;  // which are kept of no fewer leaves
@@ -204,11 +182,7 @@ mesh sheet(float height, std::uint32_t squares = few_squares) {
     });
 }
 
-pose moved() {
-    pose p;
-    p.translation = {0.3, 0.2, 0.1};
-    return p;
-}
+const pose moved = shifted({0.3, 0.2, 0.1});
 
 /// What all queries say of a model and itself, moved, behind marks.
 struct answers {
@@ -222,10 +196,10 @@ struct answers {
 
 answers ask(local_stage& stage) {
     answers given;
-    stage.all_pairs(0, {}, 0, moved(), given.all);
+    stage.all_pairs(0, {}, 0, moved, given.all);
     stage.self_pairs(0, given.self);
-    given.count = stage.count_pairs(0, {}, 0, moved());
-    given.any = stage.first_pair(0, {}, 0, moved()).has_value();
+    given.count = stage.count_pairs(0, {}, 0, moved);
+    given.any = stage.first_pair(0, {}, 0, moved).has_value();
     given.all = sorted_behind_mark(given.all);
     given.self = sorted_behind_mark(given.self);
     return given;
@@ -236,15 +210,15 @@ std::optional<answers> ask(local_stage& stage, exhausted_run& run, std::string& 
     answers given;
     for (const bool self : {false, true}) {
         std::vector<index_pair>& pairs = self ? given.self : given.all;
-        const auto query = [&] { self ? stage.self_pairs(0, pairs) : stage.all_pairs(0, {}, 0, moved(), pairs); };
+        const auto query = [&] { self ? stage.self_pairs(0, pairs) : stage.all_pairs(0, {}, 0, moved, pairs); };
         if (!run.attempt(query)) {
             if (pairs != std::vector{mark}) fault = "pairs of a query that failed";
             if (run.refused() || !run.attempt(query)) return std::nullopt;
         }
         pairs = sorted_behind_mark(pairs);
     }
-    if (!run.insist([&] { given.count = stage.count_pairs(0, {}, 0, moved()); })) return std::nullopt;
-    if (!run.insist([&] { given.any = stage.first_pair(0, {}, 0, moved()).has_value(); })) return std::nullopt;
+    if (!run.insist([&] { given.count = stage.count_pairs(0, {}, 0, moved); })) return std::nullopt;
+    if (!run.insist([&] { given.any = stage.first_pair(0, {}, 0, moved).has_value(); })) return std::nullopt;
     return given;
 }
 
@@ -284,6 +258,21 @@ void require_of_detection(Make make, bool frees_all, std::uint32_t squares = few
 }
 
 }  // namespace
+
+TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses", "[long]") {
+    for (const aabb::composition& composition : all_global_compositions()) {
+        INFO(text_of_global(composition));
+        require_of_search([&] { return global_of(composition, instrumentation::counters); }, true);
+    }
+}
+
+TEST_CASE("an engine for boxes that runs out of memory is exact afterwards, or refuses") {
+    for (const engine_info& engine : engines()) {
+        if (!engine.searches_boxes || breaks_for_good(engine.name)) continue;
+        INFO(engine.name);
+        require_of_search([&] { return make_box_engine(engine.name); }, !loses_memory(engine.name));
+    }
+}
 
 TEST_CASE("a composed local detection that runs out of memory is exact afterwards, or refuses", "[long]") {
     for (const aabb::composition& composition : all_local_compositions()) {

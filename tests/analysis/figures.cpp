@@ -1,11 +1,9 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
 #include <regex>
 
 #include "../experiments/temporary_folder.hpp"
+#include "../matches.hpp"
 
-import aabb.std;
 import aabb;
 import aabblab.figures;
 import aabblab.scale;
@@ -47,12 +45,6 @@ figure every_style() {
     f.x.logarithmic = true;
     f.marks = {{300, "three hundred"}};
     return f;
-}
-
-std::size_t count_of(std::string_view part, std::string_view text) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1)) ++count;
-    return count;
 }
 
 /// Tags close in the order in which they opened, and nothing that must be escaped is not.
@@ -128,15 +120,8 @@ edges plot_of(const std::string& svg) {
     return {std::stod(found[1]), std::stod(found[4]), std::stod(found[2]), std::stod(found[3])};
 }
 
-/// What matches in parentheses, each time.
-std::vector<std::string> all_in(const std::string& svg, const std::string& expression) {
-    std::vector<std::string> all;
-    const std::regex one(expression);
-    for (std::sregex_iterator i(svg.begin(), svg.end(), one), end; i != end; ++i) all.push_back((*i)[1]);
-    return all;
-}
-
-std::set<std::string> set_of(const std::vector<std::string>& all) {
+std::set<std::string> set_in(const std::string& text, const std::string& pattern) {
+    const std::vector<std::string> all = found_in(text, pattern);
     return {all.begin(), all.end()};
 }
 
@@ -181,6 +166,33 @@ void require_pdf(const std::string& pdf) {
     const std::size_t table = std::stoul(pdf.substr(said + 10));
     REQUIRE(table < pdf.size());
     REQUIRE((pdf.compare(table, 4, "xref") == 0 || std::isdigit(static_cast<unsigned char>(pdf[table])) != 0));
+}
+
+/// Three lines that end so far apart that each can have its label beside it, or so near that they cannot.
+figure three_lines(double factor) {
+    std::vector<aabblab::series> lines;
+    double end = 1;
+    for (const char* label : {"Shell sort", "insertion sort, axial cut", "incremental"}) {
+        lines.push_back(series_of(label, series_style::line, {{100, 1, 1, 1}, {100000, end, end, end}}));
+        end *= factor;
+    }
+    figure f = figure_of(lines);
+    f.x.logarithmic = f.y.logarithmic = true;
+    return f;
+}
+
+/// So many panels with two lines and a level, which all have the same labels.
+figure small_multiples(std::size_t count) {
+    figure f = figure_of({series_of("equal", series_style::level, {{0, 1, 1, 1}})});
+    f.x.logarithmic = true;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double y = static_cast<double>(i) + 2;
+        f.panels.push_back({"displacement " + std::to_string(i),
+                            {series_of("Shell sort", series_style::line, {{100, 1, 1, 1}, {1000000, y, y, y}}),
+                             series_of("insertion sort", series_style::line, {{100, 2, 2, 2}, {1000000, 3, 3, 3}})},
+                            {{1000, "a mark"}}});
+    }
+    return f;
 }
 
 }  // namespace
@@ -308,8 +320,8 @@ TEST_CASE("A series without points is left out, and the others look as if it wer
     const std::string without = svg_of(figure_of({series_of("first", series_style::line, {}), second}));
     const std::string with = svg_of(figure_of({series_of("first", series_style::line, {{1, 1, 1, 1}}), second}));
     const std::string colours = "stroke=\"(#[A-F0-9]*)\"[^>]* stroke-dasharray";
-    REQUIRE(set_of(all_in(without, colours)).size() == 1);
-    REQUIRE(set_of(all_in(without, colours)) == set_of(all_in(with, colours)));
+    REQUIRE(set_in(without, colours).size() == 1);
+    REQUIRE(set_in(without, colours) == set_in(with, colours));
     REQUIRE_THAT(without, !ContainsSubstring("first"));
 }
 
@@ -362,15 +374,15 @@ TEST_CASE("Ten series differ in black and white") {
         ten.push_back(series_of("series " + std::to_string(i), series_style::line, {{1, 1, 1, 1}, {2, 1, 1, 1}}));
     const std::string svg = svg_of(figure_of(ten));
     // One of the ten has no dashes.
-    REQUIRE(set_of(all_in(svg, "stroke-dasharray=\"([^\"]*)\"")).size() == 9);
+    REQUIRE(set_in(svg, "stroke-dasharray=\"([^\"]*)\"").size() == 9);
     // Behind all texts is the legend: of each series a line and its sign.
-    const std::vector<std::string> paths = all_in(svg.substr(svg.rfind("</text>")), "(<path [^>]*>)");
+    const std::vector<std::string> paths = found_in(svg.substr(svg.rfind("</text>")), "(<path [^>]*>)");
     REQUIRE(paths.size() == 20);
     std::set<std::string> shapes;
     for (std::size_t i = 1; i < paths.size(); i += 2) {
         // Without its place and its colour.
         std::vector<double> numbers;
-        for (const std::string& number : all_in(paths[i], "[ML ]([0-9.]+)")) numbers.push_back(std::stod(number));
+        for (const std::string& number : found_in(paths[i], "[ML ]([0-9.]+)")) numbers.push_back(std::stod(number));
         std::string shape = std::regex_replace(paths[i], std::regex("#[A-F0-9]*| d=\"[^\"]*\""), "");
         for (std::size_t k = 2; k < numbers.size(); ++k)
             shape += " " + std::to_string(std::lround(numbers[k] - numbers[k - 2]));
@@ -408,7 +420,7 @@ TEST_CASE("Points of several series over one name stand side by side") {
     const std::vector<figure_point> points{{1, 1, 1, 1}, {2, 2, 2, 2}};
     figure f = figure_of({series_of("", series_style::points, points), series_of("", series_style::points, points)});
     // Places of discs, and of the left edges of squares.
-    const auto first_places = [&] { return all_in(svg_of(f), "d=\"M([0-9.]+) [^\"]*(?:h0|z)\"[^>]* stroke=\"#"); };
+    const auto first_places = [&] { return found_in(svg_of(f), "d=\"M([0-9.]+) [^\"]*(?:h0|z)\"[^>]* stroke=\"#"); };
     const auto distance = [&] {
         const std::vector<std::string> at = first_places();
         REQUIRE(at.size() == 2);
@@ -429,37 +441,6 @@ TEST_CASE("A folder that cannot be made is named") {
     REQUIRE_THROWS_AS(aabblab::draw(folder / "file", {&f, 1}), aabb::input_error);
     REQUIRE_THROWS_WITH(aabblab::draw(folder / "file", {&f, 1}), ContainsSubstring((folder / "file").string()));
 }
-
-namespace {
-
-/// Three lines that end so far apart that each can have its label beside it, or so near that they cannot.
-figure three_lines(double factor) {
-    std::vector<aabblab::series> lines;
-    double end = 1;
-    for (const char* label : {"Shell sort", "insertion sort, axial cut", "incremental"}) {
-        lines.push_back(series_of(label, series_style::line, {{100, 1, 1, 1}, {100000, end, end, end}}));
-        end *= factor;
-    }
-    figure f = figure_of(lines);
-    f.x.logarithmic = f.y.logarithmic = true;
-    return f;
-}
-
-/// So many panels with two lines and a level, which all have the same labels.
-figure small_multiples(std::size_t count) {
-    figure f = figure_of({series_of("equal", series_style::level, {{0, 1, 1, 1}})});
-    f.x.logarithmic = true;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double y = static_cast<double>(i) + 2;
-        f.panels.push_back({"displacement " + std::to_string(i),
-                            {series_of("Shell sort", series_style::line, {{100, 1, 1, 1}, {1000000, y, y, y}}),
-                             series_of("insertion sort", series_style::line, {{100, 2, 2, 2}, {1000000, 3, 3, 3}})},
-                            {{1000, "a mark"}}});
-    }
-    return f;
-}
-
-}  // namespace
 
 TEST_CASE("Lines have their labels at their ends, where they are far enough apart for it") {
     const std::string svg = svg_of(three_lines(10));
@@ -510,7 +491,7 @@ TEST_CASE("Panels share axes, looks and a legend") {
             CHECK(count_of(">" + std::string(once) + "</text>", svg) == 1);
         CHECK(count_of(">a mark</text>", svg) == count);
         // Three looks, a frame and a grid.
-        CHECK(set_of(all_in(svg, "stroke=\"(#[A-F0-9]*)\"")).size() == 5);
+        CHECK(set_in(svg, "stroke=\"(#[A-F0-9]*)\"").size() == 5);
         CHECK(
             csv_of(f).starts_with("number,x,y,low,high,series,panel\n1,,1,1,1,equal,\n"
                                   "2,100,1,1,1,Shell sort,displacement 0\n"));

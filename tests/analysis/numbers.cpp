@@ -1,6 +1,5 @@
 #include <catch2/catch_test_macros.hpp>
 
-import aabblab.digits;
 import aabblab.numbers;
 
 using aabblab::counted;

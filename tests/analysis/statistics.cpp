@@ -1,7 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
 #include <random>
 
-import aabb.std;
+#include "../testing.hpp"
+
 import aabblab.statistics;
 
 using aabblab::cells;

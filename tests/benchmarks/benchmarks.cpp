@@ -1,23 +1,11 @@
 // Runs the program of micro-benchmarks.
 
-#include <catch2/catch_test_macros.hpp>
-#include <nlohmann/json.hpp>
+#include "../experiments/program_json.hpp"
 
-#include "../experiments/program.hpp"
-
-import aabb.std;
-import aabb;
 import aabb.registry;
 import aabb.strategies;
 
 namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-}
 
 template <class... Partitions>
 std::vector<std::string> cutting_partitions(aabb::type_list<Partitions...>) {
@@ -33,12 +21,16 @@ aabb::strategy_choice strategy_of(const std::string& benchmark) {
     return aabb::parse_strategy(benchmark.substr(begin, benchmark.find('/', begin) - begin));
 }
 
+/// What benchmarks of these names report.
+nlohmann::json reported(const std::string& filter) {
+    return json_of(
+        {"--benchmark_filter=" + filter, "--benchmark_min_time=0.001", "--benchmark_format=json"})["benchmarks"];
+}
+
 }  // namespace
 
 TEST_CASE("Every strategy of a stage of global search has a benchmark, named as the command line takes it") {
-    const program_result result = run_program({"--benchmark_list_tests"});
-    REQUIRE(result.status == 0);
-    std::vector<std::string> listed = lines_of(result.out);
+    std::vector<std::string> listed = lines_of(run_well({"--benchmark_list_tests"}).out);
     for (const aabb::strategy_kind kind :
          {aabb::strategy_kind::sort, aabb::strategy_kind::partition, aabb::strategy_kind::sweep}) {
         const std::string stage = std::string(name_of(kind)) + "/";
@@ -64,9 +56,7 @@ TEST_CASE("Every strategy of a stage of global search has a benchmark, named as 
 }
 
 TEST_CASE("Every test of local detection has a benchmark, with and without what carries B into A's frame") {
-    const program_result result = run_program({"--benchmark_list_tests", "--benchmark_filter=^test/"});
-    REQUIRE(result.status == 0);
-    const std::vector<std::string> listed = lines_of(result.out);
+    const auto listed = lines_of(run_well({"--benchmark_list_tests", "--benchmark_filter=^test/"}).out);
     const std::string triangle = "test/triangle/";
     const auto triangle_test_of = [](const std::string& benchmark) {
         return strategy_of(benchmark.substr(std::string("test/").size()));
@@ -100,15 +90,8 @@ TEST_CASE("Every test of local detection has a benchmark, with and without what 
 }
 
 TEST_CASE("Tests of local detection report a time and the share of hits, which is the same in every run") {
-    const auto run = [] {
-        const program_result result =
-            run_program({"--benchmark_filter=^test/", "--benchmark_min_time=0.001", "--benchmark_format=json"});
-        INFO(result.err);
-        REQUIRE(result.status == 0);
-        return nlohmann::json::parse(result.out)["benchmarks"];
-    };
-    const auto benchmarks = run();
-    const auto again = run();
+    const auto benchmarks = reported("^test/");
+    const auto again = reported("^test/");
     REQUIRE(benchmarks.size() >= 20);
     REQUIRE(again.size() == benchmarks.size());
     const auto hits = [&](const std::string& name) {
@@ -146,12 +129,9 @@ TEST_CASE("Tests of local detection report a time and the share of hits, which i
 }
 
 TEST_CASE("Benchmarks report their counters") {
-    const program_result result =
-        run_program({"--benchmark_filter=/(insertion|axial_cut:axes=2,limit=on|incremental|one_axis:axis=x)"
-                     "/n:1000(/displacement:0.1)?(/manual_time)?$",
-                     "--benchmark_min_time=0.001", "--benchmark_format=json"});
-    REQUIRE(result.status == 0);
-    const auto benchmarks = nlohmann::json::parse(result.out)["benchmarks"];
+    const auto benchmarks = reported(
+        "/(insertion|axial_cut:axes=2,limit=on|incremental|one_axis:axis=x)"
+        "/n:1000(/displacement:0.1)?(/manual_time)?$");
     REQUIRE(benchmarks.size() == 4);
     const auto counters = [&](std::size_t i, const std::vector<const char*>& names) {
         INFO(benchmarks[i].dump());
@@ -164,22 +144,15 @@ TEST_CASE("Benchmarks report their counters") {
 }
 
 TEST_CASE("Every build has a benchmark, which tells what two threads gain, and what there is to gain") {
-    const program_result result = run_program(
-        {"--benchmark_filter=^build/.*/noise_sphere", "--benchmark_min_time=0.001", "--benchmark_format=json"});
-    REQUIRE(result.status == 0);
-    const auto benchmarks = nlohmann::json::parse(result.out)["benchmarks"];
     std::vector<std::string> measured;
-    for (const auto& benchmark : benchmarks) {
+    for (const auto& benchmark : reported("^build/.*/noise_sphere")) {
         INFO(benchmark.dump());
         measured.push_back(strategy_of(benchmark["name"]).name);
         CHECK(benchmark.value("real_time", 0.0) > 0);
         CHECK(benchmark.value("two_threads", 0.0) > 0);
         CHECK(benchmark.value("two_builds", 0.0) > 0);
     }
-    std::vector<std::string> known = strategy_names(aabb::strategy_kind::build);
-    std::ranges::sort(measured);
-    std::ranges::sort(known);
-    CHECK(measured == known);
+    CHECK(sorted(measured) == sorted(strategy_names(aabb::strategy_kind::build)));
 }
 
 TEST_CASE("What benchmarks cannot use is refused with status 2") {
@@ -190,5 +163,5 @@ TEST_CASE("What benchmarks cannot use is refused with status 2") {
         CHECK(result.out.empty());
         CHECK(lines_of(result.err).size() == 1);
     }
-    REQUIRE(run_program({"--help"}).status == 0);
+    run_well({"--help"});
 }

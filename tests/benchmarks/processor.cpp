@@ -1,8 +1,7 @@
 #include <sched.h>
 
-#include <catch2/catch_test_macros.hpp>
+#include "../testing.hpp"
 
-import aabb.std;
 import aabblab.processor;
 
 namespace {

@@ -1,10 +1,5 @@
-#include <rapidcheck.h>
-#include <catch2/catch_test_macros.hpp>
-
 #include "../random_poses.hpp"
 
-import aabb.std;
-import aabb;
 import aabblab.rotated_boxes;
 
 using namespace aabb;

@@ -1,6 +1,3 @@
 #include "fakes.hpp"
 
-import aabb.std;
-import aabb;
-
 aabb::global_search<fake_sweep, fake_whole_partition, fake_sweep> wrong;

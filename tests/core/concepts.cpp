@@ -2,8 +2,6 @@
 
 #include "fakes.hpp"
 
-import aabb;
-
 using namespace aabb;
 
 static_assert(SortPolicy<fake_sort>);
@@ -37,8 +35,7 @@ std::vector<index_pair> pairs_with() {
     std::vector<index_pair> pairs;
     search.update(row);
     search.search(pairs);
-    std::ranges::sort(pairs);
-    return pairs;
+    return sorted(pairs);
 }
 
 }  // namespace
@@ -57,8 +54,7 @@ TEST_CASE("a local detection works with the least that a strategy can be") {
     local_detection<fake_tree, fake_triangle> detection;
     std::vector<index_pair> pairs;
     detection.all_pairs(fixed, {}, fixed, {}, pairs);
-    std::ranges::sort(pairs);
-    CHECK(pairs == std::vector<index_pair>{{0, 0}, {1, 1}, {2, 2}});
+    CHECK(sorted(pairs) == std::vector<index_pair>{{0, 0}, {1, 1}, {2, 2}});
     CHECK(detection.first_pair(fixed, {}, fixed, {}).has_value());
     pose away;
     away.translation = {0, 0, 20};

@@ -1,7 +1,6 @@
-#include <catch2/catch_test_macros.hpp>
+#include "../testing.hpp"
 
 import aabb.costs;
-import aabb.std;
 
 using namespace aabb;
 

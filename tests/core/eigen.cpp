@@ -1,13 +1,6 @@
 #include <Eigen/Geometry>
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_exception.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
-#include <cmath>
 
 #include "../random_poses.hpp"
-
-import aabb.std;
-import aabb;
 
 using namespace aabb;
 using Catch::Matchers::ContainsSubstring;

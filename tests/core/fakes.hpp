@@ -83,6 +83,14 @@ struct fake_sweep {
     }
 };
 
+/// Refuses every sort but fake_sort.
+struct picky_sweep : fake_sweep {
+    template <class Sort, class...>
+    static constexpr std::string_view refuses() {
+        return std::string_view(Sort::name) == fake_sort::name ? "" : "picky works with the fake sort only";
+    }
+};
+
 /// A tree of depth one: the root, and a leaf for each triangle, chained.
 struct fake_build {
     static constexpr std::string_view name = "fake";

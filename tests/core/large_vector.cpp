@@ -1,6 +1,5 @@
 #include "../testing.hpp"
 
-import aabb.std;
 import aabb;
 
 using namespace aabb;

@@ -2,7 +2,6 @@
 
 #include "../testing.hpp"
 
-import aabb.std;
 import aabb;
 
 using namespace aabb;

@@ -1,9 +1,4 @@
-#include <rapidcheck.h>
-#include <catch2/matchers/catch_matchers_string.hpp>
-
 #include "../random_poses.hpp"
-
-import aabb;
 
 using namespace aabb;
 using Catch::Matchers::ContainsSubstring;

@@ -1,7 +1,5 @@
 #include "../meshes.hpp"
 
-import aabb;
-
 using namespace aabb;
 
 TEST_CASE("world boxes follow poses, and meshes that deform") {

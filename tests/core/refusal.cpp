@@ -2,18 +2,8 @@
 
 #include "fakes.hpp"
 
-import aabb.std;
-import aabb;
-
 namespace {
 
-/// Refuses every sort but fake_sort.
-struct picky_sweep : fake_sweep {
-    template <class Sort, class...>
-    static constexpr std::string_view refuses() {
-        return std::string_view(Sort::name) == fake_sort::name ? "" : "picky works with the fake sort only";
-    }
-};
 struct other_sort : fake_sort {
     static constexpr std::string_view name = "other";
 };

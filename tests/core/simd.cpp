@@ -1,7 +1,6 @@
 #include "../testing.hpp"
 
 import aabb.columns.kernels;
-import aabb.simd;
 import aabb.wide_tree.kernels;
 
 using namespace aabb;

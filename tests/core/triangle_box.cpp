@@ -1,8 +1,5 @@
-#include <rapidcheck.h>
-
 #include "../random_poses.hpp"
 
-import aabb;
 import aabb.triangle.exact;
 
 using namespace aabb;

@@ -1,15 +1,11 @@
 #include <archive.h>
 #include <archive_entry.h>
 
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_exception.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
 #include <random>
 
 #include "temporary_folder.hpp"
 
 import aabb.base;
-import aabb.std;
 import aabblab.archive;
 
 using aabblab::unpacked_archive;

@@ -1,11 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "program.hpp"
-#include "temporary_folder.hpp"
 
 import aabb.policy;
 import aabb.registry;
-import aabb.std;
 import aabblab.archive;
 import aabblab.atlas;
 import aabblab.configs;
@@ -32,6 +28,11 @@ std::string cell(const aabblab::table& t, const std::string& who, const std::str
     for (const auto& cells : t.rows)
         if (cells[1] == who) return cells[static_cast<std::size_t>(k)];
     return "none";
+}
+
+aabblab::judged_statement judged(const std::vector<atlas_scene>& atlas, const std::string& id) {
+    const auto all = judged_statements(atlas);
+    return *std::ranges::find(all, id, &aabblab::judged_statement::id);
 }
 
 /// a is as fast as b at 0.1: (log 2 below, log 2 above) half way between 0.01 and 1.
@@ -74,8 +75,7 @@ TEST_CASE("A border lies where two take the same time, between two scenes that d
     CHECK(borders[0].after == "b");
     CHECK(std::abs(borders[0].at - 0.1) < 1e-3);
     CHECK(borders[0].range.low < 0.1);
-    CHECK(borders[0].range.high > 0.1);
-    CHECK(borders[0].range.high < 0.2);
+    CHECK_BETWEEN(0.1, borders[0].range.high, 0.2);
     const aabblab::table summary = borders_summary(borders);
     REQUIRE(summary.rows.size() == 1);
     CHECK(summary.rows[0][3] == "1");
@@ -147,10 +147,7 @@ TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided 
                      false,
                      {},
                      {line("embree", 2), line("embree_refit", 1)}});
-    const auto verdict = [&](const std::string& id) {
-        const auto all = judged_statements(atlas);
-        return std::ranges::find(all, id, &aabblab::judged_statement::id)->verdict;
-    };
+    const auto verdict = [&](const std::string& id) { return judged(atlas, id).verdict; };
     CHECK(verdict("B9") == aabblab::verdict_kind::does_not_hold);
     CHECK(verdict("B1") == aabblab::verdict_kind::undecided);
     for (atlas_scene& scene : atlas) std::swap(scene.lines[0].frame_ms, scene.lines[1].frame_ms);
@@ -164,10 +161,7 @@ TEST_CASE("A single ratio of single repeats is as sure as the repeats of others 
                                     {line("insertion + incremental", 8), line("bucket + columns + simd", 1)}}};
     std::vector<atlas_line>& lines = atlas[0].lines;
     for (atlas_line& one : lines) one.frame_ms.resize(1);
-    const auto ratios = [&] {
-        const auto all = judged_statements(atlas);
-        return std::ranges::find(all, "B2", &aabblab::judged_statement::id)->ratios;
-    };
+    const auto ratios = [&] { return judged(atlas, "B2").ratios; };
     CHECK(ratios().empty());
     lines.push_back(line("another", 3));
     REQUIRE(ratios().size() == 1);
@@ -198,20 +192,17 @@ TEST_CASE("Whoever a statement speaks of plays in the map") {
 
 TEST_CASE("atlas --judge makes maps of results that are there, and says where there are none") {
     const temporary_folder folder;
-    const program_result nothing = run_program({"atlas", "--judge", "--out", (folder / "none").string()});
+    const program_result nothing = run_program({"atlas", "--judge", "--out", folder / "none"});
     CHECK(nothing.status == 2);
-    CHECK(nothing.err.find("there are no results of an atlas in") != std::string::npos);
+    CHECK(holds(nothing.err, "there are no results of an atlas in"));
     folder.write("small.toml",
                  "name = \"atlas\"\n[[scene]]\nkind = \"cloud\"\nobjects = 50\ndisplacement = [0.01, 1]\n"
                  "frames = 3\n[[compose]]\nauto = true\n[[compose]]\nsort = [\"std\", \"radix\"]\n"
                  "[measure]\nrepeats = 2\n");
-    REQUIRE(run_program({"run", (folder / "small.toml").string(), "--out", (folder / "map/atlas").string()}).status ==
-            0);
-    const program_result made = run_program({"atlas", "--judge", "--out", (folder / "map").string()});
-    CHECK(made.status == 0);
-    CHECK(made.err.find("of atlas_large nothing was played yet") != std::string::npos);
-    std::istringstream lines(made.out.substr(made.out.find("B1: ")));
-    for (std::string line; std::getline(lines, line);) {
+    run_well({"run", folder / "small.toml", "--out", folder / "map/atlas"});
+    const program_result made = run_well({"atlas", "--judge", "--out", folder / "map"});
+    CHECK(holds(made.err, "of atlas_large nothing was played yet"));
+    for (const std::string& line : lines_of(made.out.substr(made.out.find("B1: ")))) {
         INFO(line);
         CHECK((line.size() <= 80 || line.starts_with("Maps, borders")));
     }
@@ -227,15 +218,11 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
                            std::vector<std::filesystem::path>{"atlas/atlas/manifest.json", "atlas/atlas/results.csv",
                                                               "atlas/atlas/differences.csv"});
     for (const char* source : {"map", "run", "run.tar.xz"}) {
-        const program_result judged =
-            run_program({"atlas", "--judge", folder / source, "--out", (folder / "of" / source).string()});
-        CAPTURE(source, judged.err);
-        CHECK(judged.status == 0);
+        CAPTURE(source);
+        run_well({"atlas", "--judge", folder / source, "--out", folder / "of" / source});
         CHECK(bytes_of_file(folder / "of" / source / "cells.csv") == bytes_of_file(folder / "map/cells.csv"));
     }
-    const program_result gone = run_program({"atlas", "--judge", folder / "gone"});
-    CHECK(gone.status == 2);
-    CHECK(gone.err == "aabblab: " + (folder / "gone").string() + " is not there\n");
-    CHECK(run_program({"atlas", folder / "map"}).err.find("only --judge takes results that are there") !=
-          std::string::npos);
+    CHECK(run_refused({"atlas", "--judge", folder / "gone"}).err ==
+          "aabblab: " + (folder / "gone").string() + " is not there\n");
+    CHECK(holds(run_program({"atlas", folder / "map"}).err, "only --judge takes results that are there"));
 }

@@ -1,12 +1,7 @@
 // `auto` in configs and commands, and what explain says of a scene.
 
-#include <catch2/catch_test_macros.hpp>
-
 #include "program.hpp"
-#include "temporary_folder.hpp"
 
-import aabb.std;
-import aabb;
 import aabblab.configs;
 import aabblab.measures;
 import aabblab.trials;
@@ -23,12 +18,7 @@ aabblab::experiment parsed(const std::string& compose) {
 }
 
 std::string refusal_of(const std::string& compose) {
-    try {
-        (void)parsed(compose);
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "accepted";
+    return refusal_in<aabb::input_error>([&] { return parsed(compose); });
 }
 
 aabb::box cube(float x, float y, float z) {
@@ -73,8 +63,7 @@ TEST_CASE("What is wrong with auto in a config is said with its line") {
     CHECK(refusal_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
     CHECK(refusal_of("[[compose]]\nauto = true\nsort = \"shell\"\nsweep = \"incremental\"").starts_with("a.toml:2: "));
     CHECK(refusal_of("[[compose]]\nauto = true\nprepare = \"split_mesh\"").starts_with("a.toml:4: pile: "));
-    CHECK(refusal_of("[[external]]\nname = \"auto\"\ncommand = \"true\"").find("there is an engine 'auto' already") !=
-          std::string::npos);
+    CHECK(holds(refusal_of("[[external]]\nname = \"auto\"\ncommand = \"true\""), "there is an engine 'auto' already"));
     CHECK(refusal_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
 }
 
@@ -85,15 +74,11 @@ TEST_CASE("auto finds the exact pairs in a run, and is one line of every table")
         "name = \"a\"\n[[compose]]\nauto = true\n[[compose]]\nsort = \"std\"\n[[scene]]\nkind = [\"pile\", "
         "\"population\"]\nobjects = 60\nframes = 6\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 1\n"
         "[measure]\nrepeats = 1\n");
-    const program_result run = run_program({"run", config.string(), "--out", (folder / "r").string()});
-    REQUIRE(run.status == 0);
-    CHECK(run.out.find("3 scenes with std + none + one_axis") != std::string::npos);
-    CHECK(run.out.find("regret") != std::string::npos);
+    const program_result run = run_well({"run", config.string(), "--out", folder / "r"});
+    CHECK(holds(run.out, "3 scenes with std + none + one_axis"));
+    CHECK(holds(run.out, "regret"));
     // A line for each scene, and one for all.
-    std::size_t lines = 0;
-    for (const char* first : {"\n1  auto ", "\n2  auto "})
-        for (std::size_t at = run.out.find(first); at != std::string::npos; at = run.out.find(first, at + 1)) ++lines;
-    CHECK(lines == 4);
+    CHECK(count_of("\n1  auto ", run.out) + count_of("\n2  auto ", run.out) == 4);
 }
 
 TEST_CASE("Boxes are measured: spread, sizes, pairs expected") {
@@ -125,14 +110,13 @@ TEST_CASE("Measures are told with their digits grouped, and what cannot be told 
     std::string text;
     for (const aabblab::told_measure& one : aabblab::told(m)) text += one.name + " " + one.value + "\n";
     for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, longest edge"})
-        CHECK(text.find(line) != std::string::npos);
+        CHECK(holds(text, line));
 }
 
 TEST_CASE("A flat axis is one on which those overlap that are there") {
     const aabblab::scene_measures m =
         aabblab::measure_scene({"population", {{"objects", "60"}, {"frames", "6"}}, {}, 1, {}});
-    CHECK(m.present > 0);
-    CHECK(m.present < m.objects);
+    CHECK_BETWEEN(0, m.present, m.objects);
     aabblab::scene_measures flat = m;
     flat.boxes.overlaps[2] = static_cast<double>(flat.present - 1);
     const auto tells_flat_axis = [](const aabblab::scene_measures& of) {
@@ -160,48 +144,35 @@ TEST_CASE("Motion is measured: the way, what is not alike, rest, inversions") {
     CHECK(is_near(passing.inversions, 0.5));
 }
 
-namespace {
-
-void require_narrow(const std::string& text) {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-        INFO(line);
-        CHECK(line.size() <= 80);
-    }
-}
-
-}  // namespace
-
 TEST_CASE("explain says of a recording what was measured, selected and saved") {
     const temporary_folder folder;
-    const std::string file = (folder / "p.aabbs").string();
-    REQUIRE(run_program({"scene", "pile", "--n", "200", "--frames", "80", "--out", file}).status == 0);
-    const program_result told = run_program({"explain", file});
-    REQUIRE(told.status == 0);
+    const std::string file = folder / "p.aabbs";
+    run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
+    const program_result told = run_well({"explain", file});
     for (const char* part :
          {"objects       200\n", "frames        81, of which the first 4 are measured\n",
           "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  frames follow",
           "    planned from what was seen\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
           "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
-        CHECK(told.out.find(part) != std::string::npos);
-    CHECK(told.out.find("canonical") == std::string::npos);
+        CHECK(holds(told.out, part));
+    CHECK_FALSE(holds(told.out, "canonical"));
     // columns take no other sweep.
     for (const char* part : {"\nsweep: nothing else can be composed with the rest.\n", "\nratio: ms/frame over",
                              "\nms/frame: update, search", "\nbuild ms: the stages are made"})
-        CHECK(told.out.find(part) != std::string::npos);
-    require_narrow(told.out);
-    CHECK(run_program({"explain", file, file}).err.find("a recording is a scene of its own") != std::string::npos);
+        CHECK(holds(told.out, part));
+    check_narrow(told.out);
+    CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));
 }
 
 TEST_CASE("explain says what all that is left out saves, with whom it is had, or that nobody has it") {
     const temporary_folder folder;
-    const std::string file = (folder / "p.aabbs").string();
+    const std::string file = folder / "p.aabbs";
     const auto table_of = [&](const char* scene, const char* objects) {
-        REQUIRE(run_program({"scene", scene, "--n", objects, "--frames", "6", "--out", file}).status == 0);
+        run_well({"scene", scene, "--n", objects, "--frames", "6", "--out", file});
         std::string told = run_program({"explain", file}).out;
         std::string in_one_line = told;
         std::ranges::replace(in_one_line, '\n', ' ');
-        CHECK(in_one_line.find("5 rounds of 7 frames ") != std::string::npos);
+        CHECK(holds(in_one_line, "5 rounds of 7 frames "));
         return told.substr(told.find("\nleft out  "));
     };
     const auto line_of = [](const std::string& table, const std::string& what) {
@@ -216,76 +187,56 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
         CHECK_FALSE(line_of(table, what).ends_with("-"));
     }
     // Of so few boxes nobody keeps one without being told to, and none is large.
-    CHECK(line_of(table, "no list of neighbours").find("neighbour_list:margin=0.1 ") != std::string::npos);
+    CHECK(holds(line_of(table, "no list of neighbours"), "neighbour_list:margin=0.1 "));
     CHECK(line_of(table, "no division of large objects").ends_with(" -"));
-    CHECK(line_of(table, "no work counters").find("counters of all work ") != std::string::npos);
+    CHECK(holds(line_of(table, "no work counters"), "counters of all work "));
     CHECK(line_of(table, "no work counters").ends_with(" 0"));
     CHECK(line_of(table, "no local detection").ends_with(" -"));
-    CHECK(table.find("  none ") == std::string::npos);
-    CHECK(line_of(table_of("one_huge", "100"), "no division of large objects").find("split_large ") !=
-          std::string::npos);
+    CHECK_FALSE(holds(table, "  none "));
+    CHECK(holds(line_of(table_of("one_huge", "100"), "no division of large objects"), "split_large "));
 }
 
 TEST_CASE("explain takes meshes, and a motion with its meshes") {
     const temporary_folder folder;
-    const std::string motion = (folder / "m.txt").string();
-    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "4", "--frames", "4", "--normalise", "no", "--mesh",
-                         "icosphere:triangles=80", "--motion", motion})
-                .status == 0);
-    const program_result moved = run_program({"explain", motion, "icosphere:triangles=80"});
-    CHECK(moved.status == 0);
-    CHECK(moved.out.find("triangles     80 in the meshes\n") != std::string::npos);
+    const std::string motion = folder / "m.txt";
+    run_well({"scene", "mesh_swarm", "--n", "4", "--frames", "4", "--normalise", "no", "--mesh",
+              "icosphere:triangles=80", "--motion", motion});
+    CHECK(holds(run_well({"explain", motion, "icosphere:triangles=80"}).out, "triangles     80 in the meshes\n"));
     // The name of what is selected is long.
-    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "2", "--frames", "5", "--normalise", "no", "--mesh",
-                         "torus_knot:triangles=20000", "--motion", motion})
-                .status == 0);
-    const program_result large = run_program({"explain", motion, "torus_knot:triangles=20000"});
-    CHECK(large.out.find("implicit:vertices=fetched,front=kept") != std::string::npos);
-    require_narrow(large.out);
-    const program_result pair = run_program({"explain", "icosphere:triangles=80", "torus_knot:triangles=96"});
-    CHECK(pair.status == 0);
-    for (const char* part : {"canonical", "sah", "interval_arithmetic"})
-        CHECK(pair.out.find(part) != std::string::npos);
-    CHECK(pair.out.find("moller") == std::string::npos);
+    run_well({"scene", "mesh_swarm", "--n", "2", "--frames", "5", "--normalise", "no", "--mesh",
+              "torus_knot:triangles=20000", "--motion", motion});
+    const program_result large = run_well({"explain", motion, "torus_knot:triangles=20000"});
+    CHECK(holds(large.out, "implicit:vertices=fetched,front=kept"));
+    check_narrow(large.out);
+    const program_result pair = run_well({"explain", "icosphere:triangles=80", "torus_knot:triangles=96"});
+    for (const char* part : {"canonical", "sah", "interval_arithmetic"}) CHECK(holds(pair.out, part));
+    CHECK_FALSE(holds(pair.out, "moller"));
     const program_result three = run_program({"explain", "icosphere", "icosphere", "icosphere"});
     CHECK(three.status == 2);
-    CHECK(three.err.find("more than two meshes move by a motion file") != std::string::npos);
+    CHECK(holds(three.err, "more than two meshes move by a motion file"));
 }
 
 TEST_CASE("explain says what it did not get to in its time") {
     const temporary_folder folder;
     // Each with each other.
-    const std::string file = (folder / "p.aabbs").string();
-    REQUIRE(
-        run_program({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file}).status ==
-        0);
-    const program_result told = run_program({"explain", file, "--seconds", "0.01"});
-    INFO(told.out << told.err);
-    REQUIRE(told.status == 0);
+    const std::string file = folder / "p.aabbs";
+    run_well({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file});
+    const program_result told = run_well({"explain", file, "--seconds", "0.01"});
     for (const char* part : {"objects   4,000\n", "all else  stopped after ",
                              "prepare    neighbour_list  frames follow", "stopped after "})
-        CHECK(told.out.find(part) != std::string::npos);
+        CHECK(holds(told.out, part));
     CHECK(
-        run_program({"explain", file, "--seconds", "0"}).err.find("--seconds is how long to play: a number above 0") !=
-        std::string::npos);
+        holds(run_program({"explain", file, "--seconds", "0"}).err, "--seconds is how long to play: a number above 0"));
 }
 
 TEST_CASE("explain says what is wrong with a name before anything else") {
     const temporary_folder folder;
     const std::string text = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
     const std::string cut = folder.write("cut.aabbs", "no recording");
-    for (const auto& [name, said] :
-         std::vector<std::pair<std::string, std::string>>{{"nope.off", "unknown mesh 'nope.off'"},
-                                                          {"icospher", "did you mean 'icosphere'?"},
-                                                          {text, "if it is a motion file, its meshes come after it"},
-                                                          {cut, cut}}) {
-        const program_result refused = run_program({"explain", name});
-        INFO(refused.err);
-        CHECK(refused.status == 2);
-        CHECK(refused.out.empty());
-        CHECK(is_one_sentence(refused.err));
-        CHECK(refused.err.find(said) != std::string::npos);
-    }
+    check_refused({"explain"}, {{{"nope.off"}, "unknown mesh 'nope.off'"},
+                                {{"icospher"}, "did you mean 'icosphere'?"},
+                                {{text}, "if it is a motion file, its meshes come after it"},
+                                {{cut}, cut}});
 }
 
 TEST_CASE("explain has no heading of what is left out where that is nothing") {
@@ -293,27 +244,22 @@ TEST_CASE("explain has no heading of what is left out where that is nothing") {
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\nengines = [\"cgal\"]\n[[scene]]\nkind = \"mesh_pair\"\n"
                                             "meshes = [\"icosphere:triangles=80\"]\nframes = 2\n");
-    const program_result told = run_program({"explain", config});
-    REQUIRE(told.status == 0);
-    CHECK(told.out.find("\n  cgal\n") != std::string::npos);
-    CHECK(told.out.find("left out\n      no ") != std::string::npos);
-    CHECK(told.out.find("left out\n\n") == std::string::npos);
+    const program_result told = run_well({"explain", config});
+    CHECK(holds(told.out, "\n  cgal\n"));
+    CHECK(holds(told.out, "left out\n      no "));
+    CHECK_FALSE(holds(told.out, "left out\n\n"));
 }
 
 TEST_CASE("pairs and collide say what they selected") {
     const temporary_folder folder;
-    const std::string file = (folder / "p.aabbs").string();
-    REQUIRE(run_program({"scene", "pile", "--n", "50", "--frames", "6", "--out", file}).status == 0);
-    CHECK(run_program({"pairs", file}).out.find("neighbour_list + bucket + columns + simd: ") != std::string::npos);
-    CHECK(run_program({"pairs", file, "--prepare", "none"}).out.find("\nbucket + columns + simd: ") !=
-          std::string::npos);
+    const std::string file = folder / "p.aabbs";
+    run_well({"scene", "pile", "--n", "50", "--frames", "6", "--out", file});
+    CHECK(holds(run_program({"pairs", file}).out, "neighbour_list + bucket + columns + simd: "));
+    CHECK(holds(run_program({"pairs", file, "--prepare", "none"}).out, "\nbucket + columns + simd: "));
     // The usual sort does not go with it.
-    CHECK(run_program({"pairs", file, "--sweep", "incremental"}).out.find("insertion + none + incremental: ") !=
-          std::string::npos);
-    CHECK(run_program({"pairs", file, "--sort", "auto"}).err.find("--sort auto: leave it out") != std::string::npos);
+    CHECK(holds(run_program({"pairs", file, "--sweep", "incremental"}).out, "insertion + none + incremental: "));
+    CHECK(holds(run_program({"pairs", file, "--sort", "auto"}).err, "--sort auto: leave it out"));
     const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};
-    CHECK(run_program({"collide", meshes[0], meshes[1]}).out.find("\nimplicit:vertices=fetched + exact: ") !=
-          std::string::npos);
-    CHECK(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out.find("\nsah + implicit + exact: ") !=
-          std::string::npos);
+    CHECK(holds(run_program({"collide", meshes[0], meshes[1]}).out, "\nimplicit:vertices=fetched + exact: "));
+    CHECK(holds(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out, "\nsah + implicit + exact: "));
 }

@@ -1,12 +1,6 @@
 #include <sys/stat.h>
 
-#include <catch2/catch_test_macros.hpp>
-
 #include "mesh_bytes.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
 
 namespace {
 
@@ -21,7 +15,7 @@ public:
           motion_(folder_.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n")),
           config_(folder_.write("c.toml", config_of("brownian", ""))),
           recording_(folder_ / "s.aabbs") {
-        REQUIRE(run_program(joined(small_, {"--out", recording_})).status == 0);
+        run_well(joined(small_, {"--out", recording_}));
     }
 
     [[nodiscard]] const temporary_folder& folder() const { return folder_; }
@@ -90,12 +84,7 @@ private:
 };
 
 void require_refused(const arguments& command, const std::string& path) {
-    const program_result result = run_program(command);
-    CAPTURE(command, result.err);
-    CHECK(result.status == 2);
-    CHECK(result.out.empty());
-    CHECK(is_one_sentence(result.err));
-    CHECK(result.err.find(path) != std::string::npos);
+    check_refused(command, {{{}, path}});
 }
 
 std::string repeated(const std::string& part, std::size_t times) {
@@ -181,8 +170,7 @@ TEST_CASE("A named pipe that nobody writes into ends what would wait for it") {
     const program_result listed =
         run_command({"env", "XDG_CONFIG_HOME=" + all.folder().path().string(), AABBLAB_UNDER_TEST, "list"});
     CHECK(listed.status == 2);
-    CHECK(listed.err.find("costs.toml: is not a regular file; aabblab calibrate --reset removes it") !=
-          std::string::npos);
+    CHECK(holds(listed.err, "costs.toml: is not a regular file; aabblab calibrate --reset removes it"));
 }
 
 TEST_CASE("A pipe that is written into is read as a file is, however late the writer comes") {
@@ -221,7 +209,7 @@ TEST_CASE("A folder in the place of a file of results is refused in a sentence")
     const temporary_folder& folder = all.folder();
     const std::string config = folder / "c.toml";
     const std::string out = folder / "out";
-    REQUIRE(run_program({"run", config, "--out", out}).status == 0);
+    run_well({"run", config, "--out", out});
     for (const std::string name : {"results.csv", "manifest.json", "differences.csv"}) {
         INFO(name);
         const std::filesystem::path file = std::filesystem::path(out) / name;
@@ -241,23 +229,22 @@ TEST_CASE("A name that is not UTF-8 names a file like any other, and is shown wi
     const temporary_folder& folder = all.folder();
     const std::string out = folder / "x\xff";
     for (const command_with& command : all.writers()) {
-        CHECK(run_program(command(out)).status == 0);
+        run_well(command(out));
         CHECK(std::filesystem::is_regular_file(out));
         std::filesystem::remove(out);
     }
     const std::string mesh = folder.write("m\xff.off", tetrahedron);
-    CHECK(run_program({"collide", mesh, mesh, "--json"}).status == 0);
-    const program_result text = run_program({"collide", mesh, mesh});
-    CHECK(text.out.find("m\\xff.off (4 triangles)") != std::string::npos);
+    run_well({"collide", mesh, mesh, "--json"});
+    CHECK(holds(run_program({"collide", mesh, mesh}).out, "m\\xff.off (4 triangles)"));
     const std::string picture = folder / "p.svg";
-    REQUIRE(run_program({"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--picture", picture}).status == 0);
-    CHECK(bytes_of_file(picture).find("m\\xff.off") != std::string::npos);
+    run_well({"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--picture", picture});
+    CHECK(holds(bytes_of_file(picture), "m\\xff.off"));
 
     const std::string config = folder.write("c\xff.toml", inputs::config_of("brownian", ""));
-    CHECK(run_program({"run", config, "--out", folder / "r\xff"}).status == 0);
-    CHECK(bytes_of_file(folder / "r\xff/manifest.json").find("/c\xef\xbf\xbd.toml") != std::string::npos);
-    CHECK(run_program({"run", config, "--resume", "--out", folder / "r\xff"}).status == 0);
-    CHECK(run_program({"compare", folder / "r\xff", folder / "r\xff"}).status == 0);
+    run_well({"run", config, "--out", folder / "r\xff"});
+    CHECK(holds(bytes_of_file(folder / "r\xff/manifest.json"), "/c\xef\xbf\xbd.toml"));
+    run_well({"run", config, "--resume", "--out", folder / "r\xff"});
+    run_well({"compare", folder / "r\xff", folder / "r\xff"});
     require_refused({"pairs", folder / "absent\xff"}, "/absent\\xff: no such file");
 }
 
@@ -277,8 +264,7 @@ TEST_CASE("What a terminal would obey is shown instead") {
     const arguments printed[] = {{"collide", mesh, mesh},
                                  {"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--out", folder / name},
                                  {"contacts", folder.write("\x1b.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"), mesh}};
-    const program_result collided = run_program(printed[0]);
-    CHECK(collided.out.find(shown + " (4 triangles) against") != std::string::npos);
-    CHECK(run_program(printed[2]).out.find("/\\x1b.txt: 1 object, ") != std::string::npos);
+    CHECK(holds(run_program(printed[0]).out, shown + " (4 triangles) against"));
+    CHECK(holds(run_program(printed[2]).out, "/\\x1b.txt: 1 object, "));
     require_refused(printed[1], shown);  // it would write over the mesh
 }

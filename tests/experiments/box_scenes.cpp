@@ -1,7 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 
-import aabb.std;
+#include "../testing.hpp"
+
 import aabb;
 import aabb.validation;
 import aabblab.scenes;
@@ -35,8 +35,7 @@ std::vector<aabb::index_pair> pairs_of(const frame& f, bool only_present) {
     std::vector<aabb::index_pair> pairs;
     search->update(f.boxes);
     search->search(pairs);
-    std::ranges::sort(pairs);
-    return pairs;
+    return sorted(pairs);
 }
 
 double neighbours_in(const frame& f) {
@@ -147,10 +146,8 @@ TEST_CASE("overlapping pairs grow with the number of boxes, not with its square"
         CAPTURE(info.name);
         const double few = neighbours_in(play(info.name, {{"objects", "1000"}, {"frames", "0"}})[0]);
         const double many = neighbours_in(play(info.name, {{"objects", "8000"}, {"frames", "0"}})[0]);
-        CHECK(few > 0.3);
-        CHECK(few < 22);
-        CHECK(many > 0.8 * few);
-        CHECK(many < 1.3 * few);
+        CHECK_BETWEEN(0.3, few, 22);
+        CHECK_BETWEEN(0.8 * few, many, 1.3 * few);
     }
 }
 
@@ -234,8 +231,7 @@ TEST_CASE("pile boxes have the neighbours asked for and stay in their heap on th
     const auto frames = play("pile", {{"objects", objects}, {"neighbours", std::to_string(neighbours)}});
     for (const frame* f : {&frames.front(), &frames.back()}) {
         const double measured = neighbours_in(*f);
-        CHECK(measured > 0.75 * neighbours);
-        CHECK(measured < 1.25 * neighbours);
+        CHECK_BETWEEN(0.75 * neighbours, measured, 1.25 * neighbours);
     }
     REQUIRE(world_of(frames).min[2] >= 0);
     for (std::size_t i = 0; i < frames[0].boxes.size(); ++i)
@@ -287,8 +283,7 @@ TEST_CASE("mixed_sizes reach their ratio, evenly in the logarithm") {
         REQUIRE(about(edges.front(), 1));
         REQUIRE(std::abs(edges.back() - most) < 1e-5 * most);
         const double neighbours = neighbours_in(frames[0]);
-        CHECK(neighbours > 1);
-        CHECK(neighbours < 4);
+        CHECK_BETWEEN(1, neighbours, 4);
     }
 }
 
@@ -326,8 +321,7 @@ TEST_CASE("needles are as long as told on one axis, a third of them on each") {
                 REQUIRE(std::abs(edge(frames.back().boxes[i], k) - wanted) < 1e-4);
             }
         const double neighbours = neighbours_in(frames[0]);
-        CHECK(neighbours > 1);
-        CHECK(neighbours < 3);
+        CHECK_BETWEEN(1, neighbours, 3);
     }
 }
 
@@ -341,8 +335,7 @@ TEST_CASE("hollow_sphere is a sphere with nothing inside, wherever its cubes dri
             REQUIRE(std::abs(from_centre - radius) < 0.01 * radius);
         }
     const double neighbours = neighbours_in(frames.back());
-    CHECK(neighbours > 1.7);
-    CHECK(neighbours < 2.3);
+    CHECK_BETWEEN(1.7, neighbours, 2.3);
     // No step is longer than the sphere is wide, and none is lost.
     const auto wild = play("hollow_sphere", {{"displacement", "1e9"}});
     REQUIRE(std::abs(ways_in(wild).mean / (2 * radius) - 1) < 0.01);

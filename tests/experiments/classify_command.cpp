@@ -1,10 +1,6 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 
 #include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
 
 namespace {
 
@@ -16,8 +12,7 @@ const std::string crossing = "0,0,0, 1,0,0, 0,1,0,\t.25 0x1p-2 -1 .25 .25 1e0 +2
 TEST_CASE("classify answers 0 or 1 a line") {
     const temporary_folder folder;
     const std::string lines = "# two pairs\n\n" + apart + "  \t\n" + crossing;
-    const program_result from_file = run_program({"classify", folder.write("pairs.txt", lines)});
-    REQUIRE(from_file.status == 0);
+    const program_result from_file = run_well({"classify", folder.write("pairs.txt", lines)});
     REQUIRE(from_file.out == "0\n1\n");
     REQUIRE(from_file.err.empty());
     REQUIRE(run_program({"classify", "-"}, lines).out == "0\n1\n");
@@ -36,19 +31,13 @@ TEST_CASE("classify keeps doubles when asked to") {
     const std::string just_above = "0 0 0 1 0 0 0 1 0  .2 .2 1e-60 .2 .3 1 .3 .2 1\n";
     REQUIRE(run_program({"classify", "-"}, just_above).out == "1\n");
     REQUIRE(run_program({"classify", "-", "--double"}, just_above).out == "0\n");
-    const program_result refused = run_program({"classify", "-", "--double", "--triangle", "moller"}, just_above);
-    REQUIRE(refused.status == 2);
-    REQUIRE(is_one_sentence(refused.err));
+    run_refused({"classify", "-", "--double", "--triangle", "moller"}, just_above);
 }
 
 TEST_CASE("classify gives kind, corners and error of what two triangles have in common") {
     const std::string face = "0 0 0 4 0 0 0 4 0  ";
     const auto answer = [&](const std::string& other, const std::vector<std::string>& options) {
-        const program_result result =
-            run_program(joined({"classify", "-", "--geometry"}, options), face + other + "\n");
-        INFO(result.err);
-        REQUIRE(result.status == 0);
-        return result.out;
+        return run_well(joined({"classify", "-", "--geometry"}, options), face + other + "\n").out;
     };
     const std::vector<std::vector<std::string>> everyone = {
         {}, {"--double"}, {"--triangle", "epeck"}, {"--triangle", "epeck", "--double"}};
@@ -87,9 +76,7 @@ TEST_CASE("classify gives kind, corners and error of what two triangles have in 
 
 TEST_CASE("classify refuses the geometry of tests that only decide") {
     for (const std::string test : {"moller", "devillers_guigue", "epick", "interval_arithmetic:fallback=exact"}) {
-        const program_result refused = run_program({"classify", "-", "--geometry", "--triangle", test}, crossing);
-        INFO(refused.err);
-        CHECK(refused.status == 2);
+        const program_result refused = run_refused({"classify", "-", "--geometry", "--triangle", test}, crossing);
         CHECK(refused.out.empty());
         CHECK(refused.err == "aabblab: --geometry: " + test.substr(0, test.find(':')) +
                                  " decides whether triangles intersect, not what they have in common; give "
@@ -111,15 +98,11 @@ TEST_CASE("classify names the line and the number that is wrong, after the answe
     REQUIRE(result.status == 2);
     REQUIRE(result.out == "0\n1\n");
     REQUIRE(is_one_sentence(result.err));
-    REQUIRE(result.err.find(said) != std::string::npos);
+    REQUIRE(holds(result.err, said));
 }
 
 TEST_CASE("classify refuses what is no readable file") {
     const temporary_folder folder;
-    for (const std::string& file : {(folder / "missing.txt").string(), folder.path().string()}) {
-        const program_result result = run_program({"classify", file});
-        REQUIRE(result.status == 2);
-        REQUIRE(is_one_sentence(result.err));
-        REQUIRE(result.err.find(file) != std::string::npos);
-    }
+    for (const std::string& file : {(folder / "missing.txt").string(), folder.path().string()})
+        REQUIRE(holds(run_refused({"classify", file}).err, file));
 }

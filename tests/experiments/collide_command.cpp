@@ -1,34 +1,47 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <nlohmann/json.hpp>
+
+#include "program_json.hpp"
 
 #include "mesh_bytes.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
 
 namespace {
 
-constexpr const char* pyramid =
-    "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n4 0 1 2 3\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n";
+/// A tetrahedron, and a pyramid on a square.
+struct two_files {
+    temporary_folder folder;
+    std::string a = folder.write("a.off", tetrahedron);
+    std::string b = folder.write(
+        "b.off", "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n4 0 1 2 3\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n");
+};
+
+/// The cells of a CSV file whose cells hold no commas: its columns' names first.
+std::vector<std::vector<std::string>> cells_of(const std::string& text) {
+    std::vector<std::vector<std::string>> rows;
+    for (const std::string& line : lines_of(text)) {
+        rows.emplace_back(1);
+        for (const char c : line)
+            if (c == ',')
+                rows.back().emplace_back();
+            else
+                rows.back().back() += c;
+    }
+    return rows;
+}
 
 }  // namespace
 
 TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const std::string b = folder.write("b.off", pyramid);
+    const two_files files;
+    const auto& [folder, a, b] = files;
     const std::vector<std::string> base = {"collide", a, b, "--json", "--pose-b", "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
-    const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
+    const auto reference = json_of(joined(base, {"--engine", "cgal"}));
     REQUIRE(reference["pairs"] > 0);
     const auto tree = GENERATE("canonical", "leafless", "shared_planes", "compressed", "compressed_literal",
                                "compressed:leaf_test=triangle_box", "quantized:bits=5");
     const auto build = GENERATE("median", "sah");
     const program_result result =
-        run_program(joined(base, {"--tree", tree, "--build", build, "--out", folder / "pairs.csv"}));
-    REQUIRE(result.status == 0);
-    REQUIRE(result.err.find("b.off: ") != std::string::npos);  // a polygon was fanned
+        run_well(joined(base, {"--tree", tree, "--build", build, "--out", folder / "pairs.csv"}));
+    REQUIRE(holds(result.err, "b.off: "));  // a polygon was fanned
     const auto summary = nlohmann::json::parse(result.out);
     REQUIRE(summary["triangles"] == std::vector{4, 6});
     REQUIRE(summary["pairs"] == reference["pairs"]);
@@ -44,18 +57,18 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     REQUIRE(summary["bytes_per_triangle"] == static_cast<double>(trees) / 10);
     REQUIRE(summary["method"] == (build == std::string("sah") ? "sah + " : "") + std::string(tree) + " + exact");
     REQUIRE(summary["exact"] == true);
-    REQUIRE(run_program({"collide", a, b, "--triangle", "moller"}).out.find("moller (inexact)") != std::string::npos);
+    REQUIRE(holds(run_program({"collide", a, b, "--triangle", "moller"}).out, "moller (inexact)"));
     REQUIRE(summary["bytes"]["triangles"] >= 120);
     REQUIRE(summary["bytes"]["vertices"] >= 108);
 
-    const auto counted = nlohmann::json::parse(run_program(joined(base, {"--tree", tree, "--count"})).out);
+    const auto counted = json_of(joined(base, {"--tree", tree, "--count"}));
     REQUIRE(counted["pairs"] == summary["pairs"]);
     REQUIRE(counted["digest"].is_null());
 
     const program_result first = run_program(joined(base, {"--tree", tree, "--first", "--out", folder / "first.csv"}));
     REQUIRE(nlohmann::json::parse(first.out)["pairs"] == 1);
     const std::string row = bytes_of_file(folder / "first.csv").substr(4);
-    REQUIRE(rows.find("\n" + row) != std::string::npos);
+    REQUIRE(holds(rows, "\n" + row));
 }
 
 TEST_CASE("collide finds neighbours around a vertex of many triangles in the mesh itself") {
@@ -80,7 +93,7 @@ TEST_CASE("collide finds neighbours around a vertex of many triangles in the mes
     const std::string mesh = folder.write("fan.off", "OFF\n" + std::to_string(next + 3) + " " +
                                                          std::to_string(triangles + 1) + " 0\n" + vertices + faces);
     const auto summary = [&](const std::vector<std::string>& more) {
-        return nlohmann::json::parse(run_program(joined({"collide", mesh, "--self", "--json"}, more)).out);
+        return json_of(joined({"collide", mesh, "--self", "--json"}, more));
     };
     const auto exact = summary({"--out", folder / "exact.csv", "--engine", "brute_force"});
     CHECK(exact["neighbours"] == triangles * (triangles - 1) / 2);
@@ -106,67 +119,42 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
                      "0 0 0\n-1 0 0\n0 -1 0\n"
                      "3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n3 4 5 6\n3 4 5 7\n3 4 6 7\n3 5 6 7\n3 8 9 10\n");
     const std::vector<std::string> base = {"collide", mesh, "--self", "--json", "--out", folder / "self.csv"};
-    const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "brute_force"})).out);
+    const auto reference = json_of(joined(base, {"--engine", "brute_force"}));
     const std::string rows = bytes_of_file(folder / "self.csv");
     REQUIRE(rows.starts_with("a,b,shared_vertices\n0,1,2\n"));
-    REQUIRE(rows.find("\n0,8,1\n") != std::string::npos);
+    REQUIRE(holds(rows, "\n0,8,1\n"));
     REQUIRE(reference["neighbours"] == 6 + 6 + 3);
     REQUIRE(reference["pairs"] > 0);
     REQUIRE(reference["triangles"] == std::vector{9});
     const auto tree = GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal",
                                "quantized", "implicit");
-    const auto summary = nlohmann::json::parse(run_program(joined(base, {"--tree", tree})).out);
+    const auto summary = json_of(joined(base, {"--tree", tree}));
     REQUIRE(summary["pairs"] == reference["pairs"]);
     REQUIRE(summary["neighbours"] == reference["neighbours"]);
     REQUIRE(summary["digest"] == reference["digest"]);
     REQUIRE(bytes_of_file(folder / "self.csv") == rows);
-    const auto counted = nlohmann::json::parse(run_program({"collide", mesh, "--self", "--count", "--json"}).out);
+    const auto counted = json_of({"collide", mesh, "--self", "--count", "--json"});
     REQUIRE(counted["pairs"] == summary["pairs"]);
     REQUIRE(counted["neighbours"] == summary["neighbours"]);
     REQUIRE(counted["digest"].is_null());
     // Neighbours left out: only the rest are pairs, and they are still counted.
-    const auto apart = nlohmann::json::parse(
-        run_program({"collide", mesh, "--self=apart", "--json", "--tree", tree, "--out", folder / "apart.csv"}).out);
+    const auto apart =
+        json_of({"collide", mesh, "--self=apart", "--json", "--tree", tree, "--out", folder / "apart.csv"});
     REQUIRE(apart["pairs"] == summary["pairs"]);
     REQUIRE(apart["neighbours"] == summary["neighbours"]);
     REQUIRE(apart["digest"] != summary["digest"]);
     std::string without = "a,b\n";
-    for (std::size_t begin = rows.find('\n') + 1; begin < rows.size(); begin = rows.find('\n', begin) + 1)
-        if (const std::string row = rows.substr(begin, rows.find('\n', begin) - begin); row.ends_with(",0"))
-            without += row.substr(0, row.size() - 2) + "\n";
+    for (const std::string& row : lines_of(rows))
+        if (row.ends_with(",0")) without += row.substr(0, row.size() - 2) + "\n";
     REQUIRE(bytes_of_file(folder / "apart.csv") == without);
-    REQUIRE(run_program({"collide", mesh, "--self"}).out.find("15 more among triangles that share a vertex") !=
-            std::string::npos);
+    REQUIRE(holds(run_program({"collide", mesh, "--self"}).out, "15 more among triangles that share a vertex"));
 }
-
-namespace {
-
-/// The cells of a CSV file whose cells hold no commas: its columns' names first.
-std::vector<std::vector<std::string>> cells_of(const std::string& text) {
-    std::vector<std::vector<std::string>> rows(1, std::vector<std::string>(1));
-    for (const char c : text) {
-        if (c == ',')
-            rows.back().emplace_back();
-        else if (c == '\n')
-            rows.emplace_back(1);
-        else
-            rows.back().back() += c;
-    }
-    rows.pop_back();
-    return rows;
-}
-
-}  // namespace
 
 TEST_CASE("collide writes what the triangles of each pair have in common, in the world") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const std::string b = folder.write("b.off", pyramid);
+    const two_files files;
+    const auto& [folder, a, b] = files;
     const auto rows_of = [&](const std::vector<std::string>& options) {
-        const program_result result =
-            run_program(joined({"collide", a, b, "--geometry", "--out", folder / "pairs.csv"}, options));
-        INFO(result.err);
-        REQUIRE(result.status == 0);
+        run_well(joined({"collide", a, b, "--geometry", "--out", folder / "pairs.csv"}, options));
         return cells_of(bytes_of_file(folder / "pairs.csv"));
     };
     const auto here = rows_of({"--pose-b", "1,0,0,0.4, 0,1,0,0.2, 0,0,1,-0.1"});
@@ -200,35 +188,33 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
         }
     }
     const program_result first = run_program({"collide", a, b, "--first", "--geometry"});
-    CHECK(first.out.find(" intersect: ") != std::string::npos);
-    const auto json = nlohmann::json::parse(run_program({"collide", a, b, "--first", "--geometry", "--json"}).out);
-    CHECK(first.out.find(" intersect: " + json["geometry"]["kind"].get<std::string>() + " " +
-                         std::to_string(json["geometry"]["corners"].size()) + " ") != std::string::npos);
+    CHECK(holds(first.out, " intersect: "));
+    const auto json = json_of({"collide", a, b, "--first", "--geometry", "--json"});
+    CHECK(holds(first.out, " intersect: " + json["geometry"]["kind"].get<std::string>() + " " +
+                               std::to_string(json["geometry"]["corners"].size()) + " "));
     CHECK(json["geometry"]["error"].size() == 3);
-    CHECK(first.out.find("\ntriangles " + json["first"][0].dump() + " and " + json["first"][1].dump() + " intersect") !=
-          std::string::npos);
+    CHECK(
+        holds(first.out, "\ntriangles " + json["first"][0].dump() + " and " + json["first"][1].dump() + " intersect"));
     // With poses, a line each where something intersects.
     const std::string poses = folder.write("poses.txt", "1,0,0,-9,0,1,0,0,0,0,1,0\n1,0,0,0,0,1,0,0,0,0,1,0\n");
     const std::vector<std::string> posed{"collide", a, b, "--first", "--geometry", "--poses", poses};
     const std::string lines = run_program(posed).out;
     const std::string line = first.out.substr(first.out.find('\n') + 1);
-    CHECK(lines.find("\npose 1: " + line.substr(0, line.find('\n') + 1)) != std::string::npos);
-    CHECK(lines.find("pose 0: ") == std::string::npos);
-    const auto by_pose = nlohmann::json::parse(run_program(joined(posed, {"--json"})).out)["geometry"];
+    CHECK(holds(lines, "\npose 1: " + line.substr(0, line.find('\n') + 1)));
+    CHECK_FALSE(holds(lines, "pose 0: "));
+    const auto by_pose = json_of(joined(posed, {"--json"}))["geometry"];
     REQUIRE(by_pose.size() == 2);
     CHECK(by_pose[0].is_null());
     CHECK(by_pose[1] == json["geometry"]);
     const std::string away = "1,0,0,-9,0,1,0,0,0,0,1,0";
-    CHECK(run_program({"collide", a, b, "--first", "--geometry", "--pose-a", away}).out.find("0 intersecting") !=
-          std::string::npos);
+    CHECK(holds(run_program({"collide", a, b, "--first", "--geometry", "--pose-a", away}).out, "0 intersecting"));
 }
 
 TEST_CASE("neighbours in a mesh have an edge or a corner in common") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const std::string b = folder.write("b.off", pyramid);
+    const two_files files;
+    const auto& [folder, a, b] = files;
     for (const auto& [mesh, edges, points] : {std::tuple(a, 6, 0), std::tuple(b, 9, 6)}) {
-        REQUIRE(run_program({"collide", mesh, "--self", "--geometry", "--out", folder / "self.csv"}).status == 0);
+        run_well({"collide", mesh, "--self", "--geometry", "--out", folder / "self.csv"});
         const auto rows = cells_of(bytes_of_file(folder / "self.csv"));
         int segment = 0;
         int point = 0;
@@ -246,31 +232,29 @@ TEST_CASE("pairs, collide and contacts speak of one as of one") {
     const std::string mesh = folder.write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0 0 1 0 0 0 0 1 0\n");
     const std::string collided = run_program({"collide", mesh, mesh}).out;
-    CHECK(collided.find("one.off (1 triangle) against ") != std::string::npos);
-    CHECK(collided.find("\n1 intersecting pair of triangles, ") != std::string::npos);
-    CHECK(run_program({"contacts", motion, mesh})
-              .out.find("\n1 contact of triangles in 1 contact of objects (1 pair of boxes), ") != std::string::npos);
+    CHECK(holds(collided, "one.off (1 triangle) against "));
+    CHECK(holds(collided, "\n1 intersecting pair of triangles, "));
+    CHECK(holds(run_program({"contacts", motion, mesh}).out,
+                "\n1 contact of triangles in 1 contact of objects (1 pair of boxes), "));
 }
 
 TEST_CASE("collide takes both poses") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
     const auto pairs = [&](const std::vector<std::string>& poses) {
-        return nlohmann::json::parse(run_program(joined({"collide", a, a, "--json"}, poses)).out)["digest"];
+        return json_of(joined({"collide", a, a, "--json"}, poses))["digest"];
     };
     const std::string away = "1,0,0,-9,0,1,0,0,0,0,1,0";
     const auto together = pairs({});
     REQUIRE(pairs({"--pose-a", away}) != together);
     REQUIRE(pairs({"--pose-b", away}) != together);
     REQUIRE(pairs({"--pose-a", away, "--pose-b", away}) == together);
-    REQUIRE(run_program({"collide", a, a, "--first", "--pose-a", away}).out.find("0 intersecting") !=
-            std::string::npos);
+    REQUIRE(holds(run_program({"collide", a, a, "--first", "--pose-a", away}).out, "0 intersecting"));
 }
 
 TEST_CASE("collide takes many poses in one call, each as in a call of its own") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
-    const std::string b = folder.write("b.off", pyramid);
+    const two_files files;
+    const auto& [folder, a, b] = files;
     const std::vector<std::string> poses{"1,0,0,0.4,0,1,0,0.2,0,0,1,-0.1", "1 0 0 9 0 1 0 0 0 0 1 0",
                                          "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
     const std::string file =
@@ -278,19 +262,16 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     const auto who = GENERATE(std::vector<std::string>{}, std::vector<std::string>{"--tree", "canonical"},
                               std::vector<std::string>{"--engine", "cgal"});
     const auto all = [&](const std::vector<std::string>& options) {
-        return nlohmann::json::parse(
-            run_program(joined(joined({"collide", a, b, "--json", "--poses", file}, who), options)).out);
+        return json_of(joined(joined({"collide", a, b, "--json", "--poses", file}, who), options));
     };
     std::string rows = "pose,a,b\n";
     std::vector<std::size_t> counts;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const std::string out = folder / "one.csv";
-        const auto one = nlohmann::json::parse(
-            run_program(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who)).out);
+        const auto one = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who));
         counts.push_back(one["pairs"]);
-        std::istringstream lines(bytes_of_file(out));
-        std::string line;
-        for (std::getline(lines, line); std::getline(lines, line);) rows += std::to_string(i) + "," + line + "\n";
+        for (const std::string& line : lines_of(bytes_of_file(out)))
+            if (line != "a,b") rows += std::to_string(i) + "," + line + "\n";
     }
     REQUIRE(counts[0] > 0);
     REQUIRE(counts[1] == 0);
@@ -312,13 +293,12 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     REQUIRE(first["first"].size() == 3);
     CHECK(first["first"][1].is_null());
     const std::string told = run_program(joined({"collide", a, b, "--poses", file, "--first"}, who)).out;
-    CHECK(told.find("\npose 1: ") == std::string::npos);
+    CHECK_FALSE(holds(told, "\npose 1: "));
     for (const std::size_t pose : {0, 2}) {
         const std::string s = first["first"][pose][0].dump();
         const std::string t = first["first"][pose][1].dump();
-        CHECK(("\n" + rows).find("\n" + std::to_string(pose) + "," + s + "," + t + "\n") != std::string::npos);
-        CHECK(told.find("\npose " + std::to_string(pose) + ": triangles " + s + " and " + t + " intersect\n") !=
-              std::string::npos);
+        CHECK(holds("\n" + rows, "\n" + std::to_string(pose) + "," + s + "," + t + "\n"));
+        CHECK(holds(told, "\npose " + std::to_string(pose) + ": triangles " + s + " and " + t + " intersect\n"));
     }
 }
 
@@ -326,9 +306,8 @@ TEST_CASE("collide searches as often as it is asked to, and tells each time") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
     const auto hold_to_one = [&](const std::vector<std::string>& options) {
-        const auto once = nlohmann::json::parse(run_program(joined({"collide", a, "--json"}, options)).out);
-        const auto often =
-            nlohmann::json::parse(run_program(joined({"collide", a, "--json", "--repeat", "5"}, options)).out);
+        const auto once = json_of(joined({"collide", a, "--json"}, options));
+        const auto often = json_of(joined({"collide", a, "--json", "--repeat", "5"}, options));
         CHECK(once["query_ms"].is_number());
         CHECK(often["query_ms"].size() == 5);
         CHECK(often["pairs"] == once["pairs"]);
@@ -336,9 +315,8 @@ TEST_CASE("collide searches as often as it is asked to, and tells each time") {
     };
     hold_to_one({a});
     hold_to_one({"--self"});
-    CHECK(run_program({"collide", "--help"}).out.find("{together}") == std::string::npos);
-    const std::string text = run_program({"collide", a, a, "--repeat", "5"}).out;
-    CHECK(text.find(" ms (median of 5)") != std::string::npos);
+    CHECK_FALSE(holds(run_program({"collide", "--help"}).out, "{together}"));
+    CHECK(holds(run_program({"collide", a, a, "--repeat", "5"}).out, " ms (median of 5)"));
 }
 
 TEST_CASE("collide ends with status 1 where anything intersects, if it is asked to") {

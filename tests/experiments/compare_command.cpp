@@ -1,17 +1,10 @@
-#include <catch2/catch_test_macros.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "program.hpp"
-#include "temporary_folder.hpp"
+#include "configs.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.registry;
 import aabblab.comparison;
-import aabblab.configs;
-import aabblab.results;
-import aabblab.scenes;
 import aabblab.statistics;
 
 using aabblab::outcome;
@@ -94,10 +87,6 @@ void change_processor(const std::filesystem::path& folder, const nlohmann::order
     std::ofstream(folder / "manifest.json") << manifest.dump();
 }
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("What has not changed is found to be the same, though every time is another") {
@@ -168,8 +157,7 @@ TEST_CASE("What is the same by its own interval is so among hundreds of lines, a
         CHECK((time.found == outcome::same || time.found == outcome::undecided));
         same += within;
     }
-    CHECK(same > 0);
-    CHECK(same < 302);
+    CHECK_BETWEEN(0, same, 302);
 }
 
 TEST_CASE("The base is the first in A that both have, and what only one has is counted") {
@@ -226,32 +214,29 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     std::vector<row> slower = rows_of({.sorts = {{"insertion", 1}, {"std", 2.4}, {"shell", 0.5}}, .hour = 2});
     for (row& r : slower) r.bytes[0] = 8192;
     const std::string b = write_results(folder / "b", slower);
-    const program_result result = run_program({"compare", a, b});
-    INFO(result.out + result.err);
-    REQUIRE(result.status == 0);
+    const program_result result = run_well({"compare", a, b});
     CHECK(result.err.empty());
     CHECK(result.out.starts_with("A: " + a + " (commit "));
-    CHECK(has(result.out, "test: brownian, objects=10 frames=3; time over that of 'insertion'\n"));
-    CHECK(has(result.out, "\nstd "));
-    CHECK_FALSE(has(result.out, " same\n"));
-    CHECK(has(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 undecided\n"));
-    CHECK(has(result.out, "bytes_projections  12288  24576  +100.00\n"));
-    CHECK(has(result.out, "\n9 counts and sizes compared: 3 changed\n"));
+    CHECK(holds(result.out, "test: brownian, objects=10 frames=3; time over that of 'insertion'\n"));
+    CHECK(holds(result.out, "\nstd "));
+    CHECK_FALSE(holds(result.out, " same\n"));
+    CHECK(holds(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 undecided\n"));
+    CHECK(holds(result.out, "bytes_projections  12288  24576  +100.00\n"));
+    CHECK(holds(result.out, "\n9 counts and sizes compared: 3 changed\n"));
     const program_result all = run_program({"compare", a, b, "--all"});
-    CHECK(has(all.out, "\nshell "));
-    CHECK(has(all.out, " same\n"));
-    CHECK_FALSE(has(all.out, "\nopen: "));
+    CHECK(holds(all.out, "\nshell "));
+    CHECK(holds(all.out, " same\n"));
+    CHECK_FALSE(holds(all.out, "\nopen: "));
     const std::string noisy = write_results(folder / "noisy", rows_of({.noise = 0.3, .hour = 3}));
-    CHECK(has(run_program({"compare", a, noisy}).out,
-              " 2 undecided\nundecided: their intervals reach beyond 5 %, or show a change only without Holm's "
-              "correction for all "
-              "ratios; --all lists them\n"));
-    const program_result itself = run_program({"compare", a, a});
-    CHECK(itself.status == 0);
-    CHECK(has(itself.out,
-              "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 undecided\n"
-              "9 counts and sizes compared: 0 changed\n"));
-    CHECK_FALSE(has(itself.out, "left out"));
+    CHECK(holds(run_program({"compare", a, noisy}).out,
+                " 2 undecided\nundecided: their intervals reach beyond 5 %, or show a change only without Holm's "
+                "correction for all "
+                "ratios; --all lists them\n"));
+    const program_result itself = run_well({"compare", a, a});
+    CHECK(holds(itself.out,
+                "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 undecided\n"
+                "9 counts and sizes compared: 0 changed\n"));
+    CHECK_FALSE(holds(itself.out, "left out"));
 }
 
 TEST_CASE("compare ends with status 1 where answers differ, which it says first") {
@@ -265,8 +250,8 @@ TEST_CASE("compare ends with status 1 where answers differ, which it says first"
     INFO(result.out);
     REQUIRE(result.status == 1);
     CHECK(result.err.empty());
-    CHECK(has(result.out, "the answers differ in 1 of 3 scenes\n"));
-    CHECK(has(result.out, "seed=3  00000000000000a3  0123456789abcdef\n"));
+    CHECK(holds(result.out, "the answers differ in 1 of 3 scenes\n"));
+    CHECK(holds(result.out, "seed=3  00000000000000a3  0123456789abcdef\n"));
     CHECK(result.out.find("the answers differ") < result.out.find("ratios compared"));
 }
 
@@ -274,25 +259,19 @@ TEST_CASE("compare takes absolute times of one machine only, and warns of them")
     const temporary_folder folder;
     const std::string a = write_results(folder / "a", rows_of({.drift = 0}));
     const std::string b = write_results(folder / "b", rows_of({.machine = 2, .drift = 0, .hour = 2}));
-    const program_result one = run_program({"compare", a, b, "--times"});
-    INFO(one.out + one.err);
-    REQUIRE(one.status == 0);
+    const program_result one = run_well({"compare", a, b, "--times"});
     CHECK(is_one_sentence(one.err));
-    CHECK(has(one.err, "differ by more than the noise within"));
-    CHECK(has(one.out, "\n2 ratios compared: 0 changed beyond noise, 2 unchanged"));
-    CHECK(has(one.out, "\n3 times compared: 3 changed beyond noise, 0 unchanged"));
+    CHECK(holds(one.err, "differ by more than the noise within"));
+    CHECK(holds(one.out, "\n2 ratios compared: 0 changed beyond noise, 2 unchanged"));
+    CHECK(holds(one.out, "\n3 times compared: 3 changed beyond noise, 0 unchanged"));
     change_processor(b, "Abacus 9");
-    const program_result two = run_program({"compare", a, b, "--times"});
-    INFO(two.err);
-    REQUIRE(two.status == 2);
+    const program_result two = run_refused({"compare", a, b, "--times"});
     CHECK(two.out.empty());
-    CHECK(is_one_sentence(two.err));
-    CHECK(has(two.err, "Abacus 9"));
-    CHECK(has(two.err, aabblab::read_manifest(a).cpu));
-    const program_result ratios = run_program({"compare", a, b});
-    CHECK(ratios.status == 0);
-    CHECK(has(ratios.out, "B: " + b + " (commit "));
-    CHECK(has(ratios.out, "Abacus 9)\n"));
+    CHECK(holds(two.err, "Abacus 9"));
+    CHECK(holds(two.err, aabblab::read_manifest(a).cpu));
+    const program_result ratios = run_well({"compare", a, b});
+    CHECK(holds(ratios.out, "B: " + b + " (commit "));
+    CHECK(holds(ratios.out, "Abacus 9)\n"));
 }
 
 TEST_CASE("compare takes folders of several experiments, and leaves out what one of the two does not have") {
@@ -302,13 +281,11 @@ TEST_CASE("compare takes folders of several experiments, and leaves out what one
     std::filesystem::create_directories(folder / "a/c6");
     std::ofstream(folder / "a/c6/process-0.json") << "{}";
     const std::string b = write_results(folder / "b", rows_of({.experiment = "second", .hour = 2}));
-    const program_result result = run_program({"compare", (folder / "a").string(), b, "--all"});
-    INFO(result.out + result.err);
-    REQUIRE(result.status == 0);
-    CHECK(has(result.out, "\nsecond: brownian, "));
-    CHECK_FALSE(has(result.out, "\nfirst: brownian, "));
-    CHECK(has(result.out, "\n2 ratios compared: "));
-    CHECK(has(result.out, "left out is what only one of them has: 9 compositions in a scene of A, 0 of B\n"));
+    const program_result result = run_well({"compare", folder / "a", b, "--all"});
+    CHECK(holds(result.out, "\nsecond: brownian, "));
+    CHECK_FALSE(holds(result.out, "\nfirst: brownian, "));
+    CHECK(holds(result.out, "\n2 ratios compared: "));
+    CHECK(holds(result.out, "left out is what only one of them has: 9 compositions in a scene of A, 0 of B\n"));
 }
 
 TEST_CASE("compare refuses what holds no results, with one sentence") {
@@ -330,7 +307,7 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
                                                        R"("scenes": })";
     write_results(folder / "twice/x", rows_of({}));
     write_results(folder / "twice/y", rows_of({}));
-    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+    const refusals refused = {
         {{good}, "B is required"},
         {{good, folder / "nowhere"}, "nowhere is not there; expected a folder of results"},
         {{folder / "good/results.csv", good}, "results.csv is not a folder"},
@@ -344,12 +321,5 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
         {{folder / "twice", good}, "both hold results of the experiment test"},
         {{good, good, "--tiems"}, "did you mean '--times'?"},
     };
-    for (const auto& [arguments, said] : refused) {
-        const program_result result = run_program(joined({"compare"}, arguments));
-        INFO(result.err);
-        CHECK(result.status == 2);
-        CHECK(result.out.empty());
-        CHECK(is_one_sentence(result.err));
-        CHECK(has(result.err, said));
-    }
+    check_refused({"compare"}, refused);
 }

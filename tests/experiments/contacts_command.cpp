@@ -1,12 +1,8 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <nlohmann/json.hpp>
+
+#include "program_json.hpp"
 
 #include "mesh_bytes.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
 
 namespace {
 
@@ -28,7 +24,7 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string motion = folder.write("m.txt", coming);
     const std::vector<std::string> base = {"contacts", motion, mesh, "--json", "--out", folder / "c.csv"};
-    const auto reference = nlohmann::json::parse(run_program(joined(base, {"--engine", "cgal"})).out);
+    const auto reference = json_of(joined(base, {"--engine", "cgal"}));
     CHECK(reference["objects"] == 3);
     CHECK(reference["frames"] == 4);
     CHECK(reference["contacts"] > 0);
@@ -38,40 +34,35 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     CHECK(reference["ms"].size() == 4);
     const std::string rows = bytes_of_file(folder / "c.csv");
     CHECK(rows.starts_with("frame,object_a,object_b,triangle_a,triangle_b\n1,0,1,"));
-    CHECK(rows.find("\n2,0,1,") != std::string::npos);
-    CHECK(rows.find("\n3,") == std::string::npos);
+    CHECK(holds(rows, "\n2,0,1,"));
+    CHECK_FALSE(holds(rows, "\n3,"));
     const auto options = GENERATE(values<std::vector<std::string>>(
         {{},
          {"--tree", "compressed:leaf_test=triangle_box", "--sort", "shell", "--partition", "axial_cut"},
          {"--tree", "compressed", "--prepare", "split_mesh:size=0.1"},
          {"--tree", "shared_planes", "--build", "sah", "--sweep", "all_axes", "--prepare", "split_large:size=2"}}));
-    const program_result result = run_program(joined(base, options));
-    REQUIRE(result.status == 0);
-    const auto summary = nlohmann::json::parse(result.out);
+    const auto summary = json_of(joined(base, options));
     CHECK(summary["digest"] == reference["digest"]);
     CHECK(summary["exact"] == true);
     CHECK(bytes_of_file(folder / "c.csv") == rows);
-    CHECK(run_program({"contacts", motion, mesh}).out.find("3 objects, 4 frames") != std::string::npos);
-    CHECK(nlohmann::json::parse(
-              run_program({"contacts", motion, mesh, "--json", "--triangle", "moller"}).out)["exact"] == false);
-    CHECK(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out.find("fcl (inexact)") != std::string::npos);
+    CHECK(holds(run_program({"contacts", motion, mesh}).out, "3 objects, 4 frames"));
+    CHECK(json_of({"contacts", motion, mesh, "--json", "--triangle", "moller"})["exact"] == false);
+    CHECK(holds(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out, "fcl (inexact)"));
 }
 
 TEST_CASE("contacts writes what collide writes of the same triangles at the same poses") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string motion = folder.write("m.txt", coming);
-    REQUIRE(run_program({"contacts", motion, mesh, "--geometry", "--out", folder / "c.csv"}).status == 0);
-    REQUIRE(run_program({"collide", mesh, mesh, "--geometry", "--out", folder / "p.csv", "--pose-b",
-                         "1,0,0,0.25,0,1,0,0.25,0,0,1,0"})
-                .status == 0);
+    run_well({"contacts", motion, mesh, "--geometry", "--out", folder / "c.csv"});
+    run_well(
+        {"collide", mesh, mesh, "--geometry", "--out", folder / "p.csv", "--pose-b", "1,0,0,0.25,0,1,0,0.25,0,0,1,0"});
     std::string expected = bytes_of_file(folder / "p.csv").substr(4);
     CHECK(expected.starts_with("kind,corners,error_x,"));
     const std::size_t header = expected.find('\n') + 1;
     std::string rows = "frame,object_a,object_b,triangle_a,triangle_b," + expected.substr(0, header);
     for (const char* frame : {"1,0,1,", "2,0,1,"})
-        for (std::size_t at = header; at < expected.size(); at = expected.find('\n', at) + 1)
-            rows += frame + expected.substr(at, expected.find('\n', at) + 1 - at);
+        for (const std::string& row : lines_of(expected.substr(header))) rows += frame + row + "\n";
     CHECK(bytes_of_file(folder / "c.csv") == rows);
 }
 
@@ -80,7 +71,7 @@ TEST_CASE("a frame that a motion file leaves out is like the one before") {
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0.2 0 1 0 0.1 0 0 1 0\n";
     const auto contacts = [&](const std::string& text) {
-        return nlohmann::json::parse(run_program({"contacts", folder.write("m.txt", text), mesh, "--json"}).out);
+        return json_of({"contacts", folder.write("m.txt", text), mesh, "--json"});
     };
     const int once = contacts(still)["contacts"].get<int>();
     REQUIRE(once > 0);
@@ -93,15 +84,14 @@ TEST_CASE("contacts plays the motion that a scene has written, and finds what th
     const temporary_folder folder;
     const std::string motion = folder / "swarm.txt";
     const std::vector<std::string> shapes = {"icosphere:triangles=80", "torus_knot:triangles=300"};
-    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "12", "--frames", "5", "--density", "3", "--mesh", shapes[0],
-                         "--mesh", shapes[1], "--motion", motion, "--normalise", "no"})
-                .status == 0);
+    run_well({"scene", "mesh_swarm", "--n", "12", "--frames", "5", "--density", "3", "--mesh", shapes[0], "--mesh",
+              shapes[1], "--motion", motion, "--normalise", "no"});
     const std::string config = folder.write("c.toml",
                                             "name = \"c\"\n[[scene]]\nkind = \"mesh_swarm\"\nobjects = 12\nframes = 5\n"
                                             "density = 3\nnormalise = \"no\"\n"
                                             "meshes = [\"icosphere:triangles=80\", \"torus_knot:triangles=300\"]\n");
     const std::string validated = run_program({"validate", config}).out;
-    const auto summary = nlohmann::json::parse(run_program({"contacts", motion, shapes[0], shapes[1], "--json"}).out);
+    const auto summary = json_of({"contacts", motion, shapes[0], shapes[1], "--json"});
     CHECK(summary["contacts"] > 20);
-    CHECK(validated.find("digest " + summary["digest"].get<std::string>()) != std::string::npos);
+    CHECK(holds(validated, "digest " + summary["digest"].get<std::string>()));
 }

@@ -1,10 +1,7 @@
 #include <rapidcheck.h>
 
-#include <catch2/catch_test_macros.hpp>
-
 #include "temporary_folder.hpp"
 
-import aabb.std;
 import aabb;
 import aabblab.files;
 

@@ -1,9 +1,7 @@
 #include <rapidcheck.h>
 
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/generators/catch_generators.hpp>
+#include "../testing.hpp"
 
-import aabb.std;
 import aabb;
 import aabblab.results;
 
@@ -21,12 +19,7 @@ table fields_of(const std::string& text) {
 }
 
 std::string refusal_of(const std::string& text) {
-    try {
-        (void)read_csv(text, "t.csv");
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "accepted";
+    return refusal_in<aabb::input_error>([&] { return read_csv(text, "t.csv"); });
 }
 
 }  // namespace

@@ -1,13 +1,7 @@
 // FORMATS.md says of which numbers a digest is; these tests make each anew from the rows of the files.
 
-#include <catch2/catch_test_macros.hpp>
-#include <nlohmann/json.hpp>
+#include "program_json.hpp"
 
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
-import aabb;
 import aabblab.results;
 
 namespace {
@@ -17,14 +11,11 @@ using rows = std::vector<std::vector<std::uint32_t>>;
 /// What a CSV file holds below its column names.
 rows rows_of(const std::string& text) {
     rows all;
-    std::istringstream lines(text);
-    std::string line;
-    std::getline(lines, line);
-    while (std::getline(lines, line)) {
+    for (const std::string& line : lines_of(text.substr(text.find('\n') + 1))) {
         std::istringstream numbers(line);
-        std::string number;
         std::vector<std::uint32_t>& row = all.emplace_back();
-        while (std::getline(numbers, number, ',')) row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
+        for (std::string number; std::getline(numbers, number, ',');)
+            row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
     }
     return all;
 }
@@ -46,10 +37,7 @@ rows in_frame_0(const rows& all) {
 struct outcome {
     outcome(const temporary_folder& folder, std::vector<std::string> arguments) {
         const std::string out = folder / "out.csv";
-        const program_result result = run_program(joined(std::move(arguments), {"--json", "--out", out}));
-        INFO(result.err);
-        REQUIRE(result.status == 0);
-        digest = nlohmann::json::parse(result.out)["digest"];
+        digest = json_of(joined(std::move(arguments), {"--json", "--out", out}))["digest"];
         written = rows_of(bytes_of_file(out));
         REQUIRE(written.size() > 3);
     }
@@ -62,10 +50,7 @@ struct outcome {
 std::string digest_of_run(const temporary_folder& folder, const std::string& scene) {
     const std::string config = folder.write("digests.toml", "name = \"digests\"\nseed = 7\n[[scene]]\n" + scene +
                                                                 "[measure]\nrepeats = 1\nmetrics = [\"counts\"]\n");
-    const std::string results = folder / "results";
-    const program_result result = run_program({"run", config, "--out", results});
-    INFO(result.err);
-    REQUIRE(result.status == 0);
+    run_well({"run", config, "--out", folder / "results"});
     return aabblab::read_rows(folder / "results" / "results.csv").at(0).digest;
 }
 
@@ -74,9 +59,7 @@ std::string digest_of_run(const temporary_folder& folder, const std::string& sce
 TEST_CASE("pairs and run on boxes digest the rows frame,a,b") {
     const temporary_folder folder;
     const std::string scene = folder / "scene.aabbs";
-    REQUIRE(run_program(
-                {"scene", "brownian", "--n", "80", "--frames", "3", "--seed", "7", "--density", "1", "--out", scene})
-                .status == 0);
+    run_well({"scene", "brownian", "--n", "80", "--frames", "3", "--seed", "7", "--density", "1", "--out", scene});
     const outcome pairs(folder, {"pairs", scene});
     CHECK(pairs.digest == digest_of(pairs.written));
     CHECK(digest_of_run(folder, "kind = \"brownian\"\nobjects = 80\nframes = 3\ndensity = 1\n") == pairs.digest);
@@ -95,9 +78,8 @@ TEST_CASE("collide digests 0,a,b for each row, of a mesh with itself too") {
 TEST_CASE("contacts and run on meshes digest the rows frame,object_a,object_b,triangle_a,triangle_b") {
     const temporary_folder folder;
     const std::string motion = folder / "swarm.txt";
-    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "8", "--frames", "3", "--density", "3", "--seed", "7", "--mesh",
-                         "icosphere:triangles=80", "--normalise", "no", "--motion", motion})
-                .status == 0);
+    run_well({"scene", "mesh_swarm", "--n", "8", "--frames", "3", "--density", "3", "--seed", "7", "--mesh",
+              "icosphere:triangles=80", "--normalise", "no", "--motion", motion});
     const outcome contacts(folder, {"contacts", motion, "icosphere:triangles=80"});
     CHECK(contacts.digest == digest_of(contacts.written));
     CHECK(digest_of_run(folder,

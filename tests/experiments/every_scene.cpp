@@ -1,9 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "../compositions.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.validation;
 import aabblab.configs;
 import aabblab.trials;

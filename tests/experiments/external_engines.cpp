@@ -1,19 +1,8 @@
 // Programs of others that join an experiment by the pairs and the times that they write.
-#include "program.hpp"
-
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <csignal>
 
-#include "temporary_folder.hpp"
-
-import aabb.std;
-import aabb;
-import aabblab.configs;
-import aabblab.results;
+#include "configs.hpp"
 
 namespace {
 
@@ -28,6 +17,10 @@ const std::string stray =
     "(setsid sh -c 'echo $$ >stray.part; mv stray.part stray; exec sleep 1000' &)\n"
     "until [ -e stray ]; do sleep 0.01; done\n";
 
+const std::string of_pairs = "the pairs of the external engine 'mine'";
+const std::string no_time = ": expected a time in milliseconds, finite and not negative";
+const std::string of_times = "the times of the external engine 'mine'";
+
 std::string config_of(const std::string& kind, const std::string& more) {
     return "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = [\"./mine\"]\n" + more +
            "[[scene]]\nkind = \"" + kind + "\"\nobjects = 150\nframes = 3\n[measure]\nrepeats = 2\n";
@@ -38,18 +31,11 @@ program_result run_with(const temporary_folder& folder, const std::string& scrip
                         const std::string& more = {}) {
     std::filesystem::permissions(folder.write("mine", script), std::filesystem::perms::owner_all);
     std::filesystem::remove_all(folder / "out");
-    return run_program(
-        {"run", folder.write("joined.toml", config_of(kind, more)).string(), "--out", (folder / "out").string()});
+    return run_program({"run", folder.write("joined.toml", config_of(kind, more)).string(), "--out", folder / "out"});
 }
 
-std::string refusal_of(const std::string& text) {
-    try {
-        (void)aabblab::parse_experiment(text, "test.toml", aabblab::experiment_size::full);
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "accepted";
-}
+/// The least that a config says of one.
+const std::string listed = "[[external]]\nname = \"a\"\ncommand = \"ls\"\n";
 
 /// Whether a process is gone, or waits for nothing but to be asked how it ended.
 bool has_ended(pid_t process) {
@@ -69,7 +55,7 @@ TEST_CASE("An external engine is held against the exact answer and has the times
     const program_result result = run_with(folder, good, kind);
     INFO(result.err << result.out);
     REQUIRE(result.status == 0);
-    REQUIRE(result.out.find("  mine  ") != std::string::npos);
+    REQUIRE(holds(result.out, "  mine  "));
     const std::vector<aabblab::row> rows = aabblab::verified_rows(folder / "out");
     REQUIRE(rows.size() == 4);
     for (const aabblab::row& r : rows) {
@@ -87,9 +73,9 @@ TEST_CASE("An external engine is held against the exact answer and has the times
     CHECK(std::ranges::none_of(std::filesystem::directory_iterator(folder.path()), [](const auto& entry) {
         return entry.path().string().ends_with(".aabbs") || entry.path().string().ends_with(".pairs.csv");
     }));
-    CHECK(run_program({"compare", (folder / "out").string(), (folder / "out").string()}).status == 0);
-    CHECK(run_program({"validate", (folder / "joined.toml").string()}).status == 0);
-    CHECK(run_program({"explain", (folder / "joined.toml").string()}).out.find("  mine\n") != std::string::npos);
+    run_well({"compare", folder / "out", folder / "out"});
+    run_well({"validate", folder / "joined.toml"});
+    CHECK(holds(run_program({"explain", folder / "joined.toml"}).out, "  mine\n"));
 }
 
 TEST_CASE("What an external engine gets wrong is a failure, and counted where it says that it may") {
@@ -103,7 +89,7 @@ TEST_CASE("What an external engine gets wrong is a failure, and counted where it
     INFO(result.err << result.out);
     REQUIRE(result.status == 1);
     REQUIRE(result.err.starts_with("aabblab: mine is wrong on brownian ("));
-    REQUIRE(result.err.find(says) != std::string::npos);
+    REQUIRE(holds(result.err, says));
     REQUIRE(aabblab::read_rows(folder / "out/results.csv").size() == 2);
     const program_result counted = run_with(folder, good + fault, "brownian", "exact = false\n");
     INFO(counted.err << counted.out);
@@ -118,49 +104,35 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
     const auto [fault, says] = GENERATE(table<std::string, std::string>({
         {"exit 3\n", "the external engine 'mine' ended with status 3"},
         {"kill -9 $$\n", "the external engine 'mine' was ended by signal 9"},
-        {"rm \"$2\"\n", "the pairs of the external engine 'mine' are not there: it wrote no such file"},
-        {"rm \"$3\"\n", "the times of the external engine 'mine' are not there: it wrote no such file"},
-        {": >\"$2\"\n", "the pairs of the external engine 'mine' are an empty file; expected the line frame,a,b"},
-        {"sed -i 1d \"$3\"\n",
-         "the times of the external engine 'mine', line 1, '0,0.5,1.25': expected the line frame,update_ms,search_ms"},
-        {"rm \"$2\"; mkdir \"$2\"\n", "the pairs of the external engine 'mine' are a folder; expected a file"},
-        {"sed -i '2s/.*/0,1,2,7/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '0,1,2,7': expected frame,a,b"},
+        {"rm \"$2\"\n", of_pairs + " are not there: it wrote no such file"},
+        {"rm \"$3\"\n", of_times + " are not there: it wrote no such file"},
+        {": >\"$2\"\n", of_pairs + " are an empty file; expected the line frame,a,b"},
+        {"sed -i 1d \"$3\"\n", of_times + ", line 1, '0,0.5,1.25': expected the line frame,update_ms,search_ms"},
+        {"rm \"$2\"; mkdir \"$2\"\n", of_pairs + " are a folder; expected a file"},
+        {"sed -i '2s/.*/0,1,2,7/' \"$2\"\n", of_pairs + ", line 2, '0,1,2,7': expected frame,a,b"},
         {"sed -i \"2s/.*/$(printf %070d 7)/\" \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '" + std::string(60, '0') + "…': expected frame,a,b"},
-        {"sed -i '2s/.*/0\\x00,4/' \"$2\"\n",
-         "the pairs of the external engine 'mine': is not text: a NUL byte in line 2, with more behind it"},
-        {"sed -i '2s/.*/0,4/' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '0,4': expected frame,a,b"},
-        {"sed -i '2s/.*//' \"$2\"\n", "the pairs of the external engine 'mine', line 2, '': expected frame,a,b"},
-        {"sed -i '2s/.*/0,1,x/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '0,1,x': expected an object below 150"},
-        {"sed -i '2s/.*/0,-1,2/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '0,-1,2': expected an object below 150"},
-        {"sed -i '2s/.*/0,1,150/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '0,1,150': expected an object below 150"},
+         of_pairs + ", line 2, '" + std::string(60, '0') + "…': expected frame,a,b"},
+        {"sed -i '2s/.*/0\\x00,4/' \"$2\"\n", of_pairs + ": is not text: a NUL byte in line 2, with more behind it"},
+        {"sed -i '2s/.*/0,4/' \"$2\"\n", of_pairs + ", line 2, '0,4': expected frame,a,b"},
+        {"sed -i '2s/.*//' \"$2\"\n", of_pairs + ", line 2, '': expected frame,a,b"},
+        {"sed -i '2s/.*/0,1,x/' \"$2\"\n", of_pairs + ", line 2, '0,1,x': expected an object below 150"},
+        {"sed -i '2s/.*/0,-1,2/' \"$2\"\n", of_pairs + ", line 2, '0,-1,2': expected an object below 150"},
+        {"sed -i '2s/.*/0,1,150/' \"$2\"\n", of_pairs + ", line 2, '0,1,150': expected an object below 150"},
         {"echo 4,1,2 >>\"$2\"\n", ": expected a frame below 4"},
-        {"sed -i '2s/.*/0,7,7/' \"$2\"\n",
-         "the pairs of the external engine 'mine', line 2, '0,7,7': object 7 is paired with itself"},
+        {"sed -i '2s/.*/0,7,7/' \"$2\"\n", of_pairs + ", line 2, '0,7,7': object 7 is paired with itself"},
         {"echo 0,1,2 >>\"$2\"\n",
          ", '0,1,2': this row of frame 0 stands behind one of frame 3; expected rows sorted by frame, from 0 on, in "
          "any "
          "order within a frame"},
-        {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", "the pairs of the external engine 'mine' have 5 6 twice in frame 0"},
-        {"sed -i '$d' \"$3\"\n", "the times of the external engine 'mine' end before frame 3"},
+        {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", of_pairs + " have 5 6 twice in frame 0"},
+        {"sed -i '$d' \"$3\"\n", of_times + " end before frame 3"},
         {"sed -i '3s/.*/2,1,1/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3, '2,1,1': expected frame 1; each stands once, in order"},
-        {"sed -i '3s/.*/1,-1,1/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3, '1,-1,1': expected a time in milliseconds, finite and not "
-         "negative"},
-        {"sed -i '3s/.*/1,nan,1/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3, '1,nan,1': expected a time in milliseconds, finite and not "
-         "negative"},
-        {"sed -i '3s/.*/1,1,2ms/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3, '1,1,2ms': expected a time in milliseconds, finite and not "
-         "negative"},
-        {"sed -i '3s/.*/1,0,0/' \"$3\"\n",
-         "the times of the external engine 'mine', line 3, '1,0,0': expected more than 0 ms, the two together"},
-        {"echo 4,1,1 >>\"$3\"\n", "the times of the external engine 'mine', line 6, '4,1,1': expected a frame below 4"},
+         of_times + ", line 3, '2,1,1': expected frame 1; each stands once, in order"},
+        {"sed -i '3s/.*/1,-1,1/' \"$3\"\n", of_times + ", line 3, \'1,-1,1\'" + no_time},
+        {"sed -i '3s/.*/1,nan,1/' \"$3\"\n", of_times + ", line 3, \'1,nan,1\'" + no_time},
+        {"sed -i '3s/.*/1,1,2ms/' \"$3\"\n", of_times + ", line 3, \'1,1,2ms\'" + no_time},
+        {"sed -i '3s/.*/1,0,0/' \"$3\"\n", of_times + ", line 3, '1,0,0': expected more than 0 ms, the two together"},
+        {"echo 4,1,1 >>\"$3\"\n", of_times + ", line 6, '4,1,1': expected a frame below 4"},
     }));
     CAPTURE(fault);
     const temporary_folder folder;
@@ -171,7 +143,7 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
     REQUIRE(is_one_sentence(result.err));
     REQUIRE(result.err.starts_with("aabblab: " + (folder / "joined.toml").string() +
                                    ":4: brownian (objects=150 frames=3 seed=1): "));
-    REQUIRE(result.err.find(says + "\n") != std::string::npos);
+    REQUIRE(holds(result.err, says + "\n"));
 }
 
 TEST_CASE("An external engine may tell its time in one of the two columns") {
@@ -235,11 +207,10 @@ TEST_CASE("An external engine that ends its process group has failed, and may be
     const temporary_folder folder;
     const program_result ended = run_with(folder, good + "kill 0\nsleep 1000\n");
     CHECK(ended.status == 2);
-    CHECK(ended.err.find("ended by signal 15") != std::string::npos);
+    CHECK(holds(ended.err, "ended by signal 15"));
     REQUIRE(run_with(folder, good, "brownian", "timeout_s = 20\n").status == 0);
-    const program_result ignored =
-        run_command({"env", "--ignore-signal=CHLD", AABBLAB_UNDER_TEST, "run", (folder / "joined.toml").string(),
-                     "--out", (folder / "again").string()});
+    const program_result ignored = run_command(
+        {"env", "--ignore-signal=CHLD", AABBLAB_UNDER_TEST, "run", folder / "joined.toml", "--out", folder / "again"});
     INFO(ignored.err);
     CHECK(ignored.status == 0);
 }
@@ -257,8 +228,9 @@ TEST_CASE("An external engine that does not end is killed with what it started, 
     const program_result result = run_with(folder, good + waits, "brownian", "timeout_s = 1\n");
     CAPTURE(result.err, result.out);
     REQUIRE(result.status == 1);
-    CHECK(result.err.find(":4: brownian (objects=150 frames=3 seed=1): the external engine 'mine' was killed: it had "
-                          "not ended after 1 s, its timeout_s\n") != std::string::npos);
+    CHECK(holds(result.err,
+                ":4: brownian (objects=150 frames=3 seed=1): the external engine 'mine' was killed: it had "
+                "not ended after 1 s, its timeout_s\n"));
     const std::vector<aabblab::row> rows = aabblab::read_rows(folder / "out/results.csv");
     CHECK(std::ranges::count_if(rows, [](const auto& r) { return r.name.engine.empty(); }) == 2);
     CHECK(static_cast<std::size_t>(
@@ -273,21 +245,15 @@ TEST_CASE("An external engine that cannot be started gets one sentence and statu
     const temporary_folder folder;
     folder.write("mine", good);  // which nobody may execute
     const auto config = folder.write("joined.toml", config_of("brownian", ""));
-    const program_result refused = run_program({"run", config.string(), "--out", (folder / "out").string()});
-    CAPTURE(refused.err);
-    REQUIRE(refused.status == 2);
-    REQUIRE(is_one_sentence(refused.err));
+    const program_result refused = run_refused({"run", config, "--out", folder / "out"});
     REQUIRE(refused.err.starts_with("aabblab: " + config.string() + ":4: brownian ("));
-    REQUIRE(refused.err.find("mine cannot be started: Permission denied\n") != std::string::npos);
+    REQUIRE(holds(refused.err, "mine cannot be started: Permission denied\n"));
     const auto bare = folder.write("bare.toml",
                                    "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = \"no_such_program\"\n"
                                    "[[scene]]\nkind = \"brownian\"\nobjects = 5\n");
-    const program_result unknown = run_program({"run", bare.string(), "--out", (folder / "bare").string()});
-    CAPTURE(unknown.err);
-    REQUIRE(unknown.status == 2);
-    REQUIRE(is_one_sentence(unknown.err));
-    REQUIRE(unknown.err.find("the external engine 'mine': there is no program no_such_program in PATH; write "
-                             "./no_such_program for one in the folder of the config\n") != std::string::npos);
+    REQUIRE(holds(run_refused({"run", bare.string(), "--out", folder / "bare"}).err,
+                  "the external engine 'mine': there is no program no_such_program in PATH; write "
+                  "./no_such_program for one in the folder of the config\n"));
 }
 
 TEST_CASE("An external engine has no part in scenes of meshes") {
@@ -298,10 +264,8 @@ TEST_CASE("An external engine has no part in scenes of meshes") {
                      "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = \"./mine\"\n[[scene]]\n"
                      "kind = \"mesh_swarm\"\nmeshes = [\"icosphere:triangles=20\"]\nobjects = 5\n"
                      "frames = 1\n[measure]\nrepeats = 1\n");
-    const program_result result = run_program({"run", config.string(), "--out", (folder / "out").string()});
-    INFO(result.out);
-    REQUIRE(result.status == 0);
-    REQUIRE(result.err == "aabblab: mine has no part in mesh_swarm: it is given boxes only\n");
+    REQUIRE(run_well({"run", config, "--out", folder / "out"}).err ==
+            "aabblab: mine has no part in mesh_swarm: it is given boxes only\n");
 }
 
 TEST_CASE("External engines in a config are checked, and are part of its hash") {
@@ -319,23 +283,19 @@ TEST_CASE("External engines in a config are checked, and are part of its hash") 
         {"[[external]]\nname = \"a\"\ncommand = \"\"\n", ":4: the command of 'a' is empty; expected a program"},
         {"[[external]]\nname = \"a\"\ncommand = \"./no/such\"\n", ":4: ./no/such: no such file"},
         {"[[external]]\nname = \"a\"\ncommand = \"/usr/\"\n", ":4: /usr/ is a folder; expected a program"},
-        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\nexact = 1\n", ":5: exact is a number; expected true or false"},
-        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\ntimeout_s = 0\n",
-         ":5: timeout_s must be a whole number, at least 1, not 0"},
-        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\ntimeout_s = 1000001\n",
-         ":5: timeout_s must be at most 1000000"},
+        {listed + "exact = 1\n", ":5: exact is a number; expected true or false"},
+        {listed + "timeout_s = 0\n", ":5: timeout_s must be a whole number, at least 1, not 0"},
+        {listed + "timeout_s = 1000001\n", ":5: timeout_s must be at most 1000000"},
         {"[[external]]\nname = \"a\"\ncomand = \"ls\"\n", "did you mean 'command'?"},
-        {"[[external]]\nname = \"a\"\ncommand = \"ls\"\n[[external]]\nname = \"a\"\ncommand = \"ls\"\n",
-         ":5: two [[external]] have the name 'a'"},
+        {listed + listed, ":5: two [[external]] have the name 'a'"},
         {"[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n", "accepted"},
     }));
     CAPTURE(external);
-    REQUIRE(refusal_of(with(external)).find(says) != std::string::npos);
+    REQUIRE(holds(refusal_of(with(external)), says));
     const auto hash = [&](const std::string& text) {
         return aabblab::hash_of(aabblab::parse_experiment(with(text), "x.toml", aabblab::experiment_size::full));
     };
-    const std::string one = "[[external]]\nname = \"a\"\ncommand = \"ls\"\n";
-    REQUIRE(hash(one) != hash(""));
-    REQUIRE(hash(one) != hash("[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n"));
-    REQUIRE(hash(one) != hash(one + "exact = false\n"));
+    REQUIRE(hash(listed) != hash(""));
+    REQUIRE(hash(listed) != hash("[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n"));
+    REQUIRE(hash(listed) != hash(listed + "exact = false\n"));
 }

@@ -1,12 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
-
-#include "program.hpp"
-#include "temporary_folder.hpp"
+#include "csv_rows.hpp"
 
 import aabb.extreme;
-import aabb.std;
 import aabblab.extreme;
-import aabblab.results;
 import aabblab.tables;
 
 namespace {
@@ -17,18 +12,13 @@ const std::string lie =
     "first = [[0, 0, 0], [2, 0, 0], [0, 2, 0]]\nsecond = [[0.5, 0.5, -1], [0.5, 0.5, 1], [3, 3, 0]]\n"
     "intersect = false\n";
 
-std::vector<aabblab::csv_record> records_of(const std::filesystem::path& file) {
-    return aabblab::read_csv(bytes_of_file(file), file.string()).records;
-}
-
 }  // namespace
 
 TEST_CASE("Scenes that are not answered as they must be stand in the table, and each contender in a sentence") {
     std::vector<aabb::extreme_scene> scenes = aabb::extreme_scenes(aabb::extreme_size::small);
-    const auto keep = [](const aabb::extreme_scene& scene) {
-        return scene.name == "two_objects" || scene.name == "many_against_one" || scene.name == "beyond_float";
-    };
-    std::erase_if(scenes, [&](const aabb::extreme_scene& scene) { return !keep(scene); });
+    std::erase_if(scenes, [](const aabb::extreme_scene& scene) {
+        return scene.name != "two_objects" && scene.name != "many_against_one" && scene.name != "beyond_float";
+    });
     REQUIRE(scenes.size() == 3);
     const auto rows_of = [&] { return aabblab::play_scenes(scenes, aabb::extreme_size::quick); };
     CHECK(aabblab::failures_in(rows_of()).empty());
@@ -68,37 +58,25 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     const std::filesystem::path out = folder / "results";
     const program_result ran = run_program({"validate", "extreme", "--quick", "--cases", file, "--out", out});
     CHECK(ran.status == 1);
-    CHECK(ran.err.find("aabblab: exact in double on lie: says that they intersect\n") != std::string::npos);
-    CHECK(ran.out.find("answers are not what they must be.\n") != std::string::npos);
+    CHECK(holds(ran.err, "aabblab: exact in double on lie: says that they intersect\n"));
+    CHECK(holds(ran.out, "answers are not what they must be.\n"));
     // Nothing but the lie is wrong.
-    CHECK(ran.out.find("crossing      1      4 WRONG") != std::string::npos);
+    CHECK(holds(ran.out, "crossing      1      4 WRONG"));
     for (const std::string scene : {"lattice  ", "flushed_boxes", "same_place", "upward_meshes", "pairs_zero_area"})
-        CHECK(ran.out.find("\n" + scene) != std::string::npos);
-    CHECK(ran.out.find("\n  box_inverted: box 7 is inverted") != std::string::npos);
-    CHECK(ran.out.find("many_against_many, ") != std::string::npos);
-    std::istringstream lines(ran.out.substr(0, ran.out.find("\nRefused:")));
-    for (std::string line; std::getline(lines, line);) {
-        INFO(line);
-        CHECK(line.size() <= 80);
-    }
+        CHECK(holds(ran.out, "\n" + scene));
+    CHECK(holds(ran.out, "\n  box_inverted: box 7 is inverted"));
+    CHECK(holds(ran.out, "many_against_many, "));
+    check_narrow(ran.out.substr(0, ran.out.find("\nRefused:")));
 
-    const std::vector<aabblab::csv_record> records = records_of(out / "extreme.csv");
-    REQUIRE(records.size() > 1000);
-    const std::vector<std::string>& header = records[0].fields;
-    const auto at = [&](const aabblab::csv_record& record, const std::string& name) {
-        const auto column = std::ranges::find(header, name);
-        REQUIRE(column != header.end());
-        return record.fields[static_cast<std::size_t>(column - header.begin())];
-    };
+    const auto rows = csv_rows(out / "extreme.csv");
+    REQUIRE(rows.size() >= 1000);
     std::set<std::string> wrong;
     std::size_t refused = 0;
-    for (const aabblab::csv_record& record : std::span(records).subspan(1)) {
-        REQUIRE(record.fields.size() == header.size());
-        if (at(record, "as_expected") == "no") wrong.insert(at(record, "scene"));
-        if (at(record, "answer") == "refused") {
-            ++refused;
-            CHECK_FALSE(at(record, "reason").empty());
-        }
+    for (const auto& row : rows) {
+        if (row.at("as_expected") == "no") wrong.insert(row.at("scene"));
+        if (row.at("answer") != "refused") continue;
+        ++refused;
+        CHECK_FALSE(row.at("reason").empty());
     }
     CHECK(wrong == std::set<std::string>{"lie"});
     CHECK(refused > 100);
@@ -107,12 +85,7 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
 TEST_CASE("What stands before or behind validate extreme and has no part in it is refused") {
     const temporary_folder folder;
     const std::string file = folder.write("c.toml", "[[case]]\nname = 1\n");
-    const auto said = [](const std::vector<std::string>& arguments) {
-        const program_result ran = run_program(arguments);
-        CHECK(ran.status == 2);
-        CHECK(is_one_sentence(ran.err));
-        return ran.err;
-    };
+    const auto said = [](const std::vector<std::string>& arguments) { return run_refused(arguments).err; };
     CHECK(said({"validate", "--quick", "extreme", "--cases", file}) ==
           "aabblab: validate: --quick has no part in 'extreme'; what it takes stands behind its name\n");
     CHECK(said({"validate", file, "extreme"}).starts_with("aabblab: validate: CONFIG has no part in 'extreme'"));
@@ -120,9 +93,9 @@ TEST_CASE("What stands before or behind validate extreme and has no part in it i
           "aabblab: " + file + ":2: name is a number; expected a name\n");
     CHECK(said({"validate", "extreme", "--qiuck"}) ==
           "aabblab: validate extreme: unknown option '--qiuck'; did you mean '--quick'?\n");
-    CHECK(said({"validate", "extreme", "more.toml"}).find("validate extreme: ") != std::string::npos);
+    CHECK(holds(said({"validate", "extreme", "more.toml"}), "validate extreme: "));
     const std::string help = run_program({"validate", "extreme", "--help"}).out;
-    CHECK(help.find("--cases FILE") != std::string::npos);
-    CHECK(help.find("\npairs_sliver ") != std::string::npos);
-    CHECK(run_program({"validate", "--help"}).out.find("  extreme ") != std::string::npos);
+    CHECK(holds(help, "--cases FILE"));
+    CHECK(holds(help, "\npairs_sliver "));
+    CHECK(holds(run_program({"validate", "--help"}).out, "  extreme "));
 }

@@ -1,16 +1,8 @@
 // Recordings and motion files as scenes of an experiment.
 
-#include <catch2/catch_test_macros.hpp>
-#include <nlohmann/json.hpp>
+#include "program_json.hpp"
 
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
-import aabb;
-import aabblab.configs;
-import aabblab.results;
-import aabblab.scenes;
+#include "configs.hpp"
 
 using aabblab::experiment_size;
 
@@ -24,17 +16,14 @@ std::string in_toml(const std::filesystem::path& file) {
 }
 
 void record(const std::string& file, const std::string& seed) {
-    REQUIRE(run_program(
-                {"scene", "brownian", "--n", "60", "--frames", "3", "--density", "1", "--seed", seed, "--out", file})
-                .status == 0);
+    run_well({"scene", "brownian", "--n", "60", "--frames", "3", "--density", "1", "--seed", seed, "--out", file});
 }
 
 const std::string mesh = "icosphere:triangles=80";
 
 void record_motion(const std::string& file) {
-    REQUIRE(run_program({"scene", "mesh_swarm", "--n", "10", "--frames", "3", "--density", "3", "--normalise", "no",
-                         "--mesh", mesh, "--motion", file})
-                .status == 0);
+    run_well({"scene", "mesh_swarm", "--n", "10", "--frames", "3", "--density", "3", "--normalise", "no", "--mesh",
+              mesh, "--motion", file});
 }
 
 /// @param settings of the scene, lines of TOML
@@ -43,20 +32,8 @@ std::string recording_config(const std::string& settings) {
            "[measure]\nrepeats = 1\nmetrics = [\"counts\"]\n";
 }
 
-std::string refusal_of(const std::string& text, const std::string& file = "test.toml") {
-    try {
-        (void)aabblab::parse_experiment(text, file, experiment_size::full);
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "accepted";
-}
-
-nlohmann::json summary_of(const std::vector<std::string>& command) {
-    const program_result result = run_program(command);
-    INFO(result.err);
-    REQUIRE(result.status == 0);
-    return nlohmann::json::parse(result.out);
+std::string recording_at(const std::filesystem::path& file) {
+    return recording_config("file = " + in_toml(file) + "\n");
 }
 
 }  // namespace
@@ -69,12 +46,12 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
         const std::string file = folder / (odd + seed + ".aabbs");
         record(file, seed);
         files += (files.empty() ? "" : ", ") + in_toml(file);
-        digests["file=" + file] = summary_of({"pairs", file, "--json"})["digest"].get<std::string>();
+        digests["file=" + file] = json_of({"pairs", file, "--json"})["digest"].get<std::string>();
     }
     const std::string motion = folder / (odd + ".txt");
     record_motion(motion);
     digests["file=" + motion + " meshes=" + mesh] =
-        summary_of({"contacts", motion, mesh, "--json"})["digest"].get<std::string>();
+        json_of({"contacts", motion, mesh, "--json"})["digest"].get<std::string>();
     REQUIRE(digests.size() == 3);
     const std::string config = folder.write(
         "own.toml",
@@ -83,10 +60,7 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
             files + "]\n[[scene]]\nkind = \"motion\"\nfile = " + in_toml(motion) + "\nmeshes = [\"" + mesh +
             "\"]\n[compose]\nsort = [\"insertion\", \"shell\"]\n"
             "tree = [\"canonical\", \"compressed\"]\n[measure]\nrepeats = 2\n");
-    const program_result ran = run_program({"run", config, "--out", folder / "out"});
-    INFO(ran.err << ran.out);
-    REQUIRE(ran.status == 0);
-    CHECK(ran.out.find("seed=") == std::string::npos);
+    CHECK_FALSE(holds(run_well({"run", config, "--out", folder / "out"}).out, "seed="));
     const auto rows = aabblab::read_rows(folder / "out/results.csv");
     CHECK(rows.size() == 2 * 2 * (2 + 2) + 2 * (4 + 2));
     for (const aabblab::row& r : rows) {
@@ -97,16 +71,14 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
         CHECK(r.frames == 4);
     }
     const std::string validated = run_program({"validate", config}).out;
-    CHECK(validated.find("seed=") == std::string::npos);
+    CHECK_FALSE(holds(validated, "seed="));
     for (const auto& [parameters, digest] : digests) {
-        CHECK(validated.find("(" + parameters + ")") != std::string::npos);
-        CHECK(validated.find("digest " + digest) != std::string::npos);
+        CHECK(holds(validated, "(" + parameters + ")"));
+        CHECK(holds(validated, "digest " + digest));
     }
-    const program_result explained = run_program({"explain", config});
-    CHECK(explained.status == 0);
-    CHECK(explained.out.find("motion (file=" + motion) != std::string::npos);
-    CHECK(explained.out.find("\n  bytes are those after 2 of 4 frames; run tells those after the last\n") !=
-          std::string::npos);
+    const std::string explained = run_well({"explain", config}).out;
+    CHECK(holds(explained, "motion (file=" + motion));
+    CHECK(holds(explained, "\n  bytes are those after 2 of 4 frames; run tells those after the last\n"));
     const auto manifest = nlohmann::json::parse(bytes_of_file(folder / "out/manifest.json"));
     for (const auto& scene : manifest["scenes"]) {
         const auto& parameters = scene["parameters"];
@@ -127,23 +99,18 @@ TEST_CASE("Results are resumed until a recording or a motion has changed") {
                      "name = \"c\"\n[[scene]]\nkind = \"recording\"\nfile = \"a.aabbs\"\n[[scene]]\nkind = \"motion\"\n"
                      "file = \"m.txt\"\nmeshes = [\"" +
                          mesh + "\"]\n[measure]\nrepeats = 1\n");
-    const auto resumed = [&] { return run_program({"run", config, "--out", folder / "out", "--resume"}); };
-    REQUIRE(resumed().status == 0);
+    const std::vector<std::string> resume{"run", config, "--out", folder / "out", "--resume"};
+    run_well(resume);
     const std::string before = bytes_of_file(folder / "out/results.csv");
-    REQUIRE(resumed().status == 0);
+    run_well(resume);
     CHECK(bytes_of_file(folder / "out/results.csv") == before);
     const std::string poses = bytes_of_file(motion);
     folder.write("m.txt", poses + "4 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
-    const program_result moved = resumed();
-    CHECK(moved.status == 2);
-    CHECK(moved.err.find("of another config") != std::string::npos);
+    CHECK(holds(run_refused(resume).err, "of another config"));
     folder.write("m.txt", "# a comment changes nothing\n" + poses);
-    CHECK(resumed().status == 0);
+    run_well(resume);
     record(recording, "2");
-    const program_result refused = resumed();
-    CHECK(refused.status == 2);
-    CHECK(is_one_sentence(refused.err));
-    CHECK(refused.err.find("of another config") != std::string::npos);
+    CHECK(holds(run_refused(resume).err, "of another config"));
     CHECK(bytes_of_file(folder / "out/results.csv") == before);
 }
 
@@ -151,9 +118,8 @@ TEST_CASE("Seeds of a config do not multiply what has none, and one of its own i
     const temporary_folder folder;
     const std::string file = folder / "a.aabbs";
     record(file, "1");
-    const auto e = aabblab::parse_experiment(
-        recording_config("file = " + in_toml(file) + "\n") + "[[scene]]\nkind = \"still\"\nobjects = 5\n", "test.toml",
-        experiment_size::full);
+    const auto e = aabblab::parse_experiment(recording_at(file) + "[[scene]]\nkind = \"still\"\nobjects = 5\n",
+                                             "test.toml", experiment_size::full);
     REQUIRE(e.scenes.size() == 1 + 2);
     CHECK_FALSE(e.scenes[0].seed);
     CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + file);
@@ -175,13 +141,12 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     CHECK(refusal_of(recording_config("file = \"nowhere.aabbs\"\n"), "some/test.toml") ==
           "some/test.toml:5: nowhere.aabbs: no such file, here or in some");
     CHECK(refusal_of(recording_config("file = \"/nowhere.aabbs\"\n")) == "test.toml:5: /nowhere.aabbs: no such file");
-    CHECK(
-        refusal_of(recording_config("file = " + in_toml(folder.path()) + "\n")).ends_with(": is a folder, not a file"));
-    CHECK(refusal_of(recording_config("flie = \"a\"\n")).find("did you mean 'file'?") != std::string::npos);
+    CHECK(refusal_of(recording_at(folder.path())).ends_with(": is a folder, not a file"));
+    CHECK(holds(refusal_of(recording_config("flie = \"a\"\n")), "did you mean 'file'?"));
     std::string bytes = bytes_of_file(file);
     bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN, in the last box
     const std::string bad = folder.write("bad.aabbs", bytes);
-    CHECK(refusal_of(recording_config("file = " + in_toml(bad) + "\n")) ==
+    CHECK(refusal_of(recording_at(bad)) ==
           "test.toml:5: " + bad + ": frame 3: box 59 has a coordinate that is not finite");
     CHECK(refusal_of(recording_config("file = [\n" + in_toml(file) + ",\n" + in_toml(bad) + "]\n"))
               .starts_with("test.toml:7: " + bad + ": frame 3: "));
@@ -192,10 +157,8 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
     CHECK(motion(still, "") == "test.toml:2: motion needs at least one mesh");
     CHECK(motion("x", "meshes = [\"icosphere\"]\n").starts_with("test.toml:4: " + folder.path().string()));
-    CHECK(motion("x", "meshes = [\"icosphere\"]\n").find("m.txt:1: expected the number of a frame") !=
-          std::string::npos);
-    CHECK(motion(still, "meshes = [\"icosphere\", \"icosphere\"]\n").find("moves 1 objects, but there are 2 meshes") !=
-          std::string::npos);
+    CHECK(holds(motion("x", "meshes = [\"icosphere\"]\n"), "m.txt:1: expected the number of a frame"));
+    CHECK(holds(motion(still, "meshes = [\"icosphere\", \"icosphere\"]\n"), "moves 1 objects, but there are 2 meshes"));
     CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
 }
 
@@ -207,8 +170,7 @@ TEST_CASE("A relative path is taken as given, else from the folder of the config
                                              experiment_size::full);
     CHECK(aabblab::parameters_text(e.scenes[0]) == "file=a.aabbs");
     const auto here = std::filesystem::relative(folder / "sub/a.aabbs");
-    const auto as_given = aabblab::parse_experiment(recording_config("file = " + in_toml(here) + "\n"),
-                                                    folder / "c.toml", experiment_size::full);
+    const auto as_given = aabblab::parse_experiment(recording_at(here), folder / "c.toml", experiment_size::full);
     CHECK(aabblab::parameters_text(as_given.scenes[0]) == "file=" + here.string());
     CHECK(e.content_digest == as_given.content_digest);
     REQUIRE_FALSE(std::filesystem::exists("a.aabbs"));
@@ -225,16 +187,16 @@ TEST_CASE("A mesh in the folder of the config comes before one of the data folde
                      "name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nframes = 1\nmeshes = \"elephant.off\"\n"
                      "without_data = \"icosphere\"\n[measure]\nrepeats = 1\n");
     const std::filesystem::path near = std::filesystem::relative(config);
-    REQUIRE(run_program({"run", config, "--out", folder / "out"}).status == 0);
+    run_well({"run", config, "--out", folder / "out"});
     const auto rows = aabblab::read_rows(folder / "out/results.csv");
     REQUIRE(rows.size() == 1);
     CHECK(rows[0].scene.meshes == std::vector<std::string>{"elephant.off"});
     CHECK(rows[0].triangles == 1);
-    const program_result again = run_program({"run", near, "--out", folder / "out", "--resume"});
-    CHECK(again.status == 0);
+    run_well({"run", near, "--out", folder / "out", "--resume"});
     CHECK(aabblab::read_rows(folder / "out/results.csv").size() == 1);
-    CHECK(refusal_of("name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"absent.off\"\n", "some/test.toml")
-              .find("(a mesh is a file, here, in some or in ") != std::string::npos);
+    CHECK(
+        holds(refusal_of("name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"absent.off\"\n", "some/test.toml"),
+              "(a mesh is a file, here, in some or in "));
 }
 
 TEST_CASE("scene draws a recording, and makes one of a motion") {
@@ -243,51 +205,34 @@ TEST_CASE("scene draws a recording, and makes one of a motion") {
     record(file, "1");
     const std::string bytes = bytes_of_file(file);
     const std::string picture = folder / "x.svg";
-    const program_result drawn = run_program({"scene", "recording", "--file", file, "--picture", picture});
-    INFO(drawn.err);
-    REQUIRE(drawn.status == 0);
-    CHECK(drawn.out.find("60 objects, 4 frames") != std::string::npos);
-    CHECK(bytes_of_file(picture).find("seed") == std::string::npos);
-    CHECK(bytes_of_file(picture).find("file=") != std::string::npos);
+    CHECK(holds(run_well({"scene", "recording", "--file", file, "--picture", picture}).out, "60 objects, 4 frames"));
+    CHECK_FALSE(holds(bytes_of_file(picture), "seed"));
+    CHECK(holds(bytes_of_file(picture), "file="));
     const std::string motion = folder / "m.txt";
     record_motion(motion);
     const std::string boxes = folder / "m.aabbs";
     const std::string again = folder / "again.txt";
-    REQUIRE(
-        run_program({"scene", "motion", "--file", motion, "--mesh", mesh, "--out", boxes, "--motion", again}).status ==
-        0);
+    run_well({"scene", "motion", "--file", motion, "--mesh", mesh, "--out", boxes, "--motion", again});
     CHECK(bytes_of_file(again) == bytes_of_file(motion));
-    CHECK(summary_of({"pairs", boxes, "--json"})["pairs"] ==
-          summary_of({"contacts", motion, mesh, "--json"})["candidates"]);
+    CHECK(json_of({"pairs", boxes, "--json"})["pairs"] == json_of({"contacts", motion, mesh, "--json"})["candidates"]);
     const std::string far = folder.write("far.txt", "0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n");
-    const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
-        {{"scene", "recording", "--picture", picture}, "recording: file must be given, the path of a file"},
-        {{"scene", "recording", "--file", file, "--out", file}, "would write over"},
-        {{"scene", "recording", "--file", file, "--seed", "1", "--picture", picture}, "has no seed"},
-        {{"scene", "recording", "--file", folder / "absent", "--picture", picture}, "no such file"},
-        {{"scene", "brownian", "--file", file, "--picture", picture}, "unknown parameter of brownian 'file'"},
-        {{"scene", "motion", "--file", far, "--mesh", mesh, "--picture", picture},
-         "far.txt: frame 0: object 0 lies beyond the range of float"},
-    };
-    for (const auto& [arguments, said] : refused) {
-        const program_result result = run_program(arguments);
-        INFO(result.err);
-        CHECK(result.status == 2);
-        CHECK(is_one_sentence(result.err));
-        CHECK(result.err.find(said) != std::string::npos);
-    }
+    check_refused({"scene"},
+                  {{{"recording", "--picture", picture}, "recording: file must be given, the path of a file"},
+                   {{"recording", "--file", file, "--out", file}, "would write over"},
+                   {{"recording", "--file", file, "--seed", "1", "--picture", picture}, "has no seed"},
+                   {{"recording", "--file", folder / "absent", "--picture", picture}, "no such file"},
+                   {{"brownian", "--file", file, "--picture", picture}, "unknown parameter of brownian 'file'"},
+                   {{"motion", "--file", far, "--mesh", mesh, "--picture", picture},
+                    "far.txt: frame 0: object 0 lies beyond the range of float"}});
     CHECK(bytes_of_file(file) == bytes);
 }
 
 TEST_CASE("A recording in place of a config is refused with what takes it") {
     const temporary_folder folder;
     const std::string file = folder / "s.aabbs";
-    REQUIRE(run_program({"scene", "brownian", "--n", "20", "--frames", "1", "--out", file}).status == 0);
+    run_well({"scene", "brownian", "--n", "20", "--frames", "1", "--out", file});
     for (const char* command : {"run", "validate"}) {
-        const program_result refused = run_program({command, file});
-        INFO(refused.err);
-        CHECK(refused.status == 2);
-        CHECK(is_one_sentence(refused.err));
+        const program_result refused = run_refused({command, file});
         CHECK(
             refused.err.ends_with("/s.aabbs is a recording, not a config: pairs, explain and recommend take it, and a "
                                   "config plays it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
@@ -295,10 +240,9 @@ TEST_CASE("A recording in place of a config is refused with what takes it") {
 }
 
 TEST_CASE("list says which scenes play a file, and that it must be given") {
-    const program_result text = run_program({"list"});
-    CHECK(text.out.find("    file=… ") != std::string::npos);
+    CHECK(holds(run_program({"list"}).out, "    file=… "));
     std::set<std::string> seedless;
-    const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
+    const auto all = json_of({"list", "--json"});
     for (const auto& scene : all["scenes"]) {
         if (scene["has_seed"].get<bool>()) continue;
         seedless.insert(scene["name"].get<std::string>());

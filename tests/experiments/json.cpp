@@ -1,13 +1,9 @@
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_exception.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
+#include "../testing.hpp"
 
 import aabb.base;
-import aabb.std;
 import aabblab.json;
 
 using aabblab::json_value;
-using Catch::Matchers::Message;
 
 namespace {
 
@@ -42,7 +38,7 @@ TEST_CASE("A member of JSON comes by its type, and empty where it is not there")
 TEST_CASE("A member of JSON that is of another type, or missing, gets one sentence with the way to it") {
     const json_value all = read(R"({"a":[{"b":1},2,-3],"n":{"t":[1,"x"],"b":true,"f":0.5},"z":null})");
     const auto refused = [&](const std::function<void()>& ask, const std::string& sentence) {
-        CHECK_THROWS_MATCHES(ask(), aabb::input_error, Message("a.json: " + sentence));
+        CHECK_REFUSED(ask(), "a.json: " + sentence);
     };
     refused([&] { (void)all.text("a"); }, "a must be a string");
     refused([&] { (void)all.number("a"); }, "a must be a number");
@@ -72,7 +68,7 @@ TEST_CASE("What is no JSON is refused where it goes wrong, however deeply it is 
     };
     for (const auto& [text, sentence] : refused) {
         CAPTURE(text.substr(0, 20));
-        CHECK_THROWS_MATCHES(read(text), aabb::input_error, Message(sentence));
+        CHECK_REFUSED(read(text), sentence);
     }
     // What stands in a string nests nothing.
     const std::string brackets(100, '[');
@@ -80,6 +76,6 @@ TEST_CASE("What is no JSON is refused where it goes wrong, however deeply it is 
     const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
     CHECK_NOTHROW(read(nested(64)));
     CHECK_THROWS_AS(read(nested(65)), aabb::input_error);
-    CHECK_THROWS_MATCHES(json_value("a.glb", "{]", "is no glTF file", json_value::position::byte), aabb::input_error,
-                         Message("a.glb: is no glTF file: its JSON is malformed at byte 2"));
+    CHECK_REFUSED(json_value("a.glb", "{]", "is no glTF file", json_value::position::byte),
+                  "a.glb: is no glTF file: its JSON is malformed at byte 2");
 }

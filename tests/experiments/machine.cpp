@@ -1,8 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "temporary_folder.hpp"
 
-import aabb.std;
 import aabblab.machine;
 
 namespace {

@@ -1,9 +1,16 @@
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <cstring>
-#include <string>
+#include "program.hpp"
+
+import aabblab.files;
+
+using triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+/// A mesh in a file of that name.
+inline aabblab::loaded_mesh read(const std::string& name, const std::string& bytes) {
+    const temporary_folder folder;
+    return aabblab::read_mesh(folder.write(name, bytes));
+}
 
 /// The bytes of a number, as a binary file holds it.
 template <class Value>

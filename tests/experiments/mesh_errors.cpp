@@ -1,26 +1,11 @@
-#include <unistd.h>
-
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
-
 #include "mesh_bytes.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
-import aabb;
-import aabblab.files;
 
 using Catch::Matchers::EndsWith;
 
 namespace {
 
 std::string error_of(const std::filesystem::path& file) {
-    try {
-        static_cast<void>(aabblab::read_mesh(file));
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_in<aabb::input_error>([&] { return aabblab::read_mesh(file); });
 }
 
 struct malformed {

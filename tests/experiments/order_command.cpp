@@ -1,27 +1,19 @@
-#include <catch2/catch_test_macros.hpp>
-#include <nlohmann/json.hpp>
+#include "program_json.hpp"
 
 #include "mesh_bytes.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
 
 TEST_CASE("order writes a mesh whose tree need not say which triangle stands where") {
     const temporary_folder folder;
     const std::string mesh = "torus_knot:triangles=2000";
     const std::string written = folder / "ordered.off";
-    const program_result result = run_program({"order", mesh, "--out", written});
-    REQUIRE(result.status == 0);
-    REQUIRE(result.out == "wrote " + written + ": 2,000 triangles\n");
+    REQUIRE(run_well({"order", mesh, "--out", written}).out == "wrote " + written + ": 2,000 triangles\n");
 
     // Every triangle is somewhere.
-    REQUIRE(run_program({"order", mesh, "--out", written, "--numbers", folder / "numbers.csv"}).status == 0);
+    run_well({"order", mesh, "--out", written, "--numbers", folder / "numbers.csv"});
     const std::string rows = bytes_of_file(folder / "numbers.csv");
     REQUIRE(rows.starts_with("triangle,was\n0,"));
     std::set<std::string> were;
-    for (std::size_t begin = rows.find('\n') + 1; begin < rows.size(); begin = rows.find('\n', begin) + 1) {
-        const std::string row = rows.substr(begin, rows.find('\n', begin) - begin);
+    for (const std::string& row : lines_of(rows.substr(rows.find('\n') + 1))) {
         REQUIRE(row.starts_with(std::to_string(were.size()) + ","));
         were.insert(row.substr(row.find(',') + 1));
     }
@@ -30,9 +22,7 @@ TEST_CASE("order writes a mesh whose tree need not say which triangle stands whe
     REQUIRE(were.contains("1999"));
 
     const auto collided = [](const std::string& of, const std::string& build) {
-        return nlohmann::json::parse(
-            run_program({"collide", of, "--self", "--json", "--build", build, "--tree", "implicit:vertices=fetched"})
-                .out);
+        return json_of({"collide", of, "--self", "--json", "--build", build, "--tree", "implicit:vertices=fetched"});
     };
     const auto before = collided(mesh, "sah");
     const auto after = collided(written, "file_order");

@@ -1,15 +1,20 @@
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
 
 #include "temporary_folder.hpp"
 
-import aabb.std;
 import aabb;
 import aabblab.files;
+
+namespace {
+
+void put(const std::filesystem::path& file, const std::string& text) {
+    aabblab::output_file out(file);
+    out.write(text);
+    out.commit();
+}
+
+}  // namespace
 
 TEST_CASE("an output file appears when it is committed, and not otherwise") {
     const temporary_folder folder;
@@ -51,8 +56,7 @@ TEST_CASE("an output file that is not committed has no name, so that an interrup
 TEST_CASE("an output file may have the longest of names and the longest of paths") {
     const temporary_folder folder;
     const std::string name(255, 'n');
-    aabblab::output_file named(folder / name);
-    named.commit();
+    put(folder / name, "");
     REQUIRE(std::filesystem::exists(folder / name));
     // With room for a name of one letter.
     std::filesystem::path deep = folder.path();
@@ -61,8 +65,7 @@ TEST_CASE("an output file may have the longest of names and the longest of paths
         deep /= std::string(room > 250 ? 200 : room, 'd');
     }
     std::filesystem::create_directories(deep);
-    aabblab::output_file far(deep / "a");
-    far.commit();
+    put(deep / "a", "");
     REQUIRE(std::filesystem::exists(deep / "a"));
 }
 
@@ -73,8 +76,7 @@ TEST_CASE("an output file needs a name") {
 TEST_CASE("the permissions of an output file are those of any new file") {
     const temporary_folder folder;
     const mode_t before = umask(027);
-    aabblab::output_file out(folder / "a");
-    out.commit();
+    put(folder / "a", "");
     umask(before);
     REQUIRE(std::filesystem::status(folder / "a").permissions() == std::filesystem::perms{0640});
 }
@@ -83,8 +85,7 @@ TEST_CASE("an output file in the working folder") {
     const temporary_folder folder;
     const auto before = std::filesystem::current_path();
     std::filesystem::current_path(folder.path());
-    aabblab::output_file out("a");
-    out.commit();
+    put("a", "");
     std::filesystem::current_path(before);
     REQUIRE(std::filesystem::exists(folder / "a"));
     REQUIRE(folder.files() == 1);
@@ -108,9 +109,7 @@ TEST_CASE("a symbolic link is written through") {
     const temporary_folder folder;
     folder.write("a", "older");
     std::filesystem::create_symlink("a", folder / "link");
-    aabblab::output_file out(folder / "link");
-    out.write("new");
-    out.commit();
+    put(folder / "link", "new");
     REQUIRE(std::filesystem::is_symlink(folder / "link"));
     REQUIRE(bytes_of_file(folder / "a") == "new");
 }
@@ -120,11 +119,7 @@ TEST_CASE("what is no regular file is written, not replaced") {
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     std::string read;
     std::thread reader([&] { read = bytes_of_file(folder / "pipe"); });
-    {
-        aabblab::output_file out(folder / "pipe");
-        out.write("through");
-        out.commit();
-    }
+    put(folder / "pipe", "through");
     reader.join();
     REQUIRE(read == "through");
     REQUIRE(std::filesystem::is_fifo(folder / "pipe"));
@@ -145,11 +140,7 @@ TEST_CASE("what cannot be written is refused") {
     REQUIRE_THROWS_WITH(aabblab::output_file(folder / "link"),
                         EndsWith("/link: cannot be written: it is a symbolic link to what is not there"));
     REQUIRE(folder.files() == 1);
-    const auto fill = [] {
-        aabblab::output_file out("/dev/full");
-        out.write(std::string(100'000, 'x'));
-        out.commit();
-    };
+    const auto fill = [] { put("/dev/full", std::string(100'000, 'x')); };
     REQUIRE_THROWS_WITH(fill(), "/dev/full: cannot be written: No space left on device");
     REQUIRE_THROWS_AS(fill(), aabb::input_error);
 }

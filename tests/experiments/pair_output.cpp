@@ -1,10 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_exception.hpp>
 #include <random>
 
 #include "temporary_folder.hpp"
 
-import aabb.std;
 import aabb;
 import aabblab.pair_output;
 
@@ -50,15 +47,13 @@ TEST_CASE("Rows are sorted whatever their order and their bits") {
                     pairs.push_back({random() & of_a, random() & of_b});
                     contacts.push_back({random() & of_a, random() & of_b, random() & of_b, random() & of_a});
                 }
-                std::vector<aabb::index_pair> sorted_pairs = pairs;
-                std::ranges::sort(sorted_pairs);
+                const std::vector<aabb::index_pair> sorted_pairs = sorted(pairs);
                 aabblab::sort_rows(pairs);
                 CHECK(pairs == sorted_pairs);
                 std::ranges::reverse(pairs);
                 aabblab::sort_rows(pairs);
                 CHECK(pairs == sorted_pairs);
-                std::vector<aabb::contact> sorted_contacts = contacts;
-                std::ranges::sort(sorted_contacts);
+                const std::vector<aabb::contact> sorted_contacts = sorted(contacts);
                 aabblab::sort_rows(contacts);
                 CHECK(contacts == sorted_contacts);
             }

@@ -1,21 +1,15 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
-#include <nlohmann/json.hpp>
 
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
+#include "program_json.hpp"
 
 namespace {
 
 std::string recording_in(const temporary_folder& folder, const std::string& objects = "60") {
     const std::string file = folder / "scene.aabbs";
     const program_result written =
-        run_program({"scene", "brownian", "--n", objects, "--frames", "3", "--seed", "7", "--out", file});
-    REQUIRE(written.status == 0);
+        run_well({"scene", "brownian", "--n", objects, "--frames", "3", "--seed", "7", "--out", file});
     REQUIRE(written.err.empty());
-    REQUIRE(written.out.find(objects + " objects, 4 frames") != std::string::npos);
+    REQUIRE(holds(written.out, objects + " objects, 4 frames"));
     return file;
 }
 
@@ -25,15 +19,10 @@ TEST_CASE("pairs gives one set of pairs whatever finds it") {
     const temporary_folder folder;
     const std::string scene = recording_in(folder);
     const std::string out = folder / "pairs.csv";
-    const auto reference =
-        nlohmann::json::parse(run_program({"pairs", scene, "--json", "--engine", "brute_force"}).out);
+    const auto reference = json_of({"pairs", scene, "--json", "--engine", "brute_force"});
     const auto options = GENERATE(values<std::vector<std::string>>(
         {{}, {"--sort", "insertion", "--partition", "uniform_grid:cell_size=2", "--sweep", "all_axes"}}));
-    std::vector<std::string> arguments = {"pairs", scene, "--json", "--out", out};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const program_result result = run_program(arguments);
-    REQUIRE(result.status == 0);
-    const auto summary = nlohmann::json::parse(result.out);
+    const auto summary = json_of(joined({"pairs", scene, "--json", "--out", out}, options));
     REQUIRE(summary["objects"] == 60);
     REQUIRE(summary["frames"] == 4);
     REQUIRE(summary["ms"].size() == 4);
@@ -42,12 +31,10 @@ TEST_CASE("pairs gives one set of pairs whatever finds it") {
     REQUIRE(summary["digest"] == reference["digest"]);
     REQUIRE(summary["exact"] == true);
 
-    std::istringstream rows(bytes_of_file(out));
-    std::string row;
-    std::getline(rows, row);
-    REQUIRE(row == "frame,a,b");
+    const std::vector<std::string> rows = lines_of(bytes_of_file(out));
+    REQUIRE(rows.at(0) == "frame,a,b");
     std::vector<std::vector<unsigned>> records;
-    while (std::getline(rows, row)) {
+    for (const std::string& row : std::span(rows).subspan(1)) {
         unsigned frame = 0, a = 0, b = 0;
         REQUIRE(std::sscanf(row.c_str(), "%u,%u,%u", &frame, &a, &b) == 3);
         REQUIRE(a < b);
@@ -59,19 +46,16 @@ TEST_CASE("pairs gives one set of pairs whatever finds it") {
 
 TEST_CASE("pairs tells people what it found") {
     const temporary_folder folder;
-    const program_result result = run_program({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
-    REQUIRE(result.status == 0);
-    REQUIRE(result.out.find("2 objects, 4 frames") != std::string::npos);
-    REQUIRE(result.out.find("insertion + none + simd") != std::string::npos);
-    REQUIRE(run_program({"pairs", recording_in(folder, "0")}).status == 0);
+    const program_result result = run_well({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
+    REQUIRE(holds(result.out, "2 objects, 4 frames"));
+    REQUIRE(holds(result.out, "insertion + none + simd"));
+    run_well({"pairs", recording_in(folder, "0")});
 }
 
 TEST_CASE("copies of objects beyond all measure are refused before they are made") {
     const temporary_folder folder;
     const std::string scene = folder / "dense.aabbs";
-    REQUIRE(
-        run_program({"scene", "brownian", "--n", "300", "--density", "3", "--frames", "0", "--out", scene}).status ==
-        0);
+    run_well({"scene", "brownian", "--n", "300", "--density", "3", "--frames", "0", "--out", scene});
     const std::string config = folder.write(
         "dense.toml",
         "name = \"dense\"\n[[scene]]\nkind = \"brownian\"\nobjects = 300\ndensity = 3\nframes = 1\n[compose]\n"
@@ -81,9 +65,8 @@ TEST_CASE("copies of objects beyond all measure are refused before they are made
          {std::vector<std::string>{"pairs", scene, "--partition", "axial_cut:axes=3,segments=65535,limit=off"},
           std::vector<std::string>{"run", config, "--out", folder / "results"}}) {
         const program_result result = run_program(arguments);
-        INFO(result.err);
         CHECK(result.status == 2);
-        CHECK(result.err.find("copies of 300 objects, but at most 16796416") != std::string::npos);
+        CHECK(holds(result.err, "copies of 300 objects, but at most 16796416"));
     }
 }
 
@@ -93,9 +76,7 @@ TEST_CASE("pairs are never written over the recording they are of") {
     const std::string bytes = bytes_of_file(scene);
     std::filesystem::create_symlink(scene, folder / "link.csv");
     for (const std::string& out : {scene, (folder / "." / "scene.aabbs").string(), (folder / "link.csv").string()}) {
-        const program_result result = run_program({"pairs", scene, "--out", out});
-        REQUIRE(result.status == 2);
-        REQUIRE(is_one_sentence(result.err));
+        run_refused({"pairs", scene, "--out", out});
         REQUIRE(bytes_of_file(scene) == bytes);
     }
 }
@@ -106,9 +87,7 @@ TEST_CASE("pairs of a recording with a bad box in a later frame leaves no file b
     std::string bytes = bytes_of_file(scene);
     bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN
     const std::string bad = folder.write("bad.aabbs", bytes);
-    const program_result result = run_program({"pairs", bad, "--out", folder / "pairs.csv"});
-    REQUIRE(result.status == 2);
-    REQUIRE(is_one_sentence(result.err));
+    run_refused({"pairs", bad, "--out", folder / "pairs.csv"});
     REQUIRE(folder.files() == 2);
 }
 
@@ -116,17 +95,14 @@ TEST_CASE("scene records the world boxes of meshes, the same for the same seed")
     const temporary_folder folder;
     const auto written = [&](const std::string& name, const std::string& seed) {
         const std::string file = folder / name;
-        const program_result result =
-            run_program({"scene", "mesh_swarm", "--mesh", "icosphere:triangles=80", "--mesh",
-                         "torus_knot:triangles=100", "--objects", "9", "--frames", "2", "--seed", seed, "--out", file});
-        INFO(result.err);
-        REQUIRE(result.status == 0);
+        run_well({"scene", "mesh_swarm", "--mesh", "icosphere:triangles=80", "--mesh", "torus_knot:triangles=100",
+                  "--objects", "9", "--frames", "2", "--seed", seed, "--out", file});
         return bytes_of_file(file);
     };
     const std::string once = written("once.aabbs", "5");
     REQUIRE(written("again.aabbs", "5") == once);
     REQUIRE(written("other.aabbs", "6") != once);
-    const auto summary = nlohmann::json::parse(run_program({"pairs", folder / "once.aabbs", "--json"}).out);
+    const auto summary = json_of({"pairs", folder / "once.aabbs", "--json"});
     REQUIRE(summary["objects"] == 9);
     REQUIRE(summary["frames"] == 3);
 }

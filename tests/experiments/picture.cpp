@@ -1,24 +1,10 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 
 #include "program.hpp"
-#include "temporary_folder.hpp"
 
-import aabb.std;
-import aabb;
 import aabblab.picture;
 
 namespace {
-
-std::size_t occurrences(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-    return count;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 /// A unit cube with its lowest corner there.
 aabb::box cube(float x, float y, float z) {
@@ -63,11 +49,11 @@ TEST_CASE("a picture shows each box in the colour of its overlaps") {
           "seen along y: x across, z upwards<"})
         REQUIRE(holds(svg, part));
     const std::size_t last = svg.find("last frame");
-    REQUIRE(occurrences(svg.substr(0, last), "class=\"overlapping\" x") == 2 + 1);  // one in the legend
-    REQUIRE(occurrences(svg.substr(last), "class=\"overlapping\" x") == 0);
-    REQUIRE(occurrences(svg.substr(last), "class=\"apart\" x") == 3);
+    REQUIRE(count_of("class=\"overlapping\" x", svg.substr(0, last)) == 2 + 1);  // one in the legend
+    REQUIRE(count_of("class=\"overlapping\" x", svg.substr(last)) == 0);
+    REQUIRE(count_of("class=\"apart\" x", svg.substr(last)) == 3);
     // One for each object that was ever there, and none in the first frame.
-    REQUIRE(occurrences(svg.substr(last), "class=\"way\"") == 4);
+    REQUIRE(count_of("class=\"way\"", svg.substr(last)) == 4);
     REQUIRE(holds(svg, "paths of 5 objects"));
     REQUIRE_FALSE(holds(svg, "a sample"));
 }
@@ -81,11 +67,11 @@ TEST_CASE("of many boxes a picture draws a sample with the largest in it") {
     const std::string svg = aabblab::picture_of(seen, {"many", "", ""});
     REQUIRE(holds(svg, "a sample of 4000 boxes is drawn, huge ones first"));
     const std::string first = svg.substr(0, svg.find("last frame"));
-    REQUIRE(occurrences(first, "<rect class=\"apart\" x") + occurrences(first, "<rect class=\"overlapping\" x") ==
+    REQUIRE(count_of("<rect class=\"apart\" x", first) + count_of("<rect class=\"overlapping\" x", first) ==
             4000 + 2);  // two in the legend
     // Each of the three, outlined where it is.
     const std::string outline = first.substr(first.find("<rect class=\"huge\""));
-    REQUIRE(occurrences(first, outline.substr(0, outline.find('\n'))) == 3);
+    REQUIRE(count_of(outline.substr(0, outline.find('\n')), first) == 3);
     REQUIRE(holds(first, "longer than 5 mean extents"));
     REQUIRE(holds(first, "boxes 9003"));
 }
@@ -108,7 +94,7 @@ TEST_CASE("a picture shows the axes that tell most and gives each its own scale 
 TEST_CASE("a picture of what lies far from the origin has an end") {
     aabblab::survey seen(1, 1);
     seen.see(std::vector<aabb::box>{{{1e30F, 0, 1e30F}, {1e30F, 0, 1e30F}}}, {});
-    REQUIRE(occurrences(aabblab::picture_of(seen, {"far", "", ""}), "class=\"tick\"") < 100);
+    REQUIRE(count_of("class=\"tick\"", aabblab::picture_of(seen, {"far", "", ""})) < 100);
 }
 
 TEST_CASE("scene draws every kind, without a recording where none is wanted") {
@@ -120,9 +106,7 @@ TEST_CASE("scene draws every kind, without a recording where none is wanted") {
     CAPTURE(kind, objects);
     const std::string file = folder / "scene.svg";
     const program_result result =
-        run_program({"scene", kind, "--n", objects, "--frames", "2", "--seed", "9", "--picture", file});
-    INFO(result.err);
-    REQUIRE(result.status == 0);
+        run_well({"scene", kind, "--n", objects, "--frames", "2", "--seed", "9", "--picture", file});
     REQUIRE(folder.files() == 1);
     REQUIRE(holds(result.out,
                   "wrote " + file + ": " + objects + (objects == "1" ? " object" : " objects") + ", 3 frames\n"));
@@ -137,10 +121,8 @@ TEST_CASE("scene draws every kind, without a recording where none is wanted") {
 
 TEST_CASE("a frame that all objects have left is drawn without any") {
     const temporary_folder folder;
-    const program_result result = run_program(
+    run_well(
         {"scene", "population", "--n", "1", "--frames", "1", "--turnover", "1", "--picture", folder / "empty.svg"});
-    INFO(result.err);
-    REQUIRE(result.status == 0);
     REQUIRE(folder.files() == 1);
 }
 
@@ -148,10 +130,9 @@ TEST_CASE("scene writes the same recording with a picture as without") {
     const temporary_folder folder;
     const std::string alone = folder / "alone.aabbs";
     const std::string both = folder / "both.aabbs";
-    REQUIRE(run_program({"scene", "flat", "--n", "40", "--out", alone}).status == 0);
+    run_well({"scene", "flat", "--n", "40", "--out", alone});
     const program_result result =
-        run_program({"scene", "flat", "--n", "40", "--out", both, "--picture", folder / "both.svg"});
-    REQUIRE(result.status == 0);
+        run_well({"scene", "flat", "--n", "40", "--out", both, "--picture", folder / "both.svg"});
     REQUIRE(holds(result.out, "both.aabbs: 40 objects, 21 frames"));
     REQUIRE(holds(result.out, "both.svg: 40 objects, 21 frames"));
     REQUIRE(bytes_of_file(alone) == bytes_of_file(both));
@@ -177,13 +158,7 @@ TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind
     const std::string same = folder / "sub" / ".." / "scene.aabbs";
     const std::string nowhere = folder / "missing" / "scene.svg";
     const auto refused = [&](const std::vector<std::string>& outputs, const std::string& said) {
-        std::vector<std::string> arguments = {"scene", "brownian"};
-        arguments.insert(arguments.end(), outputs.begin(), outputs.end());
-        const program_result result = run_program(arguments);
-        INFO(result.err);
-        REQUIRE(result.status == 2);
-        REQUIRE(is_one_sentence(result.err));
-        REQUIRE(holds(result.err, said));
+        check_refused({"scene", "brownian"}, {{outputs, said}});
         REQUIRE(folder.files() == 1);
     };
     refused({}, "expected --out, --motion or --picture");

@@ -1,18 +1,11 @@
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <catch2/catch_test_macros.hpp>
 #include <csignal>
 
 #include "interrupted.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
 
-import aabb.std;
-import aabb;
-import aabblab.configs;
-import aabblab.results;
+#include "configs.hpp"
+
+#include "../altered_search.hpp"
+
 import aabblab.trials;
 
 using aabblab::existing_results;
@@ -24,6 +17,20 @@ namespace {
 constexpr const char* config =
     "name = \"shared\"\nseed = [1, 2]\nquick = { seed = 3 }\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 2\n"
     "[compose]\nsort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 6\nprocesses = 3\nquick = { repeats = 2 }\n";
+
+/// A folder with the config, of which runs go into `out`.
+struct shared_run {
+    explicit shared_run(const std::string& text = config) : file(folder.write("shared.toml", text)) {}
+
+    program_result run(const std::vector<std::string>& more = {}) const {
+        return run_well(joined({"run", file, "--out", out}, more));
+    }
+    [[nodiscard]] std::vector<row> rows() const { return aabblab::read_rows(out / "results.csv"); }
+
+    temporary_folder folder;
+    std::string file;
+    std::filesystem::path out = folder / "out";
+};
 
 /// All of a row but its times.
 std::set<std::string> answers(const std::filesystem::path& results) {
@@ -48,14 +55,9 @@ void cut_off(const std::filesystem::path& results, std::size_t lines) {
 }  // namespace
 
 TEST_CASE("Fresh processes share the repeats, and one validates for all") {
-    const temporary_folder folder;
-    const std::string file = folder.write("shared.toml", config).string();
-    const std::string out = (folder / "out").string();
-    const program_result ran = run_program({"run", file, "--out", out});
-    INFO(ran.err);
-    REQUIRE(ran.status == 0);
-    REQUIRE(ran.out.find("insertion") != std::string::npos);
-    const std::vector<row> rows = aabblab::read_rows(folder / "out/results.csv");
+    const shared_run shared;
+    REQUIRE(holds(shared.run().out, "insertion"));
+    const std::vector<row> rows = shared.rows();
     REQUIRE(rows.size() == 2 * 2 * 6);
     for (const row& r : rows) {
         CHECK(r.process == r.repeat / 2);
@@ -70,37 +72,24 @@ TEST_CASE("Fresh processes share the repeats, and one validates for all") {
 }
 
 TEST_CASE("A run killed half-way and resumed ends with the rows of one that was not") {
-    const temporary_folder folder;
-    const std::string file = folder.write("shared.toml", config).string();
-    const std::string out = (folder / "out").string();
-    REQUIRE(run_program({"run", file, "--out", out}).status == 0);
-    const std::set<std::string> whole = answers(folder / "out");
+    const shared_run shared;
+    shared.run();
+    const std::set<std::string> whole = answers(shared.out);
     // In the first process, between two, in the last.
     for (const std::size_t lines : {1, 4, 9, 13, 24}) {
         CAPTURE(lines);
-        cut_off(folder / "out", lines);
-        const program_result resumed = run_program({"run", file, "--out", out, "--resume"});
-        INFO(resumed.err);
-        REQUIRE(resumed.status == 0);
-        REQUIRE(answers(folder / "out") == whole);
+        cut_off(shared.out, lines);
+        shared.run({"--resume"});
+        REQUIRE(answers(shared.out) == whole);
     }
 }
 
 TEST_CASE("A run whose process is killed leaves no other behind, and is resumed") {
-    const temporary_folder folder;
-    std::string longer = config;
-    longer.replace(longer.find("objects = 60"), 12, "objects = 2000");
-    const std::string file = folder.write("shared.toml", longer).string();
-    const std::string out = (folder / "out").string();
-    std::vector<std::string> arguments{AABBLAB_UNDER_TEST, "run", file, "--out", out};
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    REQUIRE(posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ) == 0);
+    const shared_run shared(replaced(config, "objects = 60", "objects = 2000"));
+    const pid_t child = started({AABBLAB_UNDER_TEST, "run", shared.file, "--out", shared.out});
     const auto size = [&] {
         std::error_code error;
-        const auto bytes = std::filesystem::file_size(folder / "out/results.csv", error);
+        const auto bytes = std::filesystem::file_size(shared.out / "results.csv", error);
         return error ? std::uintmax_t{0} : bytes;
     };
     // Some rows are there, and more are to come.
@@ -113,23 +102,21 @@ TEST_CASE("A run whose process is killed leaves no other behind, and is resumed"
         before = size();
         usleep(300'000);
     } while (size() != before);
-    REQUIRE(run_program({"run", file, "--out", out, "--resume"}).status == 0);
-    const std::set<std::string> resumed = answers(folder / "out");
-    REQUIRE(run_program({"run", file, "--out", (folder / "whole").string()}).status == 0);
-    REQUIRE(resumed == answers(folder / "whole"));
+    shared.run({"--resume"});
+    const std::set<std::string> resumed = answers(shared.out);
+    run_well({"run", shared.file, "--out", shared.folder / "whole"});
+    REQUIRE(resumed == answers(shared.folder / "whole"));
     REQUIRE(resumed.size() == 2 * 2 * 6);
 }
 
 TEST_CASE("A repeat that was interrupted is played again, whole") {
-    const temporary_folder folder;
-    const std::string file = folder.write("shared.toml", config).string();
-    const std::string out = (folder / "out").string();
-    REQUIRE(run_program({"run", file, "--out", out}).status == 0);
-    const std::vector<row> before = aabblab::read_rows(folder / "out/results.csv");
+    const shared_run shared;
+    shared.run();
+    const std::vector<row> before = shared.rows();
     // Of the second repeat of the first scene one row is left.
-    cut_off(folder / "out", 4);
-    REQUIRE(run_program({"run", file, "--out", out, "--resume"}).status == 0);
-    const std::vector<row> after = aabblab::read_rows(folder / "out/results.csv");
+    cut_off(shared.out, 4);
+    shared.run({"--resume"});
+    const std::vector<row> after = shared.rows();
     REQUIRE(after.size() == before.size());
     for (std::size_t i = 0; i < 2; ++i) CHECK(after[i].search_ms == before[i].search_ms);
     CHECK(after[2].repeat == 1);
@@ -138,10 +125,9 @@ TEST_CASE("A repeat that was interrupted is played again, whole") {
 }
 
 TEST_CASE("A quick run takes the seeds of quick, and no more processes than repeats") {
-    const temporary_folder folder;
-    const std::string file = folder.write("shared.toml", config).string();
-    REQUIRE(run_program({"run", file, "--quick", "--out", (folder / "out").string()}).status == 0);
-    const std::vector<row> rows = aabblab::read_rows(folder / "out/results.csv");
+    const shared_run shared;
+    shared.run({"--quick"});
+    const std::vector<row> rows = shared.rows();
     REQUIRE(rows.size() == 2 * 2);
     for (const row& r : rows) {
         CHECK(r.scene.seed == 3);
@@ -167,18 +153,8 @@ TEST_CASE("A repeat of a later process that finds other pairs is named, and its 
     std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 0).empty());
     // The name of the first, and nothing of what it finds.
-    contenders[0].make_global = [](aabb::instrumentation) -> std::unique_ptr<aabb::global_stage> {
-        class blind final : public aabb::global_stage {
-        public:
-            void insert(std::uint32_t) override {}
-            void remove(std::uint32_t) override {}
-            void update(std::span<const aabb::box>) override {}
-            void search(std::vector<aabb::index_pair>&) override {}
-            [[nodiscard]] aabb::work_counters counters() const override { return {}; }
-            [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-            [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
-        };
-        return std::make_unique<blind>();
+    contenders[0].make_global = [make = contenders[0].make_global](aabb::instrumentation counted) {
+        return std::make_unique<altered_search>(make(counted), [] {}, [](auto& pairs) { pairs.clear(); });
     };
     const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results, 1);
     REQUIRE(failures.size() == 1);
@@ -187,20 +163,15 @@ TEST_CASE("A repeat of a later process that finds other pairs is named, and its 
 }
 
 TEST_CASE("More processes than repeats are refused, as is a seed of quick that is none") {
-    const auto refusal_of = [](const std::string& text) -> std::string {
-        try {
-            (void)aabblab::parse_experiment(text, "my.toml", aabblab::experiment_size::full);
-        } catch (const aabb::input_error& error) {
-            return error.what();
-        }
-        return "";
+    const auto refusal_of = [](const std::string& text) {
+        return refusal_in<aabb::input_error>(
+            [&] { return aabblab::parse_experiment(text, "my.toml", aabblab::experiment_size::full); });
     };
     const std::string scene = "[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n";
     CHECK(refusal_of("name = \"a\"\n" + scene + "[measure]\nrepeats = 2\nprocesses = 3\n") ==
           "my.toml:8: processes must be at most repeats, which is 2");
     CHECK(refusal_of("name = \"a\"\n" + scene + "[measure]\nprocesses = 0\n").starts_with("my.toml:7: processes "));
-    CHECK(refusal_of("name = \"a\"\nquick = { seeds = 1 }\n" + scene).find("did you mean 'seed'?") !=
-          std::string::npos);
+    CHECK(holds(refusal_of("name = \"a\"\nquick = { seeds = 1 }\n" + scene), "did you mean 'seed'?"));
     CHECK(
         refusal_of("name = \"a\"\nquick = 3\n" + scene).starts_with("my.toml:2: quick is a number; expected a table"));
 }

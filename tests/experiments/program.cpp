@@ -1,16 +1,8 @@
-#include "program.hpp"
-
 #include <fcntl.h>
 #include <pty.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <catch2/catch_test_macros.hpp>
-#include <nlohmann/json.hpp>
-
-#include "temporary_folder.hpp"
-
-import aabb.std;
+#include "program_json.hpp"
 
 namespace {
 
@@ -22,13 +14,6 @@ program_result run_unread(const std::vector<std::string>& arguments) {
     program_result result = run_program(arguments, {}, ends[1]);
     close(ends[1]);
     return result;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
 }
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -84,14 +69,13 @@ std::string shown_on_terminal(unsigned short columns, const std::string& command
 
 TEST_CASE("The program prints its version and its help") {
     REQUIRE(run_program({"--version"}).out.starts_with("aabblab "));
-    const program_result help = run_program({"--help"});
-    REQUIRE(help.status == 0);
+    const program_result help = run_well({"--help"});
     for (const char* command :
          {"pairs", "collide", "contacts", "classify", "scene", "list", "run", "test", "data", "benchmark"})
-        REQUIRE(help.out.find(std::string("\n  ") + command + " ") != std::string::npos);
-    REQUIRE(run_program({"pairs", "--help"}).out.find("--sweep") != std::string::npos);
+        REQUIRE(holds(help.out, std::string("\n  ") + command + " "));
+    REQUIRE(holds(run_program({"pairs", "--help"}).out, "--sweep"));
     for (const char* command : {"pairs", "collide", "contacts"})
-        REQUIRE(run_program({command, "--help"}).out.find("aabblab list has every strategy") != std::string::npos);
+        REQUIRE(holds(run_program({command, "--help"}).out, "aabblab list has every strategy"));
 }
 
 TEST_CASE("Help and list fit the width they are given, 80 characters without a terminal") {
@@ -107,7 +91,7 @@ TEST_CASE("Help and list fit the width they are given, 80 characters without a t
     CHECK(widest_line(sorts) > 50);
     CHECK(widest_line(narrow.out) <= 50);
     // What is said of a name hangs in its own column, and is all there.
-    CHECK(narrow.out.find("\n" + std::string(25, ' ')) != std::string::npos);
+    CHECK(holds(narrow.out, "\n" + std::string(25, ' ')));
     CHECK(words_of(narrow.out) == words_of(sorts));
 }
 
@@ -119,25 +103,23 @@ TEST_CASE("On a terminal, list and refusals are as wide as it is") {
     const std::string refused = shown_on_terminal(60, program + " pairs s.aabbs --sweep unknown_at_all");
     CHECK(widest_line(refused) <= 60);
     CHECK(refused.starts_with("aabblab: unknown sweep 'unknown_at_all'; expected one of"));
-    CHECK(refused.find("\n         ") != std::string::npos);  // behind "aabblab: "
+    CHECK(holds(refused, "\n         "));  // behind "aabblab: "
 }
 
 TEST_CASE("list shows one kind alone, and the nearest for one that is none") {
-    const program_result sorts = run_program({"list", "sort"});
-    CHECK(sorts.status == 0);
+    const program_result sorts = run_well({"list", "sort"});
     CHECK(sorts.out.starts_with("sort\n  insertion "));
-    CHECK(sorts.out.find("partition") == std::string::npos);
-    CHECK(run_program({"list"}).out.find(sorts.out) != std::string::npos);
-    const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
-    CHECK(nlohmann::json::parse(run_program({"list", "sort", "--json"}).out) ==
-          nlohmann::json{{"strategies", {{"sort", all["strategies"]["sort"]}}}});
-    CHECK(nlohmann::json::parse(run_program({"list", "engines", "--json"}).out) ==
+    CHECK_FALSE(holds(sorts.out, "partition"));
+    CHECK(holds(run_program({"list"}).out, sorts.out));
+    const auto all = json_of({"list", "--json"});
+    CHECK(json_of({"list", "sort", "--json"}) == nlohmann::json{{"strategies", {{"sort", all["strategies"]["sort"]}}}});
+    CHECK(json_of({"list", "engines", "--json"}) ==
           nlohmann::json{{"engines", all["engines"]}, {"engines_left_out", all["engines_left_out"]}});
     for (const auto& [name, content] : all.items()) {
         if (name == "strategies" || name == "engines_left_out") continue;
         INFO(name);
         CHECK(run_program({"list", name}).out.starts_with(name));
-        CHECK(nlohmann::json::parse(run_program({"list", name, "--json"}).out)[name] == content);
+        CHECK(json_of({"list", name, "--json"})[name] == content);
     }
 }
 
@@ -182,14 +164,13 @@ TEST_CASE("With standard output closed nothing is begun, and no file takes its p
         run_program({"scene", "brownian", "--n", "20", "--frames", "1", "--out", out}, {}, closed_output);
     CHECK(refused.status == 2);
     CHECK(is_one_sentence(refused.err));
-    CHECK(refused.err.find("standard output is closed") != std::string::npos);
+    CHECK(holds(refused.err, "standard output is closed"));
     CHECK(folder.files() == 0);
 }
 
 TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
-    const program_result text = run_program({"list"});
-    REQUIRE(text.status == 0);
-    const auto all = nlohmann::json::parse(run_program({"list", "--json"}).out);
+    const program_result text = run_well({"list"});
+    const auto all = json_of({"list", "--json"});
     std::vector<std::string> names;
     for (const char* kind : {"prepare", "sort", "partition", "sweep", "build", "tree", "triangle"}) {
         REQUIRE(all["strategies"][kind].size() >= 1);
@@ -210,9 +191,8 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
     names.emplace_back("triangles=5000");  // of a shape
     for (const std::string& name : names) {
         INFO(name);
-        REQUIRE(text.out.find(" " + name) != std::string::npos);
+        REQUIRE(holds(text.out, " " + name));
     }
     for (const auto& engine : all["engines_left_out"])
-        REQUIRE(text.out.find("left out: " + engine["not_found"].get<std::string>() + " was not found") !=
-                std::string::npos);
+        REQUIRE(holds(text.out, "left out: " + engine["not_found"].get<std::string>() + " was not found"));
 }

@@ -2,17 +2,17 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
-#include <memory>
-#include <string>
+#include <cstring>
+#include <sstream>
 #include <system_error>
-#include <utility>
-#include <vector>
+
+#include "temporary_folder.hpp"
+
+import aabb;
 
 /// What a run of the program left behind.
 struct program_result {
@@ -48,6 +48,17 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
 /// The program reads costs that its user keeps; tests have none, unless they name a folder of their own.
 inline const bool is_without_kept_costs = setenv("XDG_CONFIG_HOME", "/nonexistent", 1) == 0;
 
+/// Starts a command, and does not wait for it.
+[[nodiscard]] inline pid_t started(std::vector<std::string> arguments, posix_spawn_file_actions_t* files = nullptr) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    const int failed = posix_spawnp(&child, argv[0], files, nullptr, argv.data(), environ);
+    if (failed != 0) throw std::system_error(failed, std::generic_category(), arguments[0]);
+    return child;
+}
+
 inline constexpr int closed_output = -2;
 
 /// Runs a command to its end, its name first; one without a slash is looked for as a shell does.
@@ -59,9 +70,6 @@ inline constexpr int closed_output = -2;
     const auto in = program_detail::make_file(input);
     const auto out = program_detail::make_file({});
     const auto err = program_detail::make_file({});
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_adddup2(&files, fileno(in.get()), STDIN_FILENO);
@@ -70,25 +78,12 @@ inline constexpr int closed_output = -2;
     else
         posix_spawn_file_actions_adddup2(&files, output < 0 ? fileno(out.get()) : output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files, fileno(err.get()), STDERR_FILENO);
-    pid_t child = 0;
-    const int failed = posix_spawnp(&child, argv[0], &files, nullptr, argv.data(), environ);
+    const pid_t child = started(std::move(arguments), &files);
     posix_spawn_file_actions_destroy(&files);
-    if (failed != 0) throw std::system_error(failed, std::generic_category(), arguments[0]);
     int status = 0;
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), program_detail::content_of(out.get()),
             program_detail::content_of(err.get())};
-}
-
-/// Starts a command, and does not wait for it.
-[[nodiscard]] inline pid_t started(std::vector<std::string> arguments) {
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    const int failed = posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
-    if (failed != 0) throw std::system_error(failed, std::generic_category(), arguments[0]);
-    return child;
 }
 
 /// Within half a minute.
@@ -107,6 +102,14 @@ inline constexpr int closed_output = -2;
     return run_command(std::move(arguments), input, output);
 }
 
+/// The same where it must succeed.
+inline program_result run_well(std::vector<std::string> arguments, const std::string& input = {}) {
+    program_result result = run_program(std::move(arguments), input);
+    INFO(result.out << result.err);
+    REQUIRE(result.status == 0);
+    return result;
+}
+
 /// Arguments, and more of them.
 [[nodiscard]] inline std::vector<std::string> joined(std::vector<std::string> arguments,
                                                      const std::vector<std::string>& more) {
@@ -117,4 +120,43 @@ inline constexpr int closed_output = -2;
 /// Is it one sentence that begins with the program's name?
 [[nodiscard]] inline bool is_one_sentence(const std::string& text) {
     return text.starts_with("aabblab: ") && text.find('\n') == text.size() - 1;
+}
+
+/// Runs the program where it must refuse, with status 2 and one sentence.
+inline program_result run_refused(std::vector<std::string> arguments, const std::string& input = {}) {
+    program_result result = run_program(std::move(arguments), input);
+    INFO(result.out << result.err);
+    REQUIRE(result.status == 2);
+    REQUIRE(is_one_sentence(result.err));
+    return result;
+}
+
+/// Command lines, and what each must say as it is refused.
+using refusals = std::vector<std::pair<std::vector<std::string>, std::string>>;
+
+/// Holds that each is refused in such a sentence, and prints nothing.
+/// @param before stands before the rest of each
+inline void check_refused(const std::vector<std::string>& before, const refusals& all) {
+    for (const auto& [rest, said] : all) {
+        const std::vector<std::string> arguments = joined(before, rest);
+        CAPTURE(arguments);
+        const program_result result = run_refused(arguments);
+        CHECK(result.out.empty());
+        CHECK_THAT(result.err, Catch::Matchers::ContainsSubstring(said));
+    }
+}
+
+[[nodiscard]] inline std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+/// No line is longer than 80 characters.
+inline void check_narrow(const std::string& text) {
+    for (const std::string& line : lines_of(text)) {
+        INFO(line);
+        CHECK(line.size() <= 80);
+    }
 }

@@ -1,12 +1,4 @@
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
-
 #include "mesh_bytes.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
-import aabb;
-import aabblab.files;
 
 using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
@@ -64,12 +56,7 @@ std::string header(std::int32_t objects, std::int32_t frames, const std::string&
 
 /// Opens and plays it.
 std::string error_of(const std::filesystem::path& file) {
-    try {
-        play(*aabblab::open_recording(file));
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_in<aabb::input_error>([&] { play(*aabblab::open_recording(file)); });
 }
 
 const aabb::box small = {{-0.0F, 1e-45F, -3}, {0, 0.1F, 3}};
@@ -142,10 +129,7 @@ TEST_CASE("frames without objects are played up to a million of them") {
 TEST_CASE("recordings that cannot be used are refused") {
     const temporary_folder folder;
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    struct malformed {
-        std::string bytes;
-        std::string error;
-    };
+    using malformed = std::pair<std::string, std::string>;
     for (const auto& [bytes, error] : {
              malformed{"", "is empty"},
              {"short", "is no recording: its header takes 304 bytes, but the file has 5"},

@@ -1,27 +1,13 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "mesh_bytes.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
 
 namespace {
 
-using refusals = std::vector<std::pair<std::vector<std::string>, std::string>>;
-
-/// Holds each command line against what it must say: status 2, nothing printed, one sentence, and no file left behind.
-/// @param before stands before the rest of each
+/// Also that each leaves no file behind.
 void check_all(const temporary_folder& folder, const std::vector<std::string>& before, const refusals& all) {
     const std::size_t files = folder.files();
-    for (const auto& [rest, said] : all) {
-        const std::vector<std::string> arguments = joined(before, rest);
-        const program_result result = run_program(arguments);
-        CAPTURE(arguments, result.err);
-        CHECK(result.status == 2);
-        CHECK(result.out.empty());
-        CHECK(is_one_sentence(result.err));
-        CHECK(result.err.find(said) != std::string::npos);
+    for (const auto& one : all) {
+        CAPTURE(one.first);
+        check_refused(before, {one});
         CHECK(folder.files() == files);
     }
 }
@@ -66,7 +52,7 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
 TEST_CASE("pairs and scene refuse what they cannot do and leave no file behind") {
     const temporary_folder folder;
     const std::string scene = folder / "scene.aabbs";
-    REQUIRE(run_program({"scene", "brownian", "--n", "60", "--frames", "3", "--out", scene}).status == 0);
+    run_well({"scene", "brownian", "--n", "60", "--frames", "3", "--out", scene});
     check_all(
         folder, {"pairs", scene, "--out", folder / "pairs.csv"},
         {
@@ -244,5 +230,5 @@ TEST_CASE("order refuses what it does not know, and to write over the mesh that 
     for (const std::string& name : {mesh, sorted})
         check_all(folder, {"collide", name}, {{{"--self", "--out", mesh}, "a.off would write over "}});
     CHECK(bytes_of_file(mesh) == tetrahedron);
-    CHECK(run_program({"order", mesh, "--out", folder / "B.OFF"}).status == 0);
+    run_well({"order", mesh, "--out", folder / "B.OFF"});
 }

@@ -1,13 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
+#include "csv_rows.hpp"
 
-#include "program.hpp"
-#include "temporary_folder.hpp"
-
-import aabb.std;
-import aabb;
 import aabb.registry;
 import aabblab.page;
-import aabblab.results;
 import aabblab.scenes;
 import aabblab.tables;
 
@@ -40,11 +34,11 @@ row of_seed(row r, std::uint64_t seed) {
     return r;
 }
 
-bool has_lines_of(const std::string& text, std::size_t width) {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);)
-        if (line.size() > width) return false;
-    return true;
+row of_engine(double search_ms) {
+    row r = repeat_of("", 0, search_ms);
+    r.name = {};
+    r.name.engine = "cgal";
+    return r;
 }
 
 std::vector<std::string> column_of(const aabblab::table& t, const std::string& name) {
@@ -86,12 +80,12 @@ TEST_CASE("Repeats that are too few for an interval are said to be") {
         const auto scene = aabblab::summarise(std::span(rows).first(2 * few))[0];
         CHECK(scene.lines[1].ratio.has_value());
         CHECK_FALSE(scene.lines[1].ratio_interval.has_value());
-        CHECK(aabblab::heading_of(scene).find(said) != std::string::npos);
+        CHECK(holds(aabblab::heading_of(scene), said));
         CHECK(column_of(aabblab::table_of(scene), "95 %").front() == "-");
     }
     const auto scene = aabblab::summarise(rows)[0];
     CHECK(scene.lines[1].ratio_interval.has_value());
-    CHECK(aabblab::heading_of(scene).find("too few") == std::string::npos);
+    CHECK_FALSE(holds(aabblab::heading_of(scene), "too few"));
 }
 
 TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean of theirs") {
@@ -145,9 +139,7 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     row again = of_seed(counted, 2);
     again.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 100;
     again.bytes[0] = 4096;
-    row engine = repeat_of("", 0, 1);
-    engine.name = {};
-    engine.name.engine = "cgal";
+    const row engine = of_engine(1);
     const auto scene = aabblab::summarise(std::vector<row>{counted, engine, again})[0];
     REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene)) ==
             "#,composition,comparisons,subset copies,copies an object,KiB projections\n"
@@ -156,18 +148,15 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
 }
 
 TEST_CASE("A composition that is the only one is named, above the table where its name is long") {
-    row engine = repeat_of("", 0, 1);
-    engine.name = {};
-    engine.name.engine = "cgal";
+    const row engine = of_engine(1);
     for (const auto& [sort, shown] : {std::pair("std", "std + one_axis"),
                                       std::pair("shell:gaps=ciura,and=what_more_there_is", "this composition")}) {
         const auto scene = aabblab::summarise(std::vector<row>{repeat_of(sort, 0, 2), engine})[0];
         CHECK(column_of(aabblab::table_of(scene), "composition") == texts{"cgal", shown});
         const std::string heading = aabblab::heading_of(scene);
         INFO(heading);
-        CHECK(heading.find("\nthis composition: sort " + std::string(sort) + ", sweep one_axis\n") !=
-              std::string::npos);
-        CHECK(heading.find("ratio to " + std::string(shown) + "\n") != std::string::npos);
+        CHECK(holds(heading, "\nthis composition: sort " + std::string(sort) + ", sweep one_axis\n"));
+        CHECK(holds(heading, "ratio to " + std::string(shown) + "\n"));
     }
 }
 
@@ -185,16 +174,14 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
     CHECK(column_of(t, "sort") == texts{"fast", "slow", "wrong", "untimed"});
     CHECK(column_of(t, "ratio") == texts{"0.20", "1.00", "0.10", "-"});
     CHECK(column_of(t, "answer") == texts{"exact", "exact", "-3 +5", "exact"});
-    CHECK(aabblab::heading_of(scene).find(
-              "exact answers before inexact ones, each by ratio, the least first; ratio to slow\n") !=
-          std::string::npos);
-    CHECK(aabblab::heading_of(scene).find("all lines: 1,234,567 pairs\n") != std::string::npos);
-    CHECK(aabblab::heading_of(scene).find("an answer -3 +5 misses 3 of the exact answer and invents 5\n") !=
-          std::string::npos);
+    CHECK(holds(aabblab::heading_of(scene),
+                "exact answers before inexact ones, each by ratio, the least first; ratio to slow\n"));
+    CHECK(holds(aabblab::heading_of(scene), "all lines: 1,234,567 pairs\n"));
+    CHECK(holds(aabblab::heading_of(scene), "an answer -3 +5 misses 3 of the exact answer and invents 5\n"));
     rows[1].missing = 12;
     rows[1].invented = 0;
-    CHECK(aabblab::heading_of(aabblab::summarise(rows)[0])
-              .find("an answer -12 +0 misses 12 of the exact answer and invents 0\n") != std::string::npos);
+    CHECK(holds(aabblab::heading_of(aabblab::summarise(rows)[0]),
+                "an answer -12 +0 misses 12 of the exact answer and invents 0\n"));
     CHECK(std::ranges::find(t.columns, "pairs", &aabblab::column::name) == t.columns.end());
 }
 
@@ -205,11 +192,8 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
             rows.push_back(repeat_of(sort, 0, time));
             rows.back().scene.kind = scene;
         }
-    row engine = repeat_of("", 0, 4);
-    engine.name = {};
-    engine.name.engine = "cgal";
-    engine.scene.kind = "a";
-    rows.push_back(engine);
+    rows.push_back(of_engine(4));
+    rows.back().scene.kind = "a";
     const auto scenes = aabblab::summarise(rows);
     CHECK(aabblab::to_csv(aabblab::overall_table_of(scenes)) ==
           "#,sort,ratio,least,greatest,scenes,fastest in,regret,worst\n"
@@ -219,9 +203,8 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
 }
 
 TEST_CASE("Tables are written for programs too") {
-    REQUIRE(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}).find("a\\_b \\\\\n\\midrule\n50\\% \\\\") !=
-            std::string::npos);
-    REQUIRE(aabblab::to_html({{{"a", false}}, {{"<x>"}}}).find("<td>&lt;x&gt;</td>") != std::string::npos);
+    REQUIRE(holds(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}), "a\\_b \\\\\n\\midrule\n50\\% \\\\"));
+    REQUIRE(holds(aabblab::to_html({{{"a", false}}, {{"<x>"}}}), "<td>&lt;x&gt;</td>"));
 }
 
 TEST_CASE("A table fits the width it is given: spare columns go, or long names, or blocks share it") {
@@ -277,48 +260,40 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
 
 TEST_CASE("run fits its tables to the terminal, prints work on request, and leaves a summary.csv of all lines") {
     const temporary_folder folder;
-    const std::string config = folder
-                                   .write("a.toml",
-                                          "name = \"a\"\nseed = [1, 2]\nengines = [\"cgal\"]\n[[scene]]\n"
-                                          "kind = [\"brownian\", \"still\"]\nobjects = 50\nframes = 2\n[compose]\n"
-                                          "sort = [\"insertion\", \"shell:gaps=ciura\"]\n"
-                                          "partition = [\"none\", \"axial_cut:axes=3,segments=30,limit=off\"]\n"
-                                          "[measure]\nrepeats = 2\n")
-                                   .string();
-    const program_result narrow = run_program({"run", config, "--out", (folder / "a").string()});
-    REQUIRE(narrow.status == 0);
+    const std::string config = folder.write("a.toml",
+                                            "name = \"a\"\nseed = [1, 2]\nengines = [\"cgal\"]\n[[scene]]\n"
+                                            "kind = [\"brownian\", \"still\"]\nobjects = 50\nframes = 2\n[compose]\n"
+                                            "sort = [\"insertion\", \"shell:gaps=ciura\"]\n"
+                                            "partition = [\"none\", \"axial_cut:axes=3,segments=30,limit=off\"]\n"
+                                            "[measure]\nrepeats = 2\n");
+    const program_result narrow = run_well({"run", config, "--out", folder / "a"});
     const std::string tables = narrow.out.substr(0, narrow.out.find("Every repeat"));
-    CHECK(has_lines_of(tables, 80));
-    CHECK(tables.find("box tests") == std::string::npos);
-    CHECK(tables.find("pooled over 2 seeds") != std::string::npos);
-    CHECK(tables.find("2 scenes with insertion + none + one_axis,\n") != std::string::npos);
+    check_narrow(tables);
+    CHECK_FALSE(holds(tables, "box tests"));
+    CHECK(holds(tables, "pooled over 2 seeds"));
+    CHECK(holds(tables, "2 scenes with insertion + none + one_axis,\n"));
 
-    const program_result counted = run_program({"run", config, "--counts", "--out", (folder / "b").string()});
-    REQUIRE(counted.status == 0);
-    CHECK(counted.out.find("box tests") != std::string::npos);
-    CHECK(has_lines_of(counted.out.substr(0, counted.out.find("Every repeat")), 80));
+    const program_result counted = run_well({"run", config, "--counts", "--out", folder / "b"});
+    CHECK(holds(counted.out, "box tests"));
+    check_narrow(counted.out.substr(0, counted.out.find("Every repeat")));
 
-    const auto summary = aabblab::read_csv(bytes_of_file(folder / "a/summary.csv"), "summary.csv").records;
-    REQUIRE(summary.size() == 1 + 2 * (4 + 1));
-    const auto field = [&](std::size_t line, const std::string& name) {
-        const auto& names = summary[0].fields;
-        return summary[line].fields.at(static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()));
-    };
+    const auto summary = csv_rows(folder / "a/summary.csv");
+    REQUIRE(summary.size() == 2 * (4 + 1));
     double slowest = 0;
-    for (std::size_t line = 1; line < summary.size(); ++line) {
-        const std::size_t rank = (line - 1) % 5 + 1;
-        CHECK(field(line, "rank") == std::to_string(rank));
-        CHECK(field(line, "seeds") == "1 2");
-        CHECK(field(line, "scene") == (line <= 5 ? "brownian" : "still"));
-        CHECK(field(line, "repeats") == "4");
-        CHECK(field(line, "status") == "exact");
-        if (rank == 1) slowest = 0;
-        CHECK(std::stod(field(line, "ratio")) >= slowest);
-        slowest = std::stod(field(line, "ratio"));
+    for (std::size_t i = 0; i < summary.size(); ++i) {
+        const std::map<std::string, std::string>& line = summary[i];
+        CHECK(line.at("rank") == std::to_string(i % 5 + 1));
+        CHECK(line.at("seeds") == "1 2");
+        CHECK(line.at("scene") == (i < 5 ? "brownian" : "still"));
+        CHECK(line.at("repeats") == "4");
+        CHECK(line.at("status") == "exact");
+        if (i % 5 == 0) slowest = 0;
+        CHECK(std::stod(line.at("ratio")) >= slowest);
+        slowest = std::stod(line.at("ratio"));
     }
     // A refused run leaves it, and one that goes on makes it anew.
-    REQUIRE(run_program({"run", config, "--out", (folder / "a").string()}).status == 2);
+    REQUIRE(run_program({"run", config, "--out", folder / "a"}).status == 2);
     const std::string before = bytes_of_file(folder / "a/summary.csv");
-    REQUIRE(run_program({"run", config, "--resume", "--out", (folder / "a").string()}).status == 0);
+    run_well({"run", config, "--resume", "--out", folder / "a"});
     CHECK(bytes_of_file(folder / "a/summary.csv") == before);
 }

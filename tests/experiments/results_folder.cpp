@@ -1,14 +1,6 @@
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
-
 #include "interrupted.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
 
-import aabb.std;
-import aabb;
-import aabblab.results;
-import aabblab.scenes;
+#include "configs.hpp"
 
 using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
@@ -26,64 +18,56 @@ std::string config_of(const std::string& mesh) {
            "\", \"icosphere:triangles=20\"]\nframes = 2\n[measure]\nrepeats = 3\n";
 }
 
+/// A small experiment, and a folder for what it makes.
+struct small_run {
+    temporary_folder folder;
+    std::string config =
+        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n");
+    std::string out = folder / "out";
+};
+
 }  // namespace
 
 TEST_CASE("Two runs do not write into one folder at once") {
-    const temporary_folder folder;
-    const std::string out = (folder / "out").string();
-    const std::string config =
-        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n").string();
+    const small_run made;
+    const auto& [folder, config, out] = made;
     auto held = std::make_unique<aabblab::folder_lock>(folder / "out");
     CHECK_THROWS_WITH(aabblab::folder_lock(folder / "out"),
                       StartsWith("another aabblab writes into ") && EndsWith("with --out"));
-    for (const std::string& command : {std::string("run"), std::string("reproduce")}) {
-        const program_result second = command == "run" ? run_program({"run", config, "--out", out})
-                                                       : run_program({"reproduce", "--quick", "--out", out});
-        INFO(second.err);
-        CHECK(second.status == 2);
-        CHECK(is_one_sentence(second.err));
-        CHECK(second.err.find("another aabblab writes into " + out) != std::string::npos);
-    }
+    const std::string said = "another aabblab writes into " + out;
+    for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out},
+                                  std::vector<std::string>{"reproduce", "--quick", "--out", out}})
+        CHECK(holds(run_refused(arguments).err, said));
     CHECK(std::filesystem::is_empty(folder / "out"));
     held.reset();
-    CHECK(run_program({"run", config, "--out", out}).status == 0);
-    CHECK(run_program({"run", config, "--out", out, "--resume"}).status == 0);
+    run_well({"run", config, "--out", out});
+    run_well({"run", config, "--out", out, "--resume"});
 }
 
 TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines") {
-    const temporary_folder folder;
-    const std::string out = (folder / "out").string();
-    const std::string config =
-        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n").string();
-    REQUIRE(run_program({"run", config, "--out", out}).status == 0);
+    const small_run made;
+    const auto& [folder, config, out] = made;
+    run_well({"run", config, "--out", out});
     const std::string text = bytes_of_file(folder / "out/results.csv");
     const std::size_t second_line = text.find('\n') + 1;
     std::ofstream(folder / "out/results.csv", std::ios::app)
         << text.substr(second_line, text.find('\n', second_line) + 1 - second_line);
     const std::string said = "/results.csv:11: the measurement of line 2 stands here again";
     for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out, "--resume"},
-                                  std::vector<std::string>{"compare", out, out}}) {
-        const program_result refused = run_program(arguments);
-        INFO(refused.err);
-        CHECK(refused.status == 2);
-        CHECK(is_one_sentence(refused.err));
-        CHECK(refused.err.find(said) != std::string::npos);
-    }
+                                  std::vector<std::string>{"compare", out, out}})
+        CHECK(holds(run_refused(arguments).err, said));
 }
 
 TEST_CASE("Results of before a count was there are read without it, others are refused") {
-    const temporary_folder folder;
-    const std::string out = (folder / "out").string();
-    const std::string config =
-        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n").string();
-    REQUIRE(run_program({"run", config, "--out", out}).status == 0);
+    const small_run made;
+    const auto& [folder, config, out] = made;
+    run_well({"run", config, "--out", out});
     const std::string text = bytes_of_file(folder / "out/results.csv");
     // Fields are counted from the end of each line, since behind the counts none has commas of its own.
     const std::string header = text.substr(0, text.find('\n'));
     const auto behind = std::ranges::count(header.substr(header.find(",restarts,") + 10), ',') + 1;
     std::string earlier;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string line : lines_of(text)) {
         std::size_t end = line.size();
         for (auto n = behind; n > 0; --n) end = line.rfind(',', end - 1);
         earlier += line.erase(line.rfind(',', end - 1), end - line.rfind(',', end - 1)) + "\n";
@@ -96,8 +80,7 @@ TEST_CASE("Results of before a count was there are read without it, others are r
     CHECK(!then[0].counts[restarts]);
     CHECK(then[0].counts[restarts + 1] == now[0].counts[restarts + 1]);
     CHECK(then[0].status == "exact");
-    earlier.replace(earlier.find("box_tests"), 9, "box_texts");
-    CHECK_THROWS_WITH(aabblab::read_rows(folder.write("others.csv", earlier)),
+    CHECK_THROWS_WITH(aabblab::read_rows(folder.write("others.csv", replaced(earlier, "box_tests", "box_texts"))),
                       ContainsSubstring("others.csv:1: these are not the columns of this version; column ") &&
                           EndsWith(" is 'box_texts'; expected 'box_tests'"));
 }
@@ -105,24 +88,21 @@ TEST_CASE("Results of before a count was there are read without it, others are r
 TEST_CASE("A mesh may have any name: its results are read back, resumed after any cut, and compared") {
     const temporary_folder folder;
     const std::string mesh =
-        folder.write(mesh_name, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
-            .string();
-    const std::string config = folder.write("odd.toml", config_of(mesh)).string();
-    const std::string out = (folder / "out").string();
-    const program_result ran = run_program({"run", config, "--out", out});
-    INFO(ran.err);
-    REQUIRE(ran.status == 0);
+        folder.write(mesh_name, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+    const std::string config = folder.write("odd.toml", config_of(mesh));
+    const std::string out = folder / "out";
+    run_well({"run", config, "--out", out});
     const std::filesystem::path table = folder / "out/results.csv";
     const auto whole = aabblab::read_rows(table);
     REQUIRE(whole.size() == 3);
     CHECK(whole[0].scene.meshes == std::vector<std::string>{mesh, "icosphere:triangles=20"});
-    CHECK(run_program({"compare", out, out}).status == 0);
+    run_well({"compare", out, out});
     // In the middle of the name of the last row, which stands in two lines.
     const std::string text = bytes_of_file(table);
     std::filesystem::resize_file(table, text.rfind('\n', text.rfind("lines,")) + 3);
     unseal(folder / "out");
     REQUIRE(aabblab::read_rows(table).size() == 2);
-    REQUIRE(run_program({"run", config, "--out", out, "--resume"}).status == 0);
+    run_well({"run", config, "--out", out, "--resume"});
     const auto resumed = aabblab::read_rows(table);
     REQUIRE(resumed.size() == 3);
     for (std::size_t i = 0; i < 3; ++i) CHECK(resumed[i].key() == whole[i].key());

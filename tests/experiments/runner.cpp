@@ -1,16 +1,11 @@
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
 
-#include "temporary_folder.hpp"
+#include "configs.hpp"
 
-import aabb.std;
-import aabb;
+#include "../altered_search.hpp"
+
 import aabb.registry;
-import aabblab.configs;
-import aabblab.results;
 import aabblab.trials;
-import aabblab.scenes;
 import aabblab.tables;
 
 using aabblab::contender;
@@ -40,58 +35,38 @@ experiment meshes() {
         "meshes.toml", aabblab::experiment_size::full);
 }
 
-/// A global search that loses one pair of a frame, or finds one twice.
-class wrong_search final : public aabb::global_stage {
-public:
-    enum class fault { loses, repeats };
-    explicit wrong_search(fault what) : what_(what) {}
+enum class fault { loses, repeats };
 
-    void insert(std::uint32_t id) override { right_->insert(id); }
-    void remove(std::uint32_t id) override { right_->remove(id); }
-    void update(std::span<const aabb::box> boxes) override { right_->update(boxes); }
-    void search(std::vector<aabb::index_pair>& pairs) override {
-        right_->search(pairs);
-        if (frame_++ != 2) return;
-        if (what_ == fault::loses)
-            pairs.pop_back();
-        else
-            pairs.push_back(pairs.back());
-    }
-    [[nodiscard]] aabb::work_counters counters() const override { return {}; }
-    [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-    [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
-
-private:
-    fault what_;
-    int frame_ = 0;
-    std::unique_ptr<aabb::global_stage> right_ =
-        aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
-};
-
-/// A global search that waits in every frame.
-class slow_search final : public aabb::global_stage {
-public:
-    void insert(std::uint32_t id) override { right_->insert(id); }
-    void remove(std::uint32_t id) override { right_->remove(id); }
-    void update(std::span<const aabb::box> boxes) override {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        right_->update(boxes);
-    }
-    void search(std::vector<aabb::index_pair>& pairs) override { right_->search(pairs); }
-    [[nodiscard]] aabb::work_counters counters() const override { return {}; }
-    [[nodiscard]] std::vector<aabb::part_bytes> bytes() const override { return {}; }
-    [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
-
-private:
-    std::unique_ptr<aabb::global_stage> right_ =
-        aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
-};
-
-contender wrong_contender(wrong_search::fault what) {
+contender altered_contender(const std::string& name, const std::function<void()>& before,
+                            const altered_search::change& after) {
     contender who;
-    who.name[aabb::strategy_kind::sort] = "wrong";
-    who.make_global = [what](aabb::instrumentation) { return std::make_unique<wrong_search>(what); };
+    who.name[aabb::strategy_kind::sort] = name;
+    who.make_global = [=](aabb::instrumentation) {
+        return std::make_unique<altered_search>(aabb::compose_global_search({}, aabb::instrumentation::none), before,
+                                                after);
+    };
     return who;
+}
+
+/// Loses one pair of a frame, or finds one twice.
+contender wrong_contender(fault what) {
+    return altered_contender(
+        "wrong", [] {},
+        [what, frame = 0](auto& pairs) mutable {
+            if (frame++ != 2) return;
+            if (what == fault::loses)
+                pairs.pop_back();
+            else
+                pairs.push_back(pairs.back());
+        });
+}
+
+/// Plays the only scene into new results in that folder, and requires that nothing fails.
+std::vector<row> played(const experiment& e, const std::filesystem::path& folder) {
+    results_folder results(folder, record_of(e), existing_results::refuse);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+    const std::span<const row> rows = results.rows();
+    return {rows.begin(), rows.end()};
 }
 
 /// Keys and digests: what must not depend on when a row was made.
@@ -106,10 +81,8 @@ std::set<std::string> answers(std::span<const row> rows) {
 TEST_CASE("A scene of boxes is played by every global search and every engine that searches boxes") {
     const temporary_folder folder;
     const experiment e = boxes();
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
-    REQUIRE(contenders.size() == 3);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    REQUIRE(aabblab::contenders_for(e, e.scenes[0]).size() == 3);
+    played(e, folder / "r");
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
     REQUIRE(rows.size() == 6);
     for (const row& r : rows) {
@@ -126,11 +99,9 @@ TEST_CASE("A scene of boxes is played by every global search and every engine th
 
 TEST_CASE("A scene of meshes is played by both stages together, engines included") {
     const temporary_folder folder;
-    const experiment e = meshes();
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
-    REQUIRE(results.rows().size() == 4 + 3);
-    for (const row& r : results.rows()) {
+    const std::vector<row> rows = played(meshes(), folder / "r");
+    REQUIRE(rows.size() == 4 + 3);
+    for (const row& r : rows) {
         INFO(r.key());
         REQUIRE(r.contacts.value_or(0) > 0);
         if (r.name[aabb::strategy_kind::triangle] == "exact" || r.name.engine == "cgal") REQUIRE(r.status == "exact");
@@ -139,24 +110,23 @@ TEST_CASE("A scene of meshes is played by both stages together, engines included
 }
 
 TEST_CASE("A composition that loses a pair or reports one twice is named, and gets no row") {
-    for (const auto fault : {wrong_search::fault::loses, wrong_search::fault::repeats}) {
+    for (const fault what : {fault::loses, fault::repeats}) {
         const temporary_folder folder;
         const experiment e = boxes();
         results_folder results(folder / "r", record_of(e), existing_results::refuse);
         std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-        contenders.insert(contenders.begin() + 1, wrong_contender(fault));
+        contenders.insert(contenders.begin() + 1, wrong_contender(what));
         const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
         REQUIRE(failures.size() == 1);
         INFO(failures[0]);
         REQUIRE(
             failures[0].starts_with("wrong is wrong on brownian (objects=200 frames=3 seed=1), frame 2: the pair "));
-        REQUIRE(
-            failures[0].ends_with(fault == wrong_search::fault::loses ? " is missing" : " is reported more than once"));
+        REQUIRE(failures[0].ends_with(what == fault::loses ? " is missing" : " is reported more than once"));
         REQUIRE(results.rows().size() == 6);
         for (const row& r : results.rows()) REQUIRE(r.name[aabb::strategy_kind::sort] != "wrong");
         const auto differences = aabblab::read_differences(folder / "r/differences.csv");
         REQUIRE(differences.size() == 1);
-        REQUIRE(differences[0].what == (fault == wrong_search::fault::loses ? "missing" : "invented"));
+        REQUIRE(differences[0].what == (what == fault::loses ? "missing" : "invented"));
         REQUIRE(differences[0].kind == "boxes");
         REQUIRE(differences[0].count == 1);
     }
@@ -183,18 +153,16 @@ TEST_CASE("An interrupted run that is resumed ends like one that was not") {
     const temporary_folder folder;
     const experiment e = boxes(3);
     const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
-    std::set<std::string> uninterrupted;
-    {
-        results_folder results(folder / "whole", record_of(e), existing_results::refuse);
-        REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
-        uninterrupted = answers(results.rows());
-    }
+    const std::set<std::string> uninterrupted = answers(played(e, folder / "whole"));
     // Killed in the middle of writing the fifth row.
     std::filesystem::create_directories(folder / "cut");
     const std::string text = bytes_of_file(folder / "whole/results.csv");
-    std::size_t end = 0;
-    for (int line = 0; line < 5; ++line) end = text.find('\n', end) + 1;
-    folder.write("cut/results.csv", text.substr(0, end + 40));
+    const auto end_of = [&](int lines) {
+        std::size_t end = 0;
+        for (int line = 0; line < lines; ++line) end = text.find('\n', end) + 1;
+        return end;
+    };
+    folder.write("cut/results.csv", text.substr(0, end_of(5) + 40));
     std::filesystem::copy_file(folder / "whole/manifest.json", folder / "cut/manifest.json");
     REQUIRE(aabblab::read_rows(folder / "cut/results.csv").size() == 4);
     REQUIRE_THROWS_AS(results_folder(folder / "cut", record_of(e), existing_results::refuse), aabb::input_error);
@@ -207,9 +175,7 @@ TEST_CASE("An interrupted run that is resumed ends like one that was not") {
     REQUIRE(rows.size() == 9);
     REQUIRE(answers(rows) == uninterrupted);
     // The first repeat of all three is as it was; what there was of the second was played again with the others.
-    end = 0;
-    for (int line = 0; line < 4; ++line) end = text.find('\n', end) + 1;
-    REQUIRE(bytes_of_file(folder / "cut/results.csv").substr(0, end) == text.substr(0, end));
+    REQUIRE(bytes_of_file(folder / "cut/results.csv").starts_with(text.substr(0, end_of(4))));
 }
 
 TEST_CASE("Who takes longer than patience has is played once, and not when the run is resumed") {
@@ -217,10 +183,8 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     experiment e = boxes(4);
     e.patience = 10;
     std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-    contender slow;
-    slow.name[aabb::strategy_kind::sort] = "slow";
-    slow.make_global = [](aabb::instrumentation) { return std::make_unique<slow_search>(); };
-    contenders.push_back(slow);
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(50)); };
+    contenders.push_back(altered_contender("slow", wait, [](auto&) {}));
     results_folder results(folder / "r", record_of(e), existing_results::refuse);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
     const auto rows_of = [&](const std::string& sort) {
@@ -229,8 +193,7 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     };
     CHECK(rows_of("slow") == 1);
     CHECK(rows_of("std") == 4);
-    CHECK(aabblab::heading_of(aabblab::summarise(results.rows())[0]).find("repeated less often than others: slow") !=
-          std::string::npos);
+    CHECK(holds(aabblab::heading_of(aabblab::summarise(results.rows())[0]), "repeated less often than others: slow"));
     const std::size_t all = results.rows().size();
     const std::string text = bytes_of_file(folder / "r/results.csv");
     REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
@@ -266,11 +229,7 @@ TEST_CASE("Each scene has an order of its own in which contenders are played aft
 
 TEST_CASE("Results of another config are not continued") {
     const temporary_folder folder;
-    {
-        const experiment e = boxes();
-        results_folder results(folder / "r", record_of(e), existing_results::refuse);
-        REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
-    }
+    played(boxes(), folder / "r");
     const experiment other = boxes(5);
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(other), existing_results::resume), aabb::input_error);
     // A row of a scene that the manifest does not know.
@@ -288,10 +247,9 @@ TEST_CASE("What was not to be measured is not measured") {
     experiment e = boxes(5);
     e.recorded.clear();
     const temporary_folder folder;
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
-    REQUIRE(results.rows().size() == 3);
-    for (const row& r : results.rows()) {
+    const std::vector<row> rows = played(e, folder / "r");
+    REQUIRE(rows.size() == 3);
+    for (const row& r : rows) {
         REQUIRE_FALSE((r.build_ms || r.first_ms || r.search_ms || r.counts[0] || r.bytes[0] || r.missing));
         REQUIRE(r.status == "exact");
     }
@@ -299,7 +257,7 @@ TEST_CASE("What was not to be measured is not measured") {
 
 TEST_CASE("A pair of boxes that is lost fails a contender whose triangle test is inexact, too") {
     const experiment e = boxes();
-    contender who = wrong_contender(wrong_search::fault::loses);
+    contender who = wrong_contender(fault::loses);
     who.exact = false;
     const aabblab::scene_validation result = aabblab::validate_scene(e.scenes[0], std::vector{who});
     REQUIRE(result.contenders[0].failure.ends_with("is missing"));
@@ -309,17 +267,16 @@ TEST_CASE("A contender that goes wrong when it is timed keeps no row of its earl
     const temporary_folder folder;
     const experiment e = boxes(3);
     std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-    contender late = wrong_contender(wrong_search::fault::loses);
+    contender late = wrong_contender(fault::loses);
     // Right when validated and in its first repeat.
-    late.make_global = [made = 0](aabb::instrumentation) mutable -> std::unique_ptr<aabb::global_stage> {
-        if (made++ < 2) return aabb::compose_global_search(aabb::composition{}, aabb::instrumentation::none);
-        return std::make_unique<wrong_search>(wrong_search::fault::loses);
+    late.make_global = [made = 0, wrong = late.make_global](aabb::instrumentation counted) mutable {
+        return made++ < 2 ? aabb::compose_global_search({}, counted) : wrong(counted);
     };
     contenders.push_back(late);
     results_folder results(folder / "r", record_of(e), existing_results::refuse);
     const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
     REQUIRE(failures.size() == 1);
-    REQUIRE(failures[0].find("timed, its digest is") != std::string::npos);
+    REQUIRE(holds(failures[0], "timed, its digest is"));
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
     REQUIRE(rows.size() == 9);
     REQUIRE(answers(rows) == answers(results.rows()));
@@ -340,7 +297,7 @@ TEST_CASE("Results of another config or build are set aside where that is asked 
     REQUIRE(play(boxes()) == all);
     const auto [left, said] = play(boxes(5));
     REQUIRE(left == 0);
-    REQUIRE(said.find("another config") != std::string::npos);
+    REQUIRE(holds(said, "another config"));
     REQUIRE(aabblab::read_rows(folder / "r/results.csv").size() == 15);
     // Another build, whose tables had other columns.
     std::string manifest = bytes_of_file(folder / "r/manifest.json");
@@ -350,7 +307,7 @@ TEST_CASE("Results of another config or build are set aside where that is asked 
     folder.write("r/results.csv", "columns,of,then\n1,2,3\n");
     const auto [left_of_build, said_of_build] = play(boxes(5));
     REQUIRE(left_of_build == 0);
-    REQUIRE(said_of_build.find("another build") != std::string::npos);
+    REQUIRE(holds(said_of_build, "another build"));
     REQUIRE(bytes_of_file(folder / "r/results.csv.old") == "columns,of,then\n1,2,3\n");
     REQUIRE(aabblab::read_rows(folder / "r/results.csv").size() == 15);
 }

@@ -1,15 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_exception.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "interrupted.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.registry;
 import aabblab.comparison;
 import aabblab.results;
@@ -28,14 +20,11 @@ const char* const config =
 /// A finished run.
 class finished_run {
 public:
-    finished_run() {
-        const program_result ran = run();
-        INFO(ran.err);
-        REQUIRE(ran.status == 0);
-    }
+    finished_run() { run_well({"run", folder_.write("sealed.toml", config), "--out", out()}); }
 
-    [[nodiscard]] program_result run(const std::vector<std::string>& more = {}) const {
-        return run_program(joined({"run", (folder_ / "sealed.toml").string(), "--out", out().string()}, more));
+    /// The command that goes on with it.
+    [[nodiscard]] std::vector<std::string> resumed() const {
+        return {"run", folder_ / "sealed.toml", "--out", out(), "--resume"};
     }
     [[nodiscard]] std::filesystem::path out() const { return folder_ / "out"; }
     [[nodiscard]] std::string table() const { return bytes_of_file(out() / "results.csv"); }
@@ -49,7 +38,6 @@ public:
 
 private:
     temporary_folder folder_;
-    std::filesystem::path config_ = folder_.write("sealed.toml", config);
 };
 
 std::vector<std::string> keys_of(const std::vector<row>& rows) {
@@ -58,11 +46,9 @@ std::vector<std::string> keys_of(const std::vector<row>& rows) {
     return keys;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
+void check_refused_rows(const finished_run& run, const std::string& sentence) {
+    CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error,
+                         MessageMatches(ContainsSubstring(sentence)));
 }
 
 std::string joined_lines(const std::vector<std::string>& lines, const char* end) {
@@ -81,9 +67,7 @@ std::string shuffled(const std::string& table) {
 std::string with_field(const std::string& table, std::size_t line, const std::string& before,
                        const std::string& after) {
     std::vector<std::string> lines = lines_of(table);
-    const std::size_t at = lines.at(line - 1).find(before);
-    REQUIRE(at != std::string::npos);
-    lines[line - 1].replace(at, before.size(), after);
+    lines.at(line - 1) = replaced(lines.at(line - 1), before, after);
     return joined_lines(lines, "\n");
 }
 
@@ -124,8 +108,7 @@ TEST_CASE("Rows that were altered, removed or added are refused, with the place 
     const row first = aabblab::read_rows(run.out() / "results.csv").front();
     const auto refused = [&](const std::string& text, const std::string& sentence) {
         run.write_table(text);
-        CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error,
-                             MessageMatches(ContainsSubstring(sentence)));
+        check_refused_rows(run, sentence);
         run.write_table(table);
     };
     const std::string altered = "out/results.csv was altered after the run: its rows do not have the checksum";
@@ -151,8 +134,7 @@ TEST_CASE("A manifest that was altered is refused") {
         nlohmann::ordered_json altered = manifest;
         alter(altered);
         run.write_manifest(altered);
-        CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error,
-                             MessageMatches(ContainsSubstring(sentence)));
+        check_refused_rows(run, sentence);
     };
     const std::string sentence =
         "manifest.json was altered after the run: what stands in it does not have the checksum that it states";
@@ -255,17 +237,13 @@ TEST_CASE("A run that is not finished has no seal, and is read as it is") {
 
 TEST_CASE("What was altered is neither resumed nor sealed anew") {
     const finished_run run;
-    REQUIRE(run.run({"--resume"}).status == 0);
+    run_well(run.resumed());
     REQUIRE(run.manifest().contains("seal"));
     std::vector<std::string> lines = lines_of(run.table());
     lines.erase(lines.begin() + 3);
     run.write_table(joined_lines(lines, "\n"));
     const std::string before = bytes_of_file(run.out() / "manifest.json");
-    const program_result refused = run.run({"--resume"});
-    INFO(refused.err);
-    CHECK(refused.status == 2);
-    CHECK(is_one_sentence(refused.err));
-    CHECK(refused.err.find("has 11 rows; when the run was finished it had 12") != std::string::npos);
+    CHECK(holds(run_refused(run.resumed()).err, "has 11 rows; when the run was finished it had 12"));
     CHECK(bytes_of_file(run.out() / "manifest.json") == before);
 }
 
@@ -282,10 +260,10 @@ TEST_CASE("A manifest says what machine it was, and what of it times hang on") {
     nlohmann::ordered_json changed = run.manifest();
     changed["machine"]["kernel"] = "Linux 1.0 i386";
     run.write_manifest(changed);
-    CHECK(run.run({"--resume"}).status == 0);
+    run_well(run.resumed());
     unseal(run.out());
     changed = run.manifest();
     changed["build"]["caches"]["L2"] = 1;
     run.write_manifest(changed);
-    CHECK(run.run({"--resume"}).err.find("another build or machine") != std::string::npos);
+    CHECK(holds(run_program(run.resumed()).err, "another build or machine"));
 }

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <string>
+
+#include "../testing.hpp"
 
 /// A folder of its own for a test, gone with it.
 class temporary_folder {

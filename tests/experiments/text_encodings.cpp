@@ -1,20 +1,11 @@
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
 #include <random>
 
+#include "configs.hpp"
 #include "mesh_bytes.hpp"
-#include "program.hpp"
-#include "temporary_folder.hpp"
 #include "text_encodings.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.extreme;
-import aabblab.configs;
 import aabblab.errors;
-import aabblab.files;
-import aabblab.results;
-import aabblab.scenes;
 
 using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
@@ -29,12 +20,7 @@ struct text_format {
     std::size_t wrong_line;  ///< in which `wrong` makes an error
     std::string right, wrong;
 
-    [[nodiscard]] std::string damaged() const {
-        std::string other = text;
-        const std::size_t at = other.find(right);
-        REQUIRE(at != std::string::npos);
-        return other.replace(at, right.size(), wrong);
-    }
+    [[nodiscard]] std::string damaged() const { return replaced(text, right, wrong); }
 };
 
 std::string text_of_mesh(const std::filesystem::path& file) {
@@ -200,7 +186,7 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
             std::string bytes = format.text;
             bytes.insert(second, 1, mark);
             const std::string refusal = refusal_of(bytes);
-            CHECK(refusal.find("read: ") == std::string::npos);
+            CHECK_FALSE(holds(refusal, "read: "));
             if (!is_of_two_kinds)
                 CHECK_THAT(refusal, EndsWith(head + "not text: " + name + " in line 2, with more behind it"));
         }

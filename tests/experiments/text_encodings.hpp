@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <vector>
+#include "../testing.hpp"
 
 /// A text as another system or program writes it.
 struct encoded_text {

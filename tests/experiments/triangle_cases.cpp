@@ -1,8 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
+#include "../testing.hpp"
 
 import aabb.base;
 import aabb.extreme;
-import aabb.std;
 import aabblab.configs;
 import aabblab.extreme;
 
@@ -17,12 +16,7 @@ std::string case_named(const std::string& name, const std::string& intersect) {
 }
 
 std::string refusal_of(const std::string& text) {
-    try {
-        static_cast<void>(aabblab::parse_triangle_cases(text, "c.toml"));
-    } catch (const aabb::input_error& error) {
-        return error.what();
-    }
-    return "accepted";
+    return refusal_in<aabb::input_error>([&] { return aabblab::parse_triangle_cases(text, "c.toml"); });
 }
 
 /// With this in place of the line of that key.

@@ -1,13 +1,9 @@
-#include <catch2/catch_test_macros.hpp>
-#include <random>
 #include <regex>
 
 #include "../experiments/program.hpp"
-#include "../experiments/temporary_folder.hpp"
 
 #include "worlds.hpp"
 
-import aabb.std;
 import aabblab.archive;
 import aabblab.record;
 
@@ -26,18 +22,10 @@ void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6)
     aabblab::seal_record(folder);
 }
 
-program_result judge(const std::vector<std::filesystem::path>& sources, const std::filesystem::path& out,
-                     const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"reproduce", "--judge", "--out", out.string()};
-    for (const std::filesystem::path& source : sources) arguments.push_back(source.string());
-    return run_program(joined(arguments, more));
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
+/// The command that judges these.
+std::vector<std::string> judge(const std::vector<std::string>& sources, const std::string& out,
+                               const std::vector<std::string>& more = {}) {
+    return joined(joined({"reproduce", "--judge", "--out", out}, sources), more);
 }
 
 /// The lines of a file as `change` leaves them.
@@ -48,10 +36,8 @@ void change_lines(const std::filesystem::path& file, const std::function<void(st
     for (const std::string& line : lines) out << line << "\n";
 }
 
-void replace_once(std::string& text, const std::string& what, const std::string& by) {
-    const std::size_t at = text.find(what);
-    REQUIRE(at != std::string::npos);
-    text.replace(at, what.size(), by);
+void replace_once(std::string& text, std::string_view what, std::string_view by) {
+    text = replaced(text, what, by);
 }
 
 }  // namespace
@@ -60,32 +46,27 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
     const temporary_folder folder;
     const std::filesystem::path results = folder / "results";
     write_finished_run(results);
-    const program_result judged = judge({results}, folder / "a", {"--archive", (folder / "run.tar.xz").string()});
-    INFO(judged.err);
-    REQUIRE(judged.status == 0);
-    CHECK(judged.err.find("not sealed") == std::string::npos);
+    const std::string archive = folder / "run.tar.xz";
+    const program_result judged = run_well(judge({results}, folder / "a", {"--archive", archive}));
+    CHECK_FALSE(holds(judged.err, "not sealed"));
     CHECK(std::regex_search(judged.out, std::regex("run\\.tar\\.xz \\([0-9.]+ MiB\\), SHA-256 [0-9a-f]{64}\n")));
     const std::string page = bytes_of_file(folder / "a/report.html");
-    REQUIRE(page.find("not sealed") == std::string::npos);
-    CHECK(page.find("Atlas of global search") != std::string::npos);
+    REQUIRE_FALSE(holds(page, "not sealed"));
+    CHECK(holds(page, "Atlas of global search"));
     // Nothing was written beside the results.
     CHECK(!std::filesystem::exists(results / "report.html"));
 
-    const program_result of_archive =
-        judge({folder / "run.tar.xz"}, folder / "b", {"--archive", (folder / "again.tar.xz").string()});
-    INFO(of_archive.err);
-    REQUIRE(of_archive.status == 0);
+    run_well(judge({archive}, folder / "b", {"--archive", folder / "again.tar.xz"}));
     CHECK(bytes_of_file(folder / "b/report.html") == page);
     CHECK(bytes_of_file(folder / "b/macros.tex") == bytes_of_file(folder / "a/macros.tex"));
-    CHECK(bytes_of_file(folder / "again.tar.xz") == bytes_of_file(folder / "run.tar.xz"));
+    CHECK(bytes_of_file(folder / "again.tar.xz") == bytes_of_file(archive));
 
-    const program_result copied = judge({results, folder / "run.tar.xz"}, folder / "both");
+    const program_result copied = run_program(judge({results, archive}, folder / "both"));
     CHECK(copied.status == 2);
-    CHECK(copied.err.find("results and " + (folder / "run.tar.xz").string() + " are the same run") !=
-          std::string::npos);
+    CHECK(holds(copied.err, "results and " + archive + " are the same run"));
     write_finished_run(folder / "other", 0.7);
-    REQUIRE(judge({folder / "other", folder / "run.tar.xz"}, folder / "both").status == 0);
-    CHECK(bytes_of_file(folder / "both/report.md").find("run.tar.xz together (") != std::string::npos);
+    run_well(judge({folder / "other", archive}, folder / "both"));
+    CHECK(holds(bytes_of_file(folder / "both/report.md"), "run.tar.xz together ("));
 
     std::mt19937 random(1);
     for (const std::filesystem::path& file : aabblab::archived_files(results)) {
@@ -94,9 +75,7 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
         const std::string text = std::regex_replace(bytes_of_file(results / file), std::regex("\n"), "\r\n");
         std::ofstream(results / file, std::ios::binary) << text;
     }
-    const program_result mixed = judge({results}, folder / "c");
-    INFO(mixed.err);
-    REQUIRE(mixed.status == 0);
+    run_well(judge({results}, folder / "c"));
     CHECK(bytes_of_file(folder / "c/report.html") == page);
 }
 
@@ -110,19 +89,11 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
         std::filesystem::remove_all(altered);
         std::filesystem::copy(whole, altered, std::filesystem::copy_options::recursive);
         alter(altered);
-        const program_result r = judge({altered}, folder / "out");
         INFO(sentence);
-        INFO(r.err);
-        CHECK(r.status == 2);
-        CHECK(is_one_sentence(r.err));
-        CHECK(r.err.find("altered/" + sentence) != std::string::npos);
+        CHECK(holds(run_refused(judge({altered}, folder / "out")).err, "altered/" + sentence));
         CHECK(!std::filesystem::exists(folder / "out/report.html"));
         // Nor are they compared.
-        const program_result compared = run_program({"compare", whole.string(), altered.string()});
-        INFO(compared.err);
-        CHECK(compared.status == 2);
-        CHECK(is_one_sentence(compared.err));
-        CHECK(compared.err.find("altered/" + sentence) != std::string::npos);
+        CHECK(holds(run_refused({"compare", whole, altered}).err, "altered/" + sentence));
     };
     const auto of_table = [](const std::function<void(std::vector<std::string>&)>& change) {
         return [=](const std::filesystem::path& results) { change_lines(results / "c3/results.csv", change); };
@@ -160,9 +131,8 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
     });
     refused("SHA256SUMS:1: expected a checksum", of_file("SHA256SUMS", "  ", " "));
     // What is left of the last.
-    CHECK(run_program({"atlas", "--judge", (folder / "altered").string()}).err.find("expected a checksum") !=
-          std::string::npos);
-    CHECK(run_program({"compare", whole.string(), whole.string()}).status == 0);
+    CHECK(holds(run_program({"atlas", "--judge", folder / "altered"}).err, "expected a checksum"));
+    run_well({"compare", whole, whole});
 }
 
 TEST_CASE("Results that are not finished are judged, and the report says so") {
@@ -171,43 +141,37 @@ TEST_CASE("Results that are not finished are judged, and the report says so") {
     write_finished_run(results);
     aabblab::unseal_record(results);
     std::filesystem::remove_all(results / "c3");
-    const program_result r = judge({results}, folder / "out");
-    CHECK(r.status == 0);
-    CHECK(r.err.find("results: the results are not sealed: the run was not finished") != std::string::npos);
-    CHECK(bytes_of_file(folder / "out/report.html").find("Note: the results are not sealed") != std::string::npos);
+    CHECK(holds(run_well(judge({results}, folder / "out")).err,
+                "results: the results are not sealed: the run was not finished"));
+    CHECK(holds(bytes_of_file(folder / "out/report.html"), "Note: the results are not sealed"));
 }
 
 TEST_CASE("What is no archive of a run is refused in one sentence") {
     const temporary_folder folder;
-    const std::filesystem::path results = folder / "results";
+    const std::string results = folder / "results";
     worlds::write_tests(results, 1, 1);
     aabblab::seal_record(results);
     const auto refused = [&](const std::vector<std::string>& arguments, const std::string& sentence) {
-        const program_result r = run_program(joined({"reproduce", "--out", (folder / "out").string()}, arguments));
         INFO(sentence);
-        INFO(r.err);
-        CHECK(r.status == 2);
-        CHECK(is_one_sentence(r.err));
-        CHECK(r.err.find(sentence) != std::string::npos);
+        CHECK(holds(run_refused(joined({"reproduce", "--out", folder / "out"}, arguments)).err, sentence));
     };
-    const std::string results_name = results.string();
-    refused({"--judge", results_name}, "there are no results of a reproduction in " + results_name);
-    refused({"--judge", (folder / "none").string()}, "none is not there");
-    refused({"--judge", folder.write("page.html", "<!doctype html>").string()},
+    refused({"--judge", results}, "there are no results of a reproduction in " + results);
+    refused({"--judge", folder / "none"}, "none is not there");
+    refused({"--judge", folder.write("page.html", "<!doctype html>")},
             "page.html is not an archive of results, which is tar compressed by xz");
-    refused({results_name}, "only --judge takes results that are there");
-    refused({"--judge", results_name, results_name, "--archive", "x"}, "--archive takes the results of one run");
+    refused({results}, "only --judge takes results that are there");
+    refused({"--judge", results, results, "--archive", "x"}, "--archive takes the results of one run");
 
     write_finished_run(folder / "run");
-    const std::string archive = (folder / "run.tar.xz").string();
-    REQUIRE(judge({folder / "run"}, folder / "judged", {"--archive", archive}).status == 0);
+    const std::string archive = folder / "run.tar.xz";
+    run_well(judge({folder / "run"}, folder / "judged", {"--archive", archive}));
     const std::string bytes = bytes_of_file(archive);
-    refused({"--judge", folder.write("cut.tar.xz", bytes.substr(0, bytes.size() / 2)).string()},
+    refused({"--judge", folder.write("cut.tar.xz", bytes.substr(0, bytes.size() / 2))},
             "cut.tar.xz is damaged or cut off");
     // What is wrong inside is told by the archive's name.
     std::filesystem::remove(folder / "run/c6/process-0.json");
     aabblab::write_archive(folder / "altered.tar.xz", aabblab::record_top, folder / "run",
                            aabblab::archived_files(folder / "run"));
-    refused({"--judge", (folder / "altered.tar.xz").string()}, "altered.tar.xz/c6/process-0.json is missing");
+    refused({"--judge", folder / "altered.tar.xz"}, "altered.tar.xz/c6/process-0.json is missing");
     CHECK(std::filesystem::is_empty(folder / "out"));
 }

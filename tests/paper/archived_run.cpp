@@ -1,15 +1,8 @@
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <csignal>
 #include <regex>
 
 #include "../experiments/program.hpp"
-#include "../experiments/temporary_folder.hpp"
-
-import aabb.std;
 
 namespace {
 
@@ -40,10 +33,8 @@ TEST_CASE("What is unpacked of an archive ends with the program, however that en
 TEST_CASE("The archived run is whole, README says what is found in it, and so does a program of another language") {
     const temporary_folder folder;
     const std::string archive = (root / "paper/archive/full_run.tar.xz").string();
-    const program_result judged = run_program({"reproduce", "--judge", archive, "--out", folder.path().string()});
-    INFO(judged.err);
-    REQUIRE(judged.status == 0);
-    CHECK(judged.err.find("not sealed") == std::string::npos);
+    const program_result judged = run_well({"reproduce", "--judge", archive, "--out", folder.path()});
+    CHECK_FALSE(holds(judged.err, "not sealed"));
     CHECK(judged.out.ends_with("These results are the published run, paper/archive/full_run.tar.xz.\n"));
 
     const std::string report = bytes_of_file(folder / "report.md");
@@ -52,11 +43,11 @@ TEST_CASE("The archived run is whole, README says what is found in it, and so do
     // A claim that the run has not measured is not in README.
     const std::string table = std::regex_replace(whole, std::regex(R"(\|[^\n]*\| undecided +\| - +\|\n)"), "");
     INFO(table);
-    REQUIRE(table.find("| C13 |") != std::string::npos);
-    CHECK(bytes_of_file(root / "README.md").find(table) != std::string::npos);
+    REQUIRE(holds(table, "| C13 |"));
+    CHECK(holds(bytes_of_file(root / "README.md"), table));
 
     const program_result again =
-        run_command({"python3", (root / "tests/paper/recompute.py").string(), folder.path().string(), archive});
+        run_command({"python3", (root / "tests/paper/recompute.py").string(), folder.path(), archive});
     INFO(again.out + again.err);
     CHECK(again.status == 0);
     CHECK(again.out.ends_with("of 14 claims recomputed, 0 differences\n"));
@@ -64,10 +55,8 @@ TEST_CASE("The archived run is whole, README says what is found in it, and so do
 
 TEST_CASE("The archived quick run is whole, and what quick runs are compared with") {
     const temporary_folder folder;
-    const program_result judged = run_program(
-        {"reproduce", "--judge", (root / "paper/archive/quick_run.tar.xz").string(), "--out", folder.path().string()});
-    INFO(judged.err);
-    REQUIRE(judged.status == 0);
-    CHECK(judged.err.find("not sealed") == std::string::npos);
+    const program_result judged =
+        run_well({"reproduce", "--judge", (root / "paper/archive/quick_run.tar.xz").string(), "--out", folder.path()});
+    CHECK_FALSE(holds(judged.err, "not sealed"));
     CHECK(judged.out.ends_with("These results are the published run, paper/archive/quick_run.tar.xz.\n"));
 }

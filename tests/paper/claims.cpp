@@ -1,20 +1,14 @@
-#include <catch2/catch_test_macros.hpp>
-#include <random>
 #include <regex>
 
 #include "../experiments/program.hpp"
-#include "../experiments/temporary_folder.hpp"
 
+#include "../matches.hpp"
 #include "worlds.hpp"
 
-import aabb.registry;
-import aabb.std;
 import aabblab.claims;
 import aabblab.conditions;
-import aabblab.configs;
 import aabblab.figures;
 import aabblab.reproduction;
-import aabblab.trials;
 import aabblab.statistics;
 import aabblab.tables;
 
@@ -86,14 +80,6 @@ std::string paper_text() {
             if (!line.starts_with("%")) text += line + "\n";
     }
     return text;
-}
-
-/// What the pattern's group takes from a text.
-std::vector<std::string> found_in(const std::string& text, const std::string& pattern) {
-    std::vector<std::string> all;
-    const std::regex wanted(pattern);
-    for (std::sregex_iterator i(text.begin(), text.end(), wanted), end; i != end; ++i) all.push_back((*i)[1]);
-    return all;
 }
 
 /// On a line over the number of objects.
@@ -246,11 +232,10 @@ TEST_CASE("The null control finds nothing where there is nothing, and says so wh
     const auto [same, nothing] = outcomes(1);
     REQUIRE(same.size() == 1);
     CHECK(same.at("no difference") > 4);
-    CHECK(nothing.find(" 0 miss 1") != std::string::npos);
+    CHECK(holds(nothing, " 0 miss 1"));
     const auto [half, something] = outcomes(4);
     CHECK(half.at("a difference") == half.at("no difference"));
-    CHECK(something.find(" " + std::to_string(half.at("a difference")) + " are decided as a difference") !=
-          std::string::npos);
+    CHECK(holds(something, " " + std::to_string(half.at("a difference")) + " are decided as a difference"));
 }
 
 TEST_CASE("A claim that is true from some size on says from which") {
@@ -335,8 +320,8 @@ TEST_CASE("The whole algorithm is judged where global search counts, too") {
     });
     const claim_result& c11 = named(all, "C11");
     CHECK(text_of(c11) == "holds in part");
-    CHECK(c11.sentence.find("% more time where detailed models touch") != std::string::npos);
-    CHECK(c11.sentence.find("23 % less time with simple models far apart") != std::string::npos);
+    CHECK(holds(c11.sentence, "% more time where detailed models touch"));
+    CHECK(holds(c11.sentence, "23 % less time with simple models far apart"));
     CHECK(c11.sentence.ends_with("% with 100,000 simple ones far apart."));
     CHECK(c11.tables.back().content.rows.front().back() == "2.00");
     CHECK(c11.tables.back().content.rows.back().back() == "66.7");
@@ -354,7 +339,7 @@ TEST_CASE("A cell size that is one cell in a scene is no grid there, and counts 
     });
     CHECK(text_of(named(all, "C5")) == "holds");
     CHECK(std::abs(named(all, "C5").primary.ratio - 0.5) < 1e-9);
-    CHECK(named(all, "C5").sentence.find("takes 2.0 times the time of the best one") != std::string::npos);
+    CHECK(holds(named(all, "C5").sentence, "takes 2.0 times the time of the best one"));
 }
 
 TEST_CASE("Input that is more ordered at one size than at others tells nothing of growth") {
@@ -392,14 +377,13 @@ TEST_CASE("An alternative counts only where the others beside it leave it standi
 TEST_CASE("What was wrong in a run is said by every later judgement") {
     const temporary_folder folder;
     worlds::write_world(folder.path(), 0.6, 0.05);
-    const program_result fine = run_program({"reproduce", "--judge", "--out", folder.path().string()});
-    CHECK(fine.status == 0);
+    run_well({"reproduce", "--judge", "--out", folder.path()});
     std::ofstream(folder / "failures.txt") << "shell is wrong on brownian, frame 3: the pair 1 2 is missing\n";
-    const program_result wrong = run_program({"reproduce", "--judge", "--out", folder.path().string()});
+    const program_result wrong = run_program({"reproduce", "--judge", "--out", folder.path()});
     CHECK(wrong.status == 1);
-    CHECK(wrong.out.find("shell is wrong on brownian, frame 3: the pair 1 2 is missing") != std::string::npos);
-    CHECK(bytes_of_file(folder / "report.md").find("**Wrong:** shell is wrong on brownian") != std::string::npos);
-    CHECK(run_program({"reproduce", "--judge", "--out", (folder / "none").string()}).status == 2);
+    CHECK(holds(wrong.out, "shell is wrong on brownian, frame 3: the pair 1 2 is missing"));
+    CHECK(holds(bytes_of_file(folder / "report.md"), "**Wrong:** shell is wrong on brownian"));
+    CHECK(run_program({"reproduce", "--judge", "--out", folder / "none"}).status == 2);
 }
 
 TEST_CASE(
@@ -421,9 +405,9 @@ TEST_CASE(
     write_reproduction(folder.path(), {&results, 1}, all, {&section, 1}, {"shell is wrong on brownian, frame 3"});
 
     const std::string page = bytes_of_file(folder / "report.html");
-    CHECK(page.find("shell is wrong on brownian, frame 3") != std::string::npos);
-    CHECK(page.find("<script") == std::string::npos);
-    CHECK(page.find("<style>\n:root{") != std::string::npos);
+    CHECK(holds(page, "shell is wrong on brownian, frame 3"));
+    CHECK_FALSE(holds(page, "<script"));
+    CHECK(holds(page, "<style>\n:root{"));
     // Figures are long addresses, and std::regex takes stack for each character.
     for (const std::string& to : found_in(page, R"((?:src|href)="([^"]{0,5}))"))
         CHECK((to.starts_with("data:") || to.starts_with("#")));
@@ -449,17 +433,17 @@ TEST_CASE(
     for (const char* file : {"figures/a_plot.svg", "tables/a_table.md"}) CHECK(std::filesystem::exists(folder / file));
     for (const char* report : {"report.html", "report.md"}) {
         const std::string text = bytes_of_file(folder / report);
-        CHECK(text.find(all.null_control.caption) != std::string::npos);
+        CHECK(holds(text, all.null_control.caption));
         for (const char* part : {"Error against run time", "A statement with its number.", "A plot.", "A table."}) {
             INFO(part);
-            CHECK(text.find(part) != std::string::npos);
+            CHECK(holds(text, part));
         }
-        CHECK(text.find("Each claim has its primary endpoints") != std::string::npos);
+        CHECK(holds(text, "Each claim has its primary endpoints"));
         // Where the file that the program was built with breaks a line, and where it ends.
-        CHECK(text.find("ratios of two compositions, or builds") != std::string::npos);
-        CHECK(text.find("never between runs or machines.") != std::string::npos);
+        CHECK(holds(text, "ratios of two compositions, or builds"));
+        CHECK(holds(text, "never between runs or machines."));
     }
-    CHECK(macros.find("\\aabbset{C5.setup}{scene brownian") != std::string::npos);
+    CHECK(holds(macros, "\\aabbset{C5.setup}{scene brownian"));
 
     for (const std::string& name : found_in(paper, R"(\\aabbfigure\{([^}#]*)\})"))
         for (const char* ending : {".svg", ".pdf", ".csv"}) {

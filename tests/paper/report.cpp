@@ -1,9 +1,8 @@
-#include <catch2/catch_test_macros.hpp>
 #include <regex>
 
 #include "../experiments/temporary_folder.hpp"
+#include "../matches.hpp"
 
-import aabb.std;
 import aabblab.claims;
 import aabblab.conditions;
 import aabblab.reproduction;
@@ -66,12 +65,6 @@ std::string row_of(const std::string& page, const std::string& id) {
     return page.substr(begin, page.find("</a>", begin) - begin);
 }
 
-std::size_t count_of(std::string_view part, std::string_view text) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1)) ++count;
-    return count;
-}
-
 }  // namespace
 
 TEST_CASE("Reports begin with the headline, and before it with what disturbed the run") {
@@ -90,7 +83,7 @@ TEST_CASE("Reports begin with the headline, and before it with what disturbed th
         }
         CHECK(told.find(all.disturbance) < told.find(all.headline.front()));
         CHECK(told.find("What the paper says in") > before);
-        CHECK(undisturbed.find(all.disturbance) == std::string::npos);
+        CHECK_FALSE(holds(undisturbed, all.disturbance));
     }
 }
 
@@ -106,7 +99,7 @@ TEST_CASE("Verdicts are compared with those of another run, and each that differ
           "does not hold; C9: here undecided, there none.");
     const reports told = written(made_up(), "4 of 5 verdicts agree with the other.");
     for (const std::string& report : {told.html, told.markdown})
-        CHECK(report.find("4 of 5 verdicts agree with the other.") != std::string::npos);
+        CHECK(holds(report, "4 of 5 verdicts agree with the other."));
 }
 
 TEST_CASE("Every claim that was measured has its interval drawn in its row, beside its verdict in words") {
@@ -115,12 +108,12 @@ TEST_CASE("Every claim that was measured has its interval drawn in its row, besi
     CHECK(count_of("class=\"claim ", page) == all.claims.size());
     for (const claim_result& c : all.claims) {
         const std::string row = row_of(page, c.id);
-        CHECK(row.find(c.claim) != std::string::npos);
-        CHECK(row.find(c.brief) != std::string::npos);
-        CHECK(page.find(c.sentence) != std::string::npos);
+        CHECK(holds(row, c.claim));
+        CHECK(holds(row, c.brief));
+        CHECK(holds(page, c.sentence));
         CHECK(count_of("<svg class=\"interval\"", row) == (c.has_primary ? 1 : 0));
         if (c.has_primary) CHECK(count_of(ratio_text(c.primary), row) == 2);
-        CHECK(page.find("<h2 id=\"" + c.id + "\">") != std::string::npos);
+        CHECK(holds(page, "<h2 id=\"" + c.id + "\">"));
     }
 }
 
@@ -128,9 +121,7 @@ TEST_CASE("What lies beyond the scale of the rows is an arrow with its number") 
     const std::string page = written(made_up()).html;
     const auto texts = [&](const std::string& id) {
         std::string all;
-        const std::string row = row_of(page, id);
-        const std::regex text("<text[^>]*>([^<]*)</text>");
-        for (std::sregex_iterator i(row.begin(), row.end(), text), end; i != end; ++i) all += (*i)[1].str() + " ";
+        for (const std::string& text : found_in(row_of(page, id), "<text[^>]*>([^<]*)</text>")) all += text + " ";
         return all;
     };
     CHECK(texts("C1") == "0.25 0.5 1 2 4 ");
@@ -141,37 +132,31 @@ TEST_CASE("What lies beyond the scale of the rows is an arrow with its number") 
     CHECK(texts("C7b") == "0.25 0.5 1 2 4 0.100 19.0 ");
     CHECK(count_of("<path", row_of(page, "C7b")) == 2);
     // Places are parts of the width, none beyond it.
-    const std::regex place("=\"(-?[0-9.]+)%\"");
-    for (std::sregex_iterator i(page.begin(), page.end(), place), end; i != end; ++i) {
-        const double percent = std::stod((*i)[1]);
-        CHECK((0 <= percent && percent <= 100));
-    }
+    for (const std::string& percent : found_in(page, "=\"(-?[0-9.]+)%\""))
+        CHECK((0 <= std::stod(percent) && std::stod(percent) <= 100));
 }
 
 TEST_CASE("The rule is drawn once, and every verdict that there can be is explained") {
     const std::string page = written(made_up()).html;
     CHECK(count_of("<svg class=\"rule\"", page) == 1);
     for (const char* word : {"less", "the same", "more", "direction open"})
-        CHECK(page.find(">" + std::string(word) + "</text>") != std::string::npos);
+        CHECK(holds(page, ">" + std::string(word) + "</text>"));
     for (const char* word : {"Holds", "Holds in part", "No difference", "Does not hold", "Undecided"})
-        CHECK(page.find(">" + std::string(word) + "</span></dt>") != std::string::npos);
-    CHECK(page.find("Verdicts by band.") != std::string::npos);
+        CHECK(holds(page, ">" + std::string(word) + "</span></dt>"));
+    CHECK(holds(page, "Verdicts by band."));
 }
 
 TEST_CASE("The page asks the network for nothing and runs nothing") {
     const std::string page = written(made_up()).html;
     for (const char* part : {"<script", "<link rel=\"stylesheet", "@import", "url(", "<iframe", "onload"})
-        CHECK(page.find(part) == std::string::npos);
-    const std::regex address(R"((src|href)="([^"]{0,5}))");
-    for (std::sregex_iterator i(page.begin(), page.end(), address), end; i != end; ++i) {
-        const std::string to = (*i)[2];
+        CHECK_FALSE(holds(page, part));
+    for (const std::string& to : found_in(page, R"((?:src|href)="([^"]{0,5}))"))
         CHECK((to.starts_with("data:") || to.starts_with("#")));
-    }
 }
 
 TEST_CASE("The paper learns from its numbers which claims there are, and what each has") {
     const std::string macros = written(made_up()).macros;
-    CHECK(macros.find("\\aabbset{claims}{C1,C7a,C7b,C8,C9}") != std::string::npos);
-    CHECK(macros.find("\\aabbset{headline}{The first sentence. The second one. The third one.}") != std::string::npos);
-    CHECK(macros.find("\\aabbset{C7a.sentence}{The verdict on C7a in words.}") != std::string::npos);
+    CHECK(holds(macros, "\\aabbset{claims}{C1,C7a,C7b,C8,C9}"));
+    CHECK(holds(macros, "\\aabbset{headline}{The first sentence. The second one. The third one.}"));
+    CHECK(holds(macros, "\\aabbset{C7a.sentence}{The verdict on C7a in words.}"));
 }

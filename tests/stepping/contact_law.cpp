@@ -1,10 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-#include <random>
-
 #include "../validation/support.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.validation;
 import aabblab.scenes;
 import aabblab.stepping;

@@ -1,10 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "../experiments/program.hpp"
-#include "../experiments/temporary_folder.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.registry;
 import aabblab.trials;
 import aabblab.scenes;
@@ -70,10 +65,7 @@ prepare = ["none", { name = "neighbour_list", margin = 0, every = 64 }]
 [measure]
 repeats = 2
 )");
-    const program_result played = run_program({"run", config.string(), "--out", (folder / "out").string()});
-    INFO(played.err);
-    REQUIRE(played.status == 0);
-    REQUIRE(played.out.find("neighbour_list:margin=0,every=64") != std::string::npos);
+    REQUIRE(holds(run_well({"run", config, "--out", folder / "out"}).out, "neighbour_list:margin=0,every=64"));
 }
 
 TEST_CASE("the scene dropped is what symplectic_euler makes of its world") {

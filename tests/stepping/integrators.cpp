@@ -1,6 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
+#include "../testing.hpp"
 
-import aabb.std;
 import aabblab.stepping;
 
 namespace {

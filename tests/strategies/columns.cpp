@@ -2,11 +2,9 @@
 
 #include "searches.hpp"
 
-import aabb.columns;
 import aabb.columns.groups;
-import aabb.partition.columns;
-import aabb.sort.bucket;
-import aabb.sweep.simd;
+import aabb.columns;
+import aabb.strategies;
 
 using namespace aabb;
 
@@ -47,10 +45,6 @@ std::uint64_t tests_of(search_by_columns& search, const std::vector<box>& boxes,
     const std::uint64_t before = search.counters()[work::box_tests];
     CHECK(found_by(search, boxes) == expected);
     return search.counters()[work::box_tests] - before;
-}
-
-box moved(const box& b, const vec3f& by) {
-    return {b.min + by, b.max + by};
 }
 
 /// On which axes a frame is flat.
@@ -116,21 +110,14 @@ TEST_CASE("groups of any size find the same pairs, in an order that no number of
             }
             if (first.empty()) first = pairs;
             CHECK(pairs == first);
-            std::ranges::sort(pairs);
-            CHECK(pairs == expected);
+            CHECK(sorted(pairs) == expected);
         }
     }
 }
 
 TEST_CASE("more boxes than one group takes are put into groups") {
     const std::vector<box> boxes = random_boxes(50'000, 80, 1, 2);
-    const auto search = global_of(columns_with(""), instrumentation::counters);
-    for (std::uint32_t id = 0; id < boxes.size(); ++id) search->insert(id);
-    std::vector<index_pair> pairs;
-    search->update(boxes);
-    search->search(pairs);
-    std::ranges::sort(pairs);
-    CHECK(pairs == true_pairs(boxes));
+    CHECK(found_by(*search_of(columns_with(""), boxes.size()), boxes) == true_pairs(boxes));
 }
 
 TEST_CASE("of a search the share is told that cuts and sorts groups, which is work of an update") {
@@ -139,18 +126,13 @@ TEST_CASE("of a search the share is told that cuts and sorts groups, which is wo
             INFO(boxes << " boxes, prepare=" << prepare);
             const auto search = global_of(composed({{strategy_kind::prepare, prepare}}));
             const auto n = static_cast<std::uint32_t>(boxes);
-            for (std::uint32_t id = 0; id < n; ++id) search->insert(id);
+            insert_all(*search, n);
             const std::vector<box> frame = random_boxes(n, side_of(n), 1, 2);
-            std::vector<index_pair> pairs;
-            search->update(frame);
-            search->search(pairs);
+            found_by(*search, frame);
             CHECK((search->share_of_update() > 0) == in_groups);
             CHECK(search->share_of_update() < 1);
             // Of pairs that are kept from the frame before, nothing.
-            for (int again = 0; again < 2; ++again) {
-                search->update(frame);
-                search->search(pairs);
-            }
+            for (int again = 0; again < 2; ++again) found_by(*search, frame);
             CHECK(search->share_of_update() == 0);
         }
 }
@@ -293,13 +275,9 @@ TEST_CASE("a few boxes far from all others do not spoil the columns of these") {
     const std::size_t n = 12'000;
     const std::vector<box> cubes = random_boxes(n, 50, 1, 5);
     const auto tests_with = [&](std::size_t every, float reach) {
+        const auto away = [&](std::size_t i) { return reach * std::sin(static_cast<float>(i)); };
         std::vector<box> boxes = cubes;
-        for (std::size_t i = 0; i < n; i += every)
-            for (int k = 0; k < 3; ++k) {
-                const float away = reach * std::sin(static_cast<float>(i + 7 * static_cast<std::size_t>(k)));
-                boxes[i].min[k] += away;
-                boxes[i].max[k] += away;
-            }
+        for (std::size_t i = 0; i < n; i += every) boxes[i] = moved(boxes[i], {away(i), away(i + 7), away(i + 14)});
         search_by_columns search(n);
         return tests_of(search, boxes, true_pairs(boxes));
     };
@@ -386,10 +364,7 @@ TEST_CASE("groups within groups are the same on any number of threads, and follo
         }
         if (first.empty()) first = pairs;
         CHECK(pairs == first);
-        for (std::size_t f = 0; f < frames.size(); ++f) {
-            std::ranges::sort(pairs[f]);
-            CHECK(pairs[f] == true_pairs(frames[f]));
-        }
+        for (std::size_t f = 0; f < frames.size(); ++f) CHECK(sorted(pairs[f]) == true_pairs(frames[f]));
     }
 }
 

@@ -3,10 +3,9 @@
 #include "costs.hpp"
 #include "searches.hpp"
 
-import aabb.partition.axial_cut;
-import aabb.partition.columns;
 import aabb.prepare.list_plan;
 import aabb.selection;
+import aabb.strategies;
 
 using namespace aabb;
 

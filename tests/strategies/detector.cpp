@@ -4,22 +4,8 @@
 #include "searches.hpp"
 
 import aabb.auto_detector;
-import aabb.build.median;
-import aabb.partition.axial_cut;
-import aabb.partition.columns;
-import aabb.partition.none;
-import aabb.prepare.split_large;
-import aabb.prepare.split_mesh;
 import aabb.selection;
-import aabb.sort.bucket;
-import aabb.sort.insertion;
-import aabb.std;
-import aabb.sweep.incremental;
-import aabb.sweep.one_axis;
-import aabb.sweep.simd;
-import aabb.tree.canonical;
-import aabb.tree.implicit;
-import aabb.triangle.exact;
+import aabb.strategies;
 
 using namespace aabb;
 
@@ -104,15 +90,12 @@ std::vector<contact> expected_contacts(const std::vector<pose>& poses, std::opti
     every_two.detect();
     std::vector<contact> found(every_two.contacts().begin(), every_two.contacts().end());
     std::erase_if(found, [&](const contact& c) { return c.a == away || c.b == away; });
-    std::ranges::sort(found);
-    return found;
+    return ::sorted(found);
 }
 
 template <class T>
 std::vector<T> sorted(std::span<const T> found) {
-    std::vector<T> all(found.begin(), found.end());
-    std::ranges::sort(all);
-    return all;
+    return ::sorted(std::vector<T>(found.begin(), found.end()));
 }
 
 /// Boxes of which some overlap, others in each frame.

@@ -1,5 +1,4 @@
 #include <xmmintrin.h>
-#include <catch2/matchers/catch_matchers_string.hpp>
 #include <cfenv>
 
 #include "../compositions.hpp"

@@ -4,11 +4,7 @@
 #include "../meshes.hpp"
 #include "../random_poses.hpp"
 
-import aabb;
-import aabb.build.median;
-import aabb.registry;
-import aabb.tree.implicit;
-import aabb.triangle.exact;
+import aabb.strategies;
 import aabb.wide_tree.child_pairs;
 import aabb.wide_tree.leaf_front;
 
@@ -16,16 +12,18 @@ using namespace aabb;
 
 namespace {
 
-std::vector<index_pair> sorted(std::vector<index_pair> pairs) {
-    std::ranges::sort(pairs);
-    return pairs;
-}
-
 composition keeping() {
     return composed({{strategy_kind::build, "sah"}, {strategy_kind::tree, "implicit:front=kept"}});
 }
 composition forgetting() {
     return composed({{strategy_kind::build, "sah"}, {strategy_kind::tree, "implicit"}});
+}
+
+std::unique_ptr<local_stage> stage_of(const composition& c, std::span<const mesh> models,
+                                      instrumentation counted = instrumentation::none) {
+    auto stage = local_of(c, counted);
+    for (const mesh& m : models) stage->add_model(m);
+    return stage;
 }
 
 /// A sheet of 2 edges² triangles, as long and broad as 1, in waves.
@@ -40,6 +38,28 @@ mesh waves(std::uint32_t edges, float height) {
 pose moved(const std::array<double, 3>& by, double turn) {
     return turned_by({1, turn, -turn / 2, turn / 3}, {by[0], by[1], by[2]});
 }
+
+/// Of one stage, what a query adds.
+class counted_queries {
+public:
+    explicit counted_queries(const mesh& m) : stage_(stage_of(keeping(), {&m, 1}, instrumentation::counters)) {}
+
+    std::uint64_t nodes_opened(const pose& pose_b, bool for_first = false) {
+        const std::uint64_t before = visits();
+        if (for_first)
+            static_cast<void>(stage_->first_pair(0, {}, 0, pose_b));
+        else
+            static_cast<void>(stage_->count_pairs(0, {}, 0, pose_b));
+        return visits() - before;
+    }
+    std::uint64_t nodes_opened_for_first(const pose& pose_b) { return nodes_opened(pose_b, true); }
+    void refit() { stage_->refit(0); }
+
+private:
+    [[nodiscard]] std::uint64_t visits() const { return stage_->counters()[work::node_visits]; }
+
+    std::unique_ptr<local_stage> stage_;
+};
 
 }  // namespace
 
@@ -131,12 +151,8 @@ TEST_CASE("kept pairs of leaves hold all that meets, however meshes creep, stop,
             for (vec3f& p : meshes.back().vertices)
                 for (int k = 0; k < 3; ++k) p[k] = (p[k] + off) * size;
         }
-        const auto kept = local_of(keeping(), instrumentation::counters);
-        const auto fresh = local_of(forgetting());
-        for (const mesh& m : meshes) {
-            kept->add_model(m);
-            fresh->add_model(m);
-        }
+        const auto kept = stage_of(keeping(), meshes, instrumentation::counters);
+        const auto fresh = stage_of(forgetting(), meshes);
         struct object {
             std::array<std::uint32_t, 2> models;
             std::array<double, 3> at;
@@ -205,11 +221,7 @@ TEST_CASE("kept pairs of leaves hold all that meets, however meshes creep, stop,
 TEST_CASE("a front is planned after two near queries, and less often after those that served nothing") {
     const box reach{{-1, -1, -1}, {1, 1, 1}};
     const model_pair of{{1, 2}, {3, 4}};
-    const auto at = [&](double x) {
-        pose p;
-        p.translation = {x, 0, 0};
-        return relative_pose({}, p, reach).to_boxes();
-    };
+    const auto at = [&](double x) { return relative_pose({}, shifted({x, 0, 0}), reach).to_boxes(); };
     leaf_front front;
     front.begin(of);
     const auto is_planned = [&](double x) { return front.note(of, at(x), reach, 1).margin.has_value(); };
@@ -223,9 +235,8 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     }
     // Of another state it is another mesh.
     CHECK_FALSE(is_planned(6));
-    CHECK_FALSE(front.note({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value());
-    CHECK_FALSE(front.note({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value());
-    CHECK(front.note({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value());
+    for (const bool planned : {false, false, true})
+        CHECK(front.note({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value() == planned);
 
     // Each front is left behind at once.
     front.begin(of);
@@ -245,35 +256,6 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     CHECK_FALSE(front.note(of, at(0), reach, 1).holds);
 }
 
-namespace {
-
-/// Of one stage, what a query adds.
-class counted_queries {
-public:
-    explicit counted_queries(const mesh& m) : stage_(local_of(keeping(), instrumentation::counters)) {
-        stage_->add_model(m);
-    }
-
-    [[nodiscard]] std::uint64_t nodes_opened(const pose& pose_b) {
-        const std::uint64_t before = visits();
-        static_cast<void>(stage_->count_pairs(0, {}, 0, pose_b));
-        return visits() - before;
-    }
-    [[nodiscard]] std::uint64_t nodes_opened_for_first(const pose& pose_b) {
-        const std::uint64_t before = visits();
-        static_cast<void>(stage_->first_pair(0, {}, 0, pose_b));
-        return visits() - before;
-    }
-    void refit() { stage_->refit(0); }
-
-private:
-    [[nodiscard]] std::uint64_t visits() const { return stage_->counters()[work::node_visits]; }
-
-    std::unique_ptr<local_stage> stage_;
-};
-
-}  // namespace
-
 TEST_CASE("a front holds all that meets at the ends of the range of floats, which margins pass") {
     constexpr float most = std::numeric_limits<float>::max();
     const auto crossing = [](bool upright) {
@@ -284,12 +266,8 @@ TEST_CASE("a front holds all that meets at the ends of the range of floats, whic
         });
     };
     const std::array meshes{crossing(false), crossing(true)};
-    const auto kept = local_of(keeping());
-    const auto forgotten = local_of(forgetting());
-    for (const mesh& m : meshes) {
-        kept->add_model(m);
-        forgotten->add_model(m);
-    }
+    const auto kept = stage_of(keeping(), meshes);
+    const auto forgotten = stage_of(forgetting(), meshes);
     std::vector<index_pair> wanted;
     forgotten->all_pairs(0, {}, 1, {}, wanted);
     CHECK(wanted.size() > 16);
@@ -327,7 +305,7 @@ TEST_CASE("objects of the same meshes have fronts of their own, in whatever orde
     // Many more than are kept pass by, and those that are asked about again stay.
     const int kept = front_keeper::most;
     for (int i = 20; i < 3 * kept; ++i) {
-        static_cast<void>(queries.nodes_opened(object(i)));
+        queries.nodes_opened(object(i));
         if (i % 40 == 0)
             for (int k = 0; k < 20; ++k) REQUIRE(queries.nodes_opened(object(k)) == 0);
     }
@@ -336,8 +314,7 @@ TEST_CASE("objects of the same meshes have fronts of their own, in whatever orde
 
 TEST_CASE("a front that makes room forgets what met") {
     const std::array<mesh, 2> meshes{waves(40, 0.1F), waves(12, 0.1F)};
-    const auto kept = local_of(keeping());
-    for (const mesh& m : meshes) kept->add_model(m);
+    const auto kept = stage_of(keeping(), meshes);
     const auto first = [&](std::uint32_t model, std::size_t i, double step) {
         const std::size_t row = i / 40;
         const vec3d by{step * static_cast<double>(i % 40), step * static_cast<double>(row), 0.03};
@@ -370,8 +347,7 @@ TEST_CASE("the pair that met last is tried first, and what did not meet is not s
     // What met and came apart.
     const auto at = [](double z) { return moved({0.17, 0.11, z}, 0); };
     double z = 0.21;
-    const auto fresh = local_of(forgetting());
-    fresh->add_model(m);
+    const auto fresh = stage_of(forgetting(), {&m, 1});
     while (!fresh->first_pair(0, {}, 0, at(z))) z -= 1e-4;
     counted_queries parting(m);
     CHECK(parting.nodes_opened_for_first(at(z)) > 0);
@@ -383,9 +359,8 @@ TEST_CASE("the pair that met last is tried first, and what did not meet is not s
 TEST_CASE("an inexact triangle test answers as if nothing were kept") {
     const mesh m = waves(40, 0.1F);
     const auto kept =
-        local_of(composed({{strategy_kind::tree, "implicit:front=kept"}, {strategy_kind::triangle, "moller"}}),
+        stage_of(composed({{strategy_kind::tree, "implicit:front=kept"}, {strategy_kind::triangle, "moller"}}), {&m, 1},
                  instrumentation::counters);
-    kept->add_model(m);
     for (int i = 0; i < 5; ++i) {
         const std::uint64_t before = kept->counters()[work::node_visits];
         static_cast<void>(kept->count_pairs(0, {}, 0, moved({0.05, 0.02, 0.03}, 0.2)));

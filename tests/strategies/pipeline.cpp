@@ -1,6 +1,5 @@
 #include "../meshes.hpp"
 
-import aabb;
 import aabb.registry;
 
 using namespace aabb;

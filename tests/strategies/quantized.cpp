@@ -3,12 +3,8 @@
 #include "../compositions.hpp"
 #include "../meshes.hpp"
 
-import aabb;
-import aabb.build.median;
-import aabb.registry;
-import aabb.tree.quantized;
+import aabb.strategies;
 import aabb.tree.quantized_planes;
-import aabb.tree.sibling_planes;
 
 using namespace aabb;
 
@@ -144,8 +140,7 @@ TEST_CASE("quantized boxes hold what is below them, the closer the more bits the
     for (unsigned bits = quantized_planes::least_bits; bits <= quantized_planes::most_bits; ++bits) {
         INFO(bits << " bits");
         const double inflation = inflation_of({m, median_build(), with_bits(bits)});
-        CHECK(inflation > 0);
-        CHECK(inflation < before);
+        CHECK_BETWEEN(0, inflation, before);
         before = inflation;
         for (const mesh& extreme : extremes(m)) CHECK(inflation_of({extreme, median_build(), with_bits(bits)}) >= 0);
     }
@@ -179,8 +174,7 @@ TEST_CASE("quantized trees lose no pair, whatever the bits and wherever the mesh
             stage->add_model(m);
             std::vector<index_pair> pairs;
             stage->self_pairs(0, pairs);
-            std::ranges::sort(pairs);
-            return pairs;
+            return sorted(pairs);
         };
         const std::vector<index_pair> truth = pairs_of("canonical");
         for (unsigned bits = quantized_planes::least_bits; bits <= quantized_planes::most_bits; ++bits)

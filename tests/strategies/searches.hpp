@@ -23,8 +23,7 @@ std::vector<aabb::index_pair> found_by(Search& search, std::span<const aabb::box
     std::vector<aabb::index_pair> pairs;
     search.update(boxes);
     search.search(pairs);
-    std::ranges::sort(pairs);
-    return pairs;
+    return sorted(pairs);
 }
 
 /// Does it say that it does without this?
@@ -36,6 +35,10 @@ bool leaves_out(const Search& search, std::string_view what) {
 
 inline aabb::box cube(float at, float edge) {
     return {{at, at, at}, {at + edge, at + edge, at + edge}};
+}
+
+inline aabb::box moved(const aabb::box& b, const aabb::vec3f& by) {
+    return {b.min + by, b.max + by};
 }
 
 /// Everywhere in a world of about 100, alike in every run.

@@ -1,11 +1,8 @@
 // What `auto` selects.
 
-#include <catch2/catch_test_macros.hpp>
-
 #include "../compositions.hpp"
 
 import aabb.selection;
-import aabb.std;
 
 using namespace aabb;
 

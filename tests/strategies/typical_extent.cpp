@@ -1,17 +1,10 @@
-#include <catch2/catch_test_macros.hpp>
-
-#include "../compositions.hpp"
+#include "searches.hpp"
 
 import aabb.prepare.mean_extent;
-import aabb.std;
 
 using namespace aabb;
 
 namespace {
-
-box cube(float at, float edge) {
-    return {{at, at, at}, {at + edge, at + edge, at + edge}};
-}
 
 constexpr float half_of_all = std::numeric_limits<float>::max() / 2;
 constexpr box half_space{{-half_of_all, -half_of_all, -half_of_all}, {0, half_of_all, half_of_all}};
@@ -23,14 +16,9 @@ double typical(const std::vector<box>& boxes) {
 }
 
 /// How many pairs are in a list with a margin in extents; less than 0 where none is kept.
-double listed_of(std::vector<box> boxes) {
-    aabb::composition c;
-    c[strategy_kind::prepare] = {"neighbour_list", {{"margin", "0.1"}}};
-    const auto stage = compose_global_search(c, instrumentation::none);
-    for (std::uint32_t id = 0; id < boxes.size(); ++id) stage->insert(id);
-    stage->update(boxes);
-    std::vector<index_pair> pairs;
-    stage->search(pairs);
+double listed_of(const std::vector<box>& boxes) {
+    const auto stage = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=0.1"}}), boxes.size());
+    found_by(*stage, boxes);
     for (const stage_plan& plan : stage->plans())
         if (plan.what == "list of neighbours") return plan.told["pairs"];
     return -1;

@@ -5,23 +5,13 @@
 #include "../random_poses.hpp"
 #include "../triangle_pairs.hpp"
 
-import aabb;
-import aabb.build.median;
-import aabb.simd;
-import aabb.tree.implicit;
-import aabb.triangle.exact;
-import aabb.triangle.moller;
+import aabb.strategies;
+import aabb.wide_tree;
 import aabb.wide_tree.batched_walk;
 import aabb.wide_tree.box_images;
 import aabb.wide_tree.child_pairs;
-import aabb.wide_tree.eight_boxes;
-import aabb.wide_tree.leaf_front;
-import aabb.wide_tree.leaf_slab;
 import aabb.wide_tree.nearest_walk;
-import aabb.wide_tree.triangle_block;
 import aabb.wide_tree.triangle_filter;
-import aabb.wide_tree.vertex_lists;
-import aabb.wide_tree.wide_node;
 
 using namespace aabb;
 
@@ -62,10 +52,14 @@ struct asked : local_detection<implicit_tree, Triangle, Counters> {
     }
 };
 
+/// One of nine coordinates, corner by corner.
+float in_row(std::size_t row, const triangle3f& t) {
+    return t[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+}
+
 /// Into a lane of a block.
 void set(triangle_block& block, std::size_t lane, const triangle3f& t) {
-    for (std::size_t row = 0; row < 9; ++row)
-        block.corner[row / 3][row % 3][lane] = t[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+    for (std::size_t row = 0; row < 9; ++row) block.corner[row / 3][row % 3][lane] = in_row(row, t);
 }
 
 /// As many pairs as a vector has lanes, coordinate by coordinate.
@@ -73,10 +67,16 @@ struct pairs_of_a_vector {
     std::array<std::array<float, simd::width>, 9> a{};
     std::array<std::array<float, simd::width>, 9> b{};
 
+    void fill(triangle_pairs::generator& g, float size) {
+        std::uniform_real_distribution<float> coordinate(-1, 1);
+        for (auto* rows : {&a, &b})
+            for (auto& row : *rows)
+                for (float& x : row) x = size * coordinate(g);
+    }
     void set(std::size_t lane, const triangle3f& s, const triangle3f& t) {
         for (std::size_t row = 0; row < 9; ++row) {
-            a[row][lane] = s[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
-            b[row][lane] = t[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+            a[row][lane] = in_row(row, s);
+            b[row][lane] = in_row(row, t);
         }
     }
     [[nodiscard]] filtered_pairs filtered() const {
@@ -95,6 +95,11 @@ std::uint64_t any_of(std::uint64_t bits) {
     const auto some = [] { return *rc::gen::arbitrary<std::uint64_t>(); };
     const std::uint64_t chosen = bits & *rc::gen::element(~std::uint64_t{0}, some(), some() & some() & some() & some());
     return chosen != 0 ? chosen : std::bit_floor(bits);
+}
+
+/// Bits that are set, two of them where there are two.
+bool are_two_of(std::uint64_t bits, std::uint32_t first, std::uint32_t second) {
+    return (bits >> first & bits >> second & 1U) != 0 && (first == second) == (std::popcount(bits) == 1);
 }
 
 std::vector<box> any_boxes() {
@@ -447,15 +452,12 @@ TEST_CASE("the filter decides as the exact test does, and leaves what rounding p
 
 TEST_CASE("the filter leaves few of ordinary pairs undecided, of every size") {
     triangle_pairs::generator g{6};
-    std::uniform_real_distribution<float> coordinate(-1, 1);
     for (const float size : {1e-9F, 1.0F, 1e9F}) {
         std::size_t undecided = 0;
         std::size_t hits = 0;
         for (int round = 0; round < 2000; ++round) {
             pairs_of_a_vector pairs;
-            for (auto* rows : {&pairs.a, &pairs.b})
-                for (auto& row : *rows)
-                    for (float& x : row) x = size * coordinate(g);
+            pairs.fill(g, size);
             const filtered_pairs found = pairs.filtered();
             undecided += static_cast<std::size_t>(std::popcount(found.undecided));
             hits += static_cast<std::size_t>(std::popcount(found.hits));
@@ -468,14 +470,11 @@ TEST_CASE("the filter leaves few of ordinary pairs undecided, of every size") {
 
 TEST_CASE("the filter decides on neighbours, whichever corner they share, of every size") {
     triangle_pairs::generator g{7};
-    std::uniform_real_distribution<float> coordinate(-1, 1);
     for (const float size : {1e-45F, 1e-30F, 1.0F, 1e30F, 3e38F})
         for (std::size_t corner_a = 0; corner_a < 3; ++corner_a)
             for (std::size_t corner_b = 0; corner_b < 3; ++corner_b) {
                 pairs_of_a_vector pairs;
-                for (auto* rows : {&pairs.a, &pairs.b})
-                    for (auto& row : *rows)
-                        for (float& x : row) x = size * coordinate(g);
+                pairs.fill(g, size);
                 for (std::size_t k = 0; k < 3; ++k) pairs.b[3 * corner_b + k] = pairs.a[3 * corner_a + k];
                 CAPTURE(size, corner_a, corner_b);
                 CHECK(pairs.filtered().hits == simd::every_lane);
@@ -595,9 +594,7 @@ TEST_CASE("of pairs those two are found whose centres are the least distance apa
             return sum;
         };
         const auto [first, second] = two_nearest(asked, node, others);
-        RC_ASSERT((asked >> first & 1U) != 0);
-        RC_ASSERT((asked >> second & 1U) != 0);
-        RC_ASSERT((first == second) == (std::popcount(asked) == 1));
+        RC_ASSERT(are_two_of(asked, first, second));
         const auto follows = [&](std::uint32_t p, std::uint32_t q) {
             return distance(p) <= distance(q) * (1 + 1e-4) + 1e-6;
         };
@@ -618,9 +615,7 @@ TEST_CASE("two pairs are found where boxes are of any size, as far apart as floa
             for (std::size_t i = 0; i < children.size(); ++i) pairs |= std::uint64_t{1} << (8 * j + i);
         const std::uint64_t asked = any_of(pairs);
         const auto [first, second] = two_nearest(asked, node, in_eight(boxes));
-        RC_ASSERT((asked >> first & 1U) != 0);
-        RC_ASSERT((asked >> second & 1U) != 0);
-        RC_ASSERT((first == second) == (std::popcount(asked) == 1));
+        RC_ASSERT(are_two_of(asked, first, second));
     }));
 }
 
@@ -761,10 +756,8 @@ TEST_CASE("triangles of a leaf are read and moved as they are one by one, and he
                     const triangle3f image = to_a(t);
                     const box around = bounds_of(image);
                     for (std::size_t row = 0; row < 9; ++row) {
-                        const auto c = static_cast<int>(row / 3);
-                        const auto k = static_cast<int>(row % 3);
-                        RC_ASSERT(block.corner[row / 3][row % 3][i] == t[c][k]);
-                        RC_ASSERT(moved.corner[row / 3][row % 3][i] == image[c][k]);
+                        RC_ASSERT(block.corner[row / 3][row % 3][i] == in_row(row, t));
+                        RC_ASSERT(moved.corner[row / 3][row % 3][i] == in_row(row, image));
                     }
                     for (int k = 0; k < 3; ++k) {
                         RC_ASSERT(bounds[static_cast<std::size_t>(k)][i] == around.min[k]);

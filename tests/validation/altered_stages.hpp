@@ -1,10 +1,7 @@
 #pragma once
 
-import aabb.counters;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.pipeline;
-import aabb.std;
+#include "../altered_search.hpp"
+
 import aabb.validation;
 
 // Imports modules, so it is included after every other header.
@@ -14,23 +11,10 @@ namespace aabb {
 using pair_list = std::vector<index_pair>;
 
 /// Brute force, but what it finds is changed.
-class altered_boxes final : public global_stage {
+class altered_boxes final : public altered_search {
 public:
-    explicit altered_boxes(std::function<void(pair_list&)> change) : change_(std::move(change)) {}
-    void insert(std::uint32_t id) override { whole_->insert(id); }
-    void remove(std::uint32_t id) override { whole_->remove(id); }
-    void update(std::span<const box> boxes) override { whole_->update(boxes); }
-    void search(pair_list& pairs) override {
-        whole_->search(pairs);
-        change_(pairs);
-    }
-    [[nodiscard]] work_counters counters() const override { return {}; }
+    explicit altered_boxes(change after) : altered_search(make_box_engine("brute_force"), [] {}, std::move(after)) {}
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"a", 40}, {"b", 2}}; }
-    [[nodiscard]] std::vector<omission> left_out() const override { return {}; }
-
-private:
-    std::unique_ptr<global_stage> whole_ = make_box_engine("brute_force");
-    std::function<void(pair_list&)> change_;
 };
 
 /// The same of meshes, query by query; an empty function changes nothing.

@@ -1,13 +1,4 @@
-#include <catch2/catch_test_macros.hpp>
-#include <random>
-
-#include "support.hpp"
-
-// Imports, so it comes last.
 #include "engines.hpp"
-
-import aabb.std;
-import aabb.validation;
 
 using namespace aabb;
 

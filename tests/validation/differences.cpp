@@ -1,8 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "support.hpp"
 
-import aabb.std;
 import aabb.validation;
 
 using namespace aabb;
@@ -76,9 +73,45 @@ TEST_CASE("class names are in the order of the classes, each once") {
     for (const auto& [of, name] : named) REQUIRE(difference_class_names[static_cast<std::size_t>(of)] == name);
 }
 
-TEST_CASE("degenerate: a triangle without area") {
-    require_class(difference_class::degenerate, floor_triangle, {{{1, 1, -1}, {1, 1, 1}, {1, 1, 0}}});
-    require_class(difference_class::degenerate, floor_triangle, {{{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}});
+TEST_CASE("a difference is of the class that two triangles say, in either order") {
+    using enum difference_class;
+    const triangle3f standing{{{1, 1, 0}, {1, 2, 3}, {2, 1, 3}}};
+    const std::pair<difference_class, triangle3f> at_the_floor[] = {
+        // A triangle without area.
+        {degenerate, {{{1, 1, -1}, {1, 1, 1}, {1, 1, 0}}}},
+        {degenerate, {{{9, 9, 9}, {9, 9, 9}, {9, 9, 9}}}},
+        // In one plane, apart or not.
+        {coplanar, moved(floor_triangle, {1, 1, 0})},
+        {coplanar, moved(floor_triangle, {4, 0, 0})},
+        {coplanar, moved(floor_triangle, {9, 0, 0})},
+        // Points in common, but nothing passes through: a corner on the face, an edge in the face, two corners, a
+        // corner on an edge, two edges that cross.
+        {touching, {{{1, 1, 0}, {1, 2, 3}, {2, 1, 3}}}},
+        {touching, {{{1, 1, 0}, {1, 2, 0}, {2, 1, 3}}}},
+        {touching, {{{4, 0, 0}, {5, 0, 1}, {5, 1, 1}}}},
+        {touching, {{{2, 0, 0}, {2, -1, 2}, {3, -1, 2}}}},
+        {touching, {{{2, 0, -1}, {2, 0, 1}, {2, -3, 0}}}},
+        // A hair apart, or a hair through, and more than that.
+        {near, moved(standing, {0, 0, 1e-6F})},
+        {near, moved(standing, {0, 0, -1e-6F})},
+        {other, moved(standing, {0, 0, 1e-4F})},
+        {other, moved(standing, {0, 0, -1e-4F})},
+        // A corner beside a corner, and a corner beside an edge; the planes are far from each other.
+        {near, {{{4.000001F, 0, 0}, {5, 0, 1}, {5, 1, 1}}}},
+        {other, {{{4.0001F, 0, 0}, {5, 0, 1}, {5, 1, 1}}}},
+        {near, {{{2, -1e-6F, 0}, {2, -1, 2}, {3, -1, 2}}}},
+        // Plainly through each other, or plainly apart.
+        {other, {{{1, 1, -2}, {1, 2, 3}, {2, 1, 3}}}},
+        {other, {{{1, 1, 2}, {1, 2, 3}, {2, 1, 3}}}}};
+    for (std::size_t row = 0; const auto& [expected, t] : at_the_floor) {
+        INFO("row " << row++);
+        require_class(expected, floor_triangle, t);
+    }
+    // Far from the origin and tiny.
+    require_class(other, moved(floor_triangle, {4096, 4096, 4096}),
+                  moved({{{1, 1, -2}, {1, 2, 3}, {2, 1, 3}}}, {4096, 4096, 4096}));
+    require_class(other, {{{0, 0, 0}, {4e-40F, 0, 0}, {0, 4e-40F, 0}}},
+                  {{{1e-40F, 1e-40F, -2e-40F}, {1e-40F, 2e-40F, 3e-40F}, {2e-40F, 1e-40F, 3e-40F}}});
 }
 
 TEST_CASE("pose rounding: the answer changes when the moved vertices are rounded to float") {
@@ -87,41 +120,4 @@ TEST_CASE("pose rounding: the answer changes when the moved vertices are rounded
     const triangle3f at_one = moved(floor_triangle, {0, 0, 1});
     const pose lifted{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1e-12}};
     require_class(difference_class::pose_rounding, at_one, {}, standing, lifted);
-}
-
-TEST_CASE("coplanar: in one plane, apart or not") {
-    require_class(difference_class::coplanar, floor_triangle, moved(floor_triangle, {1, 1, 0}));
-    require_class(difference_class::coplanar, floor_triangle, moved(floor_triangle, {4, 0, 0}));
-    require_class(difference_class::coplanar, floor_triangle, moved(floor_triangle, {9, 0, 0}));
-}
-
-TEST_CASE("touching: points in common, but nothing passes through") {
-    // A corner on the face, an edge in the face, two corners, a corner on an edge, two edges that cross.
-    require_class(difference_class::touching, floor_triangle, {{{1, 1, 0}, {1, 2, 3}, {2, 1, 3}}});
-    require_class(difference_class::touching, floor_triangle, {{{1, 1, 0}, {1, 2, 0}, {2, 1, 3}}});
-    require_class(difference_class::touching, floor_triangle, {{{4, 0, 0}, {5, 0, 1}, {5, 1, 1}}});
-    require_class(difference_class::touching, floor_triangle, {{{2, 0, 0}, {2, -1, 2}, {3, -1, 2}}});
-    require_class(difference_class::touching, floor_triangle, {{{2, 0, -1}, {2, 0, 1}, {2, -3, 0}}});
-}
-
-TEST_CASE("near: a hair apart, or a hair through") {
-    const triangle3f standing{{{1, 1, 0}, {1, 2, 3}, {2, 1, 3}}};
-    require_class(difference_class::near, floor_triangle, moved(standing, {0, 0, 1e-6F}));
-    require_class(difference_class::near, floor_triangle, moved(standing, {0, 0, -1e-6F}));
-    require_class(difference_class::other, floor_triangle, moved(standing, {0, 0, 1e-4F}));
-    require_class(difference_class::other, floor_triangle, moved(standing, {0, 0, -1e-4F}));
-    // A corner beside a corner, and a corner beside an edge; the planes are far from each other.
-    require_class(difference_class::near, floor_triangle, {{{4.000001F, 0, 0}, {5, 0, 1}, {5, 1, 1}}});
-    require_class(difference_class::other, floor_triangle, {{{4.0001F, 0, 0}, {5, 0, 1}, {5, 1, 1}}});
-    require_class(difference_class::near, floor_triangle, {{{2, -1e-6F, 0}, {2, -1, 2}, {3, -1, 2}}});
-}
-
-TEST_CASE("other: plainly through each other, or plainly apart") {
-    require_class(difference_class::other, floor_triangle, {{{1, 1, -2}, {1, 2, 3}, {2, 1, 3}}});
-    require_class(difference_class::other, floor_triangle, {{{1, 1, 2}, {1, 2, 3}, {2, 1, 3}}});
-    // Far from the origin and tiny.
-    require_class(difference_class::other, moved(floor_triangle, {4096, 4096, 4096}),
-                  moved({{{1, 1, -2}, {1, 2, 3}, {2, 1, 3}}}, {4096, 4096, 4096}));
-    require_class(difference_class::other, {{{0, 0, 0}, {4e-40F, 0, 0}, {0, 4e-40F, 0}}},
-                  {{{1e-40F, 1e-40F, -2e-40F}, {1e-40F, 2e-40F, 3e-40F}, {2e-40F, 1e-40F, 3e-40F}}});
 }

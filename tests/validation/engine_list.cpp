@@ -1,8 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "support.hpp"
 
-import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <catch2/catch_test_macros.hpp>
+#include "support.hpp"
 
 import aabb.pipeline;
-import aabb.std;
 import aabb.validation;
 
 // Imports modules, so it is included after every other header.

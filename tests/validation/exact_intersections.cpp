@@ -1,14 +1,8 @@
 #include <CGAL/Exact_rational.h>
 
-#include <catch2/catch_test_macros.hpp>
-#include <random>
-
 #include "pairs.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.triangle.intersection;
-import aabb.validation;
 
 // CGAL's exact construction behind plain types, and what is held against it.
 

@@ -4,13 +4,7 @@
 #include "altered_stages.hpp"
 
 import aabb.base;
-import aabb.counters;
 import aabb.extreme;
-import aabb.geometry;
-import aabb.local_detection;
-import aabb.pipeline;
-import aabb.std;
-import aabb.validation;
 
 using namespace aabb;
 

@@ -1,11 +1,7 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "../compositions.hpp"
 
 import aabb.extreme;
 import aabb.pipeline;
-import aabb.registry;
-import aabb.std;
 import aabb.validation;
 
 using namespace aabb;

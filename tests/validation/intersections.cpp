@@ -1,11 +1,6 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "pairs.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.triangle.intersection;
-import aabb.validation;
 
 // What two triangles have in common, against CGAL's exact construction.
 

@@ -1,12 +1,4 @@
-#include <catch2/catch_test_macros.hpp>
-
-#include "support.hpp"
-
-// Imports, so it comes last.
 #include "engines.hpp"
-
-import aabb.std;
-import aabb.validation;
 
 using namespace aabb;
 
@@ -168,8 +160,7 @@ TEST_CASE("mesh engines follow vertices that were numbered anew, and refuse othe
         const auto pairs = [&] {
             std::vector<index_pair> all;
             engine.all_pairs(a, c.pose_a, b, c.pose_b, all);
-            std::ranges::sort(all);
-            return all;
+            return sorted(all);
         };
         const std::vector<index_pair> before = pairs();
         // One more, too, of no triangle.

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <catch2/catch_test_macros.hpp>
-
 #include "../triangle_pairs.hpp"
 
-import aabb.std;
 import aabb;
+import aabb.validation;
 
 // Imports modules, so it is included after every other header.
 

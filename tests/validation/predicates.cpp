@@ -1,10 +1,10 @@
 #include <CGAL/Exact_rational.h>
 #include <CGAL/determinant.h>
 
-#include <catch2/catch_test_macros.hpp>
 #include <random>
 
-import aabb.std;
+#include "../testing.hpp"
+
 import aabb;
 
 // Signs of orientations against rational arithmetic, on points made for each way in which they are found; how often

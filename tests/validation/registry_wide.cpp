@@ -1,15 +1,5 @@
-#include <catch2/catch_test_macros.hpp>
-#include <random>
-
 #include "../compositions.hpp"
-#include "support.hpp"
-
-// Imports, so it comes last.
 #include "engines.hpp"
-
-import aabb.registry;
-import aabb.std;
-import aabb.validation;
 
 using namespace aabb;
 

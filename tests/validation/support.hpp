@@ -1,10 +1,9 @@
 #pragma once
 #include <random>
 
-#include "../sheets.hpp"
+#include "../testing.hpp"
 
-import aabb.std;
-import aabb;
+#include "../sheets.hpp"
 
 namespace aabb {
 
@@ -13,20 +12,10 @@ inline float uniform(std::mt19937& random, float low, float high) {
     return low + (high - low) * (static_cast<float>(random() >> 8) * 0x1p-24F);
 }
 
-inline std::vector<index_pair> sorted(std::vector<index_pair> pairs) {
-    std::ranges::sort(pairs);
-    return pairs;
-}
-
 /// The sentence with which a call refuses its input.
 template <class Call>
 std::string refusal_in(Call call) {
-    try {
-        call();
-    } catch (const input_error& error) {
-        return error.what();
-    }
-    return "no refusal";
+    return ::refusal_in<input_error>(call);
 }
 
 /// What a global stage finds in one frame.

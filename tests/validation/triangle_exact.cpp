@@ -1,11 +1,6 @@
-#include <catch2/catch_test_macros.hpp>
-
 #include "pairs.hpp"
 
-import aabb.std;
-import aabb;
 import aabb.triangle.exact;
-import aabb.validation;
 
 // The exact triangle test against CGAL's exact kernel.
 

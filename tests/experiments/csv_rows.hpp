@@ -1,0 +1,17 @@
+#pragma once
+
+#include "program.hpp"
+
+import aabblab.results;
+
+/// The rows of a CSV file below its columns' names, each cell by the name of its column.
+[[nodiscard]] inline std::vector<std::map<std::string, std::string>> csv_rows(const std::filesystem::path& file) {
+    const auto records = aabblab::read_csv(bytes_of_file(file), file.string()).records;
+    std::vector<std::map<std::string, std::string>> rows;
+    for (const aabblab::csv_record& record : std::span(records).subspan(1)) {
+        REQUIRE(record.fields.size() == records[0].fields.size());
+        auto& row = rows.emplace_back();
+        for (std::size_t c = 0; c < record.fields.size(); ++c) row[records[0].fields[c]] = record.fields[c];
+    }
+    return rows;
+}
