@@ -61,17 +61,9 @@ inline constexpr std::array<cost_info, 15> cost_infos{{
     {&cost_model::node_visit, "node_visit", "ns/visit", "visiting a pair of nodes"},
 }};
 
-namespace detail {
-cost_model in_force;
-}  // namespace detail
-
 /// The costs in force: the defaults, unless others were set. Strategies read them when they plan.
-[[nodiscard]] const cost_model& machine_costs() noexcept {
-    return detail::in_force;
-}
+[[nodiscard]] const cost_model& machine_costs() noexcept;
 /// For the whole process: before anything is composed, and while nobody else reads them.
-void set_machine_costs(const cost_model& costs) noexcept {
-    detail::in_force = costs;
-}
+void set_machine_costs(const cost_model& costs) noexcept;
 
 }  // namespace aabb
