@@ -65,7 +65,7 @@ struct scene_outlook {
     /// that share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with
     /// meshes of 5,000 to 200,000. Meshes are taken to be alike.
     /// @param longer in ns
-    [[nodiscard]] std::size_t queries_that_repay(double longer, double share) const {
+    [[nodiscard]] inline std::size_t queries_that_repay(double longer, double share) const {
         constexpr double visits_a_root = 21;
         constexpr double many = 1e18;
         if (triangles == 0) return static_cast<std::size_t>(many);
@@ -73,7 +73,7 @@ struct scene_outlook {
                            (machine_costs().node_visit * visits_a_root * share * std::sqrt(triangles_of_two()));
         return static_cast<std::size_t>(std::clamp(std::ceil(all), 0.0, many));
     }
-    [[nodiscard]] double triangles_of_two() const {
+    [[nodiscard]] inline double triangles_of_two() const {
         return 2 * static_cast<double>(triangles) / static_cast<double>(meshes);
     }
 };
