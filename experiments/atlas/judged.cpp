@@ -87,7 +87,7 @@ scene_filter kind_is(std::string kind) {
     return [kind = std::move(kind)](const atlas_scene& s) { return s.scene.kind == kind; };
 }
 
-/// The same two where so many move by so much.
+/// Both arms compared at each pair of number of boxes and displacement.
 std::vector<stated_ratio> moves(const std::string& arm, const std::string& base,
                                 std::initializer_list<std::pair<double, double>> cases) {
     std::vector<stated_ratio> all;
@@ -97,7 +97,7 @@ std::vector<stated_ratio> moves(const std::string& arm, const std::string& base,
     return all;
 }
 
-/// The same two with so many boxes.
+/// Both arms compared at each number of boxes.
 std::vector<stated_ratio> of_sizes(const std::string& arm, const std::string& base, std::initializer_list<double> sizes,
                                    expectation expected = expectation::less, double band = equivalence_band) {
     std::vector<stated_ratio> all;

@@ -23,8 +23,8 @@ auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std:
 
 using list_of_frame = std::vector<aabb::projection>;
 
-/// The list of one axis for several frames: each with the keys of its frame in the order of the frame before. So many
-/// that the processor does not learn their comparisons by heart.
+/// The lists of one axis, a frame each: the keys of the frame in the order of the frame before. With fewer frames,
+/// branch prediction would learn the outcomes of their comparisons.
 std::vector<list_of_frame> play_lists(std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t frames = 16;
     constexpr int axis = 0;

@@ -213,7 +213,7 @@ void add_column_trial(std::vector<trial>& all, const made_scene& scene, const ch
     }));
 }
 
-/// With more columns than pay and with fewer too, so that their costs can be told apart.
+/// Adds trials with more and with fewer columns than are optimal, so that the fit can separate their costs.
 void add_column_trials(std::vector<trial>& all, const made_scene& scene) {
     constexpr double many_times = 8;
     aabb::cost_model more;
@@ -234,7 +234,7 @@ scene_choice moving(const char* kind, std::size_t objects, const char* displacem
             {}};
 }
 
-/// As many as make a frame's time plain; odd, so that as many lists serve as are made.
+/// Enough frames for a stable time per frame. The number is odd, so that as many frames reuse a list as build one.
 std::size_t frames_for(std::size_t objects) {
     return objects < 1000 ? 41 : objects < 10'000 ? 17 : 9;
 }

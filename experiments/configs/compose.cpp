@@ -227,7 +227,7 @@ void read_compositions(const document& doc, const node* compose, experiment& e) 
         doc.fail(compose->line, "compose is an empty list; expected a table");
 }
 
-/// A triangle test alone is held against pairs of triangles; anything else is a composition, which plays scenes whole.
+/// A curve of a triangle test alone is measured on pairs of triangles, any other curve on whole scenes.
 error_curve curve_of(const document& doc, const node& written) {
     doc.require_table("curve", written);
     std::vector<std::string> known{"label"};

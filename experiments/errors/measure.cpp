@@ -168,7 +168,7 @@ std::vector<error_point> points_of(const error_study& study, const scene_choice&
 
 constexpr std::size_t hits_in_batch = 1024;
 constexpr std::uint64_t most_pairs_a_hit = 1000;
-/// Tests of libraries take part in one batch of so many: CGAL's takes a hundred times as long as ours.
+/// Library tests run on one batch in `library_share`: CGAL's takes a hundred times as long as ours.
 constexpr std::size_t library_share = 16;
 
 void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {

@@ -53,7 +53,7 @@ struct figure {
     std::string caption;  ///< one sentence or two; stands beside the figure in reports, not in it
     figure_axis x;
     figure_axis y;
-    std::vector<series> lines{};  ///< ten can be told apart; where there are panels, these are in each of them
+    std::vector<series> lines{};  ///< up to ten are distinguishable; with panels, drawn in each
     std::vector<figure_mark> marks{};
     std::vector<figure_panel> panels{};  ///< without any it is one plot
 };
