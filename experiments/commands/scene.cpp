@@ -210,15 +210,13 @@ std::string option_names(const std::string& parameter) {
 
 /// One option for each parameter of any kind of scene, which refuses those it does not have.
 void add_parameters(const command_parser& command, scene_request& request) {
-    std::map<std::string, std::string> helps;
     for (const scene_info& kind : scene_kinds())
-        for (const aabb::parameter_info& p : kind.parameters) {
-            std::string& help = helps[p.name];
-            help += fmt::format("{}{}", help.empty() ? "Of " : ", ", kind.name);
-            if (!p.fallback.empty()) help += fmt::format(" (default {})", p.fallback);
-        }
-    for (const auto& [name, help] : helps) command.option(option_names(name) + " V", &request.settings[name], help);
-    command.footer("aabblab list scenes tells what these parameters mean and may be.");
+        for (const aabb::parameter_info& p : kind.parameters)
+            if (const auto [at, is_new] = request.settings.try_emplace(p.name); is_new)
+                command.option(option_names(p.name) + " V", &at->second, "").hidden();
+    command.footer(
+        "`aabblab list scenes` has the scenes and their parameters, which are options here: --n 500 or --objects 500, "
+        "--displacement 0.2.");
 }
 
 }  // namespace
@@ -227,7 +225,7 @@ void add_scene(const command_parser& program) {
     const command_parser command =
         program.add_command("scene", "Write a scene as a recording of boxes, or as a picture");
     auto& request = command.calls(write_scene);
-    command.argument("NAME", &request.kind, fmt::format("One of {}", fmt::join(scene_names(), ", ")));
+    command.argument("NAME", &request.kind, "The scene");
     add_parameters(command, request);
     command
         .option("--mesh MESH", &request.meshes,

@@ -53,9 +53,10 @@ struct listed_strategies {
 };
 
 /// Adds what { others_but = […] } in the list of a kind stands for: whatever is named neither there nor in the list.
-void add_others(const document& doc, aabb::strategy_kind kind, const node& but, listed_strategies& listed) {
+void add_others(const document& doc, aabb::strategy_kind kind, const std::vector<located_text>& but,
+                listed_strategies& listed) {
     std::set<std::string> named;
-    for (const located_text& name : doc.texts_of(but.key, but)) {
+    for (const located_text& name : but) {
         doc.at(name.line, [&] { aabb::require_known(kind, {name.text, {}}); });
         named.insert(name.text);
     }
@@ -70,10 +71,7 @@ void add_others(const document& doc, aabb::strategy_kind kind, const node& but, 
 listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
     if (!value) return {{std::nullopt}, {}};
     node named = *value;
-    const auto stands_for_others = [](const node& item) { return item.find("others_but") != nullptr; };
-    const auto others = std::ranges::find_if(value->items, stands_for_others);
-    const bool has_others = value->kind == node_kind::list && others != value->items.end();
-    if (has_others) named.items.erase(named.items.begin() + (others - value->items.begin()));
+    const auto but = doc.take_others(named);
     const auto require = [kind](const aabb::strategy_choice& choice) {
         if (choice.name == "auto")
             throw aabb::input_error("auto is no " + std::string(name_of(kind)) + ": leave " +
@@ -81,13 +79,10 @@ listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, c
         aabb::require_known(kind, choice);
     };
     listed_strategies listed;
-    if (!has_others || !named.items.empty())
+    if (!but || !named.items.empty())
         for (const aabb::strategy_choice& choice : choices_of(doc, named, aabb::strategies(kind)[0].name, require))
             listed.choices.emplace_back(choice);
-    if (has_others) {
-        doc.require_keys(*others, " beside others_but", {"others_but"});
-        add_others(doc, kind, *others->find("others_but"), listed);
-    }
+    if (but) add_others(doc, kind, *but, listed);
     return listed;
 }
 

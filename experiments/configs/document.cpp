@@ -231,6 +231,16 @@ std::vector<located_text> document::texts_of(const std::string& key, const node&
     return texts;
 }
 
+std::optional<std::vector<located_text>> document::take_others(node& list) const {
+    const auto stands_for_others = [](const node& item) { return item.find("others_but") != nullptr; };
+    const auto others = std::ranges::find_if(list.items, stands_for_others);
+    if (list.kind != node_kind::list || others == list.items.end()) return std::nullopt;
+    require_keys(*others, " beside others_but", {"others_but"});
+    std::vector<located_text> but = texts_of("others_but", *others->find("others_but"));
+    list.items.erase(others);
+    return but;
+}
+
 std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
     if (value.is_scalar()) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");

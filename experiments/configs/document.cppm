@@ -69,6 +69,9 @@ public:
     [[nodiscard]] std::vector<located_text> texts_of(const std::string& key, const node& value) const;
     /// What a key multiplies by: a scalar, or the scalars of a list.
     [[nodiscard]] std::vector<located_text> alternatives_of(const std::string& key, const node& value) const;
+    /// Takes { others_but = […] } out of a list.
+    /// @returns the names in it; nothing where the list has none
+    [[nodiscard]] std::optional<std::vector<located_text>> take_others(node& list) const;
     /// Refuses lists that multiply to too much, before anything is made of them: a short text can ask for anything.
     /// @param of what they multiply to, as in "compositions"
     /// @param factors how long the lists are

@@ -37,6 +37,22 @@ const scene_info& info_of(const document& doc, const located_text& kind) {
     return *found;
 }
 
+/// { others_but = […] } stands for every generated scene of boxes that is named neither there nor in the list.
+std::vector<located_text> kinds_of(const document& doc, node list) {
+    const auto but = doc.take_others(list);
+    if (!but) return doc.alternatives_of("kind", list);
+    std::vector<located_text> names = doc.texts_of("kind", list);
+    for (const located_text& name : *but) info_of(doc, name);
+    for (const scene_info& info : scene_kinds()) {
+        const auto is_named = [&](const auto& in) {
+            return std::ranges::count(in, info.name, &located_text::text) > 0;
+        };
+        if (!info.has_meshes && !info.plays_file && !is_named(*but) && !is_named(names))
+            names.push_back({info.name, list.line});
+    }
+    return names;
+}
+
 /// The keys of a scene that are not settings.
 constexpr std::string_view own_keys[] = {"kind", "seed", "meshes", "without_data"};
 
@@ -188,7 +204,7 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
     const node scene = sized(doc, written, size);
     const node& kinds =
         doc.needed(scene, "kind", "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
-    const std::vector<located_text> names = doc.alternatives_of("kind", kinds);
+    const std::vector<located_text> names = kinds_of(doc, kinds);
     for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
     const node* own_seed = scene.find("seed");
     const std::vector<std::optional<std::uint64_t>> all_seeds = seeds_of(doc, own_seed ? own_seed : seed);

@@ -136,7 +136,13 @@ template <class Vertices, class Triangles>
         made.vertices.push_back({static_cast<float>(at(0)), static_cast<float>(at(1)), static_cast<float>(at(2))});
     });
     for_each(triangles, [&](auto at) {
-        const auto corner = [&](std::ptrdiff_t k) { return static_cast<std::uint32_t>(at(k)); };
+        const auto corner = [&](std::ptrdiff_t k) {
+            const std::int64_t v = at(k);
+            if (v < 0 || v > std::numeric_limits<std::uint32_t>::max())
+                throw input_error("triangle " + std::to_string(made.triangles.size()) + " uses vertex " +
+                                  std::to_string(v) + ", which there cannot be");
+            return static_cast<std::uint32_t>(v);
+        };
         made.triangles.push_back({corner(0), corner(1), corner(2)});
     });
     require_valid(made);

@@ -124,7 +124,9 @@ public:
             while (levels_.size() <= depth) levels_.emplace_back();
             column_groups& groups = levels_[depth];
             worker_threads alone(1);
-            if (put_into_groups(group, kept, plan, groups, alone) == fill_result::whole) {
+            fill_result filled{};
+            times_.add(group.boxes.size(), [&] { filled = put_into_groups(group, kept, plan, groups, alone); }, [] {});
+            if (filled == fill_result::whole) {
                 counters_.add(work::moves, groups.copies());
                 for (std::uint32_t g = 0; g < groups.size(); ++g)
                     search(partition, groups.group(g), groups.region(g, within), kept.groups[g], pairs, depth + 1);

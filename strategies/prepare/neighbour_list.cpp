@@ -67,6 +67,8 @@ public:
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         boxes_ = boxes;
+        // Nobody asked for the pairs of the frame that it was to be made of.
+        if (std::exchange(is_to_be_made_, false)) state_ = state::nothing;
         const bool comes_any = objects_.arrivals() > 0;
         const bool leaves_any = objects_.any_departures();
         frame_.change([&] { objects_.settle(); });
@@ -97,6 +99,9 @@ public:
         frame_.require_taken();
         require_ieee_arithmetic();
         const std::size_t before = pairs.size();
+        const bool searches = is_to_be_made_ || state_ <= state::watching;
+        if (is_to_be_made_) search_->search(list_.begin());
+        is_to_be_made_ = false;
         switch (state_) {
             case state::nothing:
             case state::searching:
@@ -107,6 +112,7 @@ public:
                 break;
         }
         outlook_.pairs = pairs.size() - before;
+        share_of_update_ = searches ? search_->share_of_update() : 0;
     }
 
     [[nodiscard]] work_counters counters() const override {
@@ -121,9 +127,7 @@ public:
         return parts;
     }
 
-    [[nodiscard]] double share_of_update() const override {
-        return state_ <= state::watching ? search_->share_of_update() : 0;
-    }
+    [[nodiscard]] double share_of_update() const override { return share_of_update_; }
 
     [[nodiscard]] std::vector<stage_plan> plans() const override {
         std::vector<stage_plan> all = search_->plans();
@@ -301,7 +305,7 @@ private:
             grow(kept_, margin_, grown_);
         }
         search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
-        search_->search(list_.begin());
+        is_to_be_made_ = true;
         state_ = adapts() && margin_ == 0 ? state::resting : state::listing;
     }
 
@@ -375,6 +379,8 @@ private:
     frame_state frame_;
     std::span<const box> boxes_;
     state state_ = state::nothing;
+    bool is_to_be_made_ = false;  // the list, in the search
+    double share_of_update_ = 0;
     std::vector<box> kept_;   // boxes that the list is about
     std::vector<box> grown_;  // the same with their margin
     pair_list list_;          // what it found, less the pairs of objects that have left

@@ -109,8 +109,11 @@ TEST_CASE("a mesh is made of a user's matrices, whichever way points stand in th
     const Eigen::MatrixX3d in_rows = points.transpose().cast<double>();
     const Eigen::MatrixX3i of_rows = corners.transpose().cast<int>();
     REQUIRE(is_tetrahedron(to_mesh(in_rows, of_rows)));
-    Eigen::MatrixX3i beyond = of_rows;
-    beyond(2, 1) = -1;
-    REQUIRE_THROWS_MATCHES(to_mesh(in_rows, beyond), input_error,
-                           MessageMatches(ContainsSubstring("triangle 2 uses vertex 4294967295")));
+    Eigen::Matrix<std::int64_t, Eigen::Dynamic, 3> beyond = of_rows.cast<std::int64_t>();
+    for (const std::int64_t wrong : {std::int64_t{-1}, (std::int64_t{1} << 32) + 1}) {
+        beyond(2, 1) = wrong;
+        REQUIRE_THROWS_MATCHES(
+            to_mesh(in_rows, beyond), input_error,
+            MessageMatches(ContainsSubstring("triangle 2 uses vertex " + std::to_string(wrong) + ", which")));
+    }
 }

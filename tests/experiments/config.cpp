@@ -48,6 +48,22 @@ TEST_CASE("Strategies that a config does not name are played where it says so, b
             "test.toml:6: unknown sort 'shall'; did you mean 'shell'?");
 }
 
+TEST_CASE("Scenes that a config does not name are played where it says so, but none of meshes or of a file") {
+    const auto config_with = [](const std::string& kinds) {
+        return "name = \"test\"\n[[scene]]\nframes = 1\nkind = " + kinds + "\n[compose]\nsort = \"std\"\n";
+    };
+    std::set<std::string> expected;
+    for (const aabblab::scene_info& info : aabblab::scene_kinds())
+        if (!info.has_meshes && !info.plays_file && info.name != "pile") expected.insert(info.name);
+    std::vector<std::string> played;
+    for (const auto& scene : parsed(config_with("[\"still\", { others_but = [\"pile\"] }]")).scenes)
+        played.push_back(scene.kind);
+    CHECK(played.front() == "still");
+    CHECK(std::set(played.begin(), played.end()) == expected);
+    CHECK(played.size() == expected.size());
+    CHECK(refusal_of(config_with("[{ others_but = [\"pill\"] }]")).starts_with("test.toml:4: unknown scene 'pill'"));
+}
+
 TEST_CASE("Every list multiplies") {
     const experiment e = parsed(R"(
 name = "test"
