@@ -28,16 +28,23 @@ composition cut_by(const char* partition) {
 
 }  // namespace
 
-TEST_CASE("auto selects what is exact, whatever work costs") {
+TEST_CASE("auto selects a strategy of each kind with a reason, exact and not refused, whatever work costs") {
     REQUIRE(rc::check([] {
-        const these_costs costs(any_costs());
-        const scene_outlook scene{*rc::gen::inRange<std::size_t>(0, 100), *rc::gen::inRange<std::size_t>(0, 1'000'000),
-                                  *rc::gen::inRange<std::size_t>(0, 1'000'000)};
-        const composition c = select_composition({}, scene);
+        const these_costs costs(*rc::gen::arbitrary<bool>() ? any_costs() : cost_model());
+        // From scenes of which nothing is known to those of meshes that are asked often.
+        scene_outlook scene;
+        if (*rc::gen::arbitrary<bool>())
+            scene = {*rc::gen::inRange<std::size_t>(0, 100), *rc::gen::inRange<std::size_t>(0, 1'000'000),
+                     *rc::gen::inRange<std::size_t>(0, 1'000'000)};
+        const std::vector<selected_strategy> all = select_strategies({}, scene);
+        RC_ASSERT(all.size() == strategy_kind_count);
+        RC_ASSERT(std::ranges::none_of(all, [](const selected_strategy& one) { return one.rule.empty(); }));
+        const composition c = composed_of(all);
         for (const enum stage of : {stage::global_search, stage::local_detection}) {
             RC_ASSERT(refusal_of(c, of).empty());
             RC_ASSERT(is_exact(c, of));
         }
+        RC_ASSERT(needs_meshes(c).empty());
     }));
 }
 

@@ -58,7 +58,7 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                 const these_costs costs(*rc::gen::arbitrary<bool>() ? any_costs() : cost_model());
                 const aabb::composition composition = *rc::gen::elementOf(compositions);
                 RC_LOG(text_of_global(composition));
-                const auto stage = global_of(composition, instrumentation::none);
+                const auto stage = global_of(composition);
                 const int world = *rc::gen::element(1, 6, 40);
                 const bool flat = *rc::gen::arbitrary<bool>();
                 // A little, so that lists may serve.
@@ -94,7 +94,7 @@ TEST_CASE("a composition refuses what makes no sense, searches no frame that it 
     inverted[2].max[0] = -1;
     for (const aabb::composition& composition : all_global_compositions()) {
         INFO(text_of_global(composition));
-        const auto stage = global_of(composition, instrumentation::none);
+        const auto stage = global_of(composition);
         std::vector<index_pair> pairs;
         const auto is_not_searched = [&] {
             CHECK_REFUSED(stage->search(pairs),
@@ -117,28 +117,28 @@ TEST_CASE("a composition refuses what makes no sense, searches no frame that it 
     }
 }
 
-TEST_CASE("counted compositions do the same and say what they did") {
-    std::vector<box> boxes;
-    for (int i = 0; i < 200; ++i) {
+TEST_CASE("every composition finds the pairs where all boxes moved, counted or not, and says what it did") {
+    constexpr std::uint32_t n = 200;
+    std::array<std::vector<box>, 2> frames;
+    for (std::uint32_t i = 0; i < n; ++i) {
         const auto x = static_cast<float>(i * 37 % 100);
         const auto y = static_cast<float>(i * 61 % 90);
-        boxes.push_back({{x, y, 0}, {x + 5, y + 5, 5}});
-    }
-    // Apart from each other by more than any margin.
-    std::vector<box> apart;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        frames[0].push_back({{x, y, 0}, {x + 5, y + 5, 5}});
+        // Apart from each other by more than any margin.
         const float way = 0.5F + 20 * static_cast<float>(i % 3);
-        apart.push_back(moved(boxes[i], {way, way, way}));
+        frames[1].push_back(moved(frames[0].back(), {way, way, way}));
     }
+    const std::array expected{overlapping(frames[0]), overlapping(frames[1])};
     for (const aabb::composition& composition : all_global_compositions()) {
         INFO(text_of_global(composition));
-        const auto plain = global_of(composition, instrumentation::none);
-        const auto counted = search_of(composition, boxes.size());
-        insert_all(*plain, boxes.size());
-        for (const auto& frame : {boxes, apart}) CHECK(found_by(*plain, frame) == found_by(*counted, frame));
+        const auto plain = global_of(composition);
+        const auto counted = search_of(composition, n);
+        insert_all(*plain, n);
+        for (std::size_t f = 0; f < frames.size(); ++f)
+            for (const auto* stage : {&plain, &counted}) CHECK(found_by(**stage, frames[f]) == expected[f]);
         // Whoever sorts by comparing counts those, whoever does not the entries moved.
         if (!tests_all(composition))
-            CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= boxes.size() - 1);
+            CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= n - 1);
         CHECK(counted->counters()[work::box_tests] > 0);
         CHECK(plain->counters()[work::box_tests] == 0);
     }

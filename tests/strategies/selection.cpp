@@ -32,25 +32,7 @@ std::vector<composition> accepted_by_name(enum stage of) {
     return all;
 }
 
-/// From scenes of which nothing is known to those of meshes that are asked often.
-const std::vector<scene_outlook> scenes{{},        {0, 0, 0},   {1, 20'417, 1}, {100'000, 20'417, 100'000},
-                                        {2, 0, 1}, {1000, 0, 1}};
-
 }  // namespace
-
-TEST_CASE("auto selects a strategy of each kind with a reason, exact, of which nothing is refused") {
-    for (const scene_outlook& scene : scenes) {
-        const std::vector<selected_strategy> all = select_strategies({}, scene);
-        REQUIRE(all.size() == strategy_kind_count);
-        for (const selected_strategy& one : all) CHECK_FALSE(one.rule.empty());
-        const composition c = composed_of(all);
-        for (const enum stage of : {stage::global_search, stage::local_detection}) {
-            CHECK(refusal_of(c, of).empty());
-            CHECK(is_exact(c, of));
-        }
-        CHECK(needs_meshes(c).empty());
-    }
-}
 
 TEST_CASE("auto keeps what is named, whatever it is, and completes it where it can be completed") {
     for (const enum stage of : {stage::global_search, stage::local_detection}) {

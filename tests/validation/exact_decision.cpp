@@ -86,18 +86,3 @@ TEST_CASE("the exact decision sees the last bit") {
     REQUIRE(!exactly_intersect(slope, triangle3d{{{1, third, 0}, {1, third, 0}, {1, third, 0}}}));
     REQUIRE(exactly_intersect(slope, triangle3d{{{1, third, 0}, {1, third + 1e-16, 0}, {1, third, 0}}}));
 }
-
-TEST_CASE("triangles without area are the segments and points they are") {
-    const triangle3f t{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
-    const auto point = [](float x, float y, float z) { return triangle3f{{{x, y, z}, {x, y, z}, {x, y, z}}}; };
-    const triangle3f through{{{1, 1, -1}, {1, 1, 3}, {1, 1, 1}}};
-    REQUIRE(exactly_intersect(t, point(1, 1, 0)));
-    REQUIRE(exactly_intersect(t, point(2, 2, 0)));
-    REQUIRE(!exactly_intersect(t, point(2.0000002F, 2, 0)));
-    REQUIRE(exactly_intersect(through, t));
-    REQUIRE(exactly_intersect(through, point(1, 1, 2)));
-    REQUIRE(!exactly_intersect(through, point(1, 1, 3.5F)));
-    REQUIRE(exactly_intersect(through, triangle3f{{{0, 1, 2}, {1, 1, 2}, {0.5F, 1, 2}}}));
-    REQUIRE(exactly_intersect(point(1, 1, 1), point(1, 1, 1)));
-    REQUIRE(!exactly_intersect(point(1, 1, 1), point(1, 1, 2)));
-}
