@@ -1,6 +1,4 @@
-#include <rapidcheck.h>
-
-#include "../triangle_pairs.hpp"
+#include "../testing.hpp"
 
 import aabb;
 import aabb.triangle.exact;
@@ -12,30 +10,6 @@ using aabb::triangle3f;
 using aabb::vec3d;
 
 namespace {
-
-template <class Real>
-bool meet(const triangle_pairs::pair& pair) {
-    using triangle = aabb::triangle3<Real>;
-    return aabb::exact_triangle::intersects(triangle_pairs::as<triangle>(pair[0]),
-                                            triangle_pairs::as<triangle>(pair[1]));
-}
-
-triangle_pairs::point any_point(int reach) {
-    triangle_pairs::point p{};
-    for (double& x : p) x = *rc::gen::inRange(-reach, reach + 1);
-    return p;
-}
-
-triangle_pairs::triangle any_triangle(int reach) {
-    return {any_point(reach), any_point(reach), any_point(reach)};
-}
-
-/// Weights of a point of a triangle, in quarters.
-std::array<double, 3> any_weights() {
-    const int a = *rc::gen::inRange(0, 5);
-    const int b = *rc::gen::inRange(0, 5 - a);
-    return {double(a), double(b), double(4 - a - b)};
-}
 
 struct known {
     std::string what;
@@ -125,35 +99,4 @@ TEST_CASE("one ulp decides") {
     const triangle3d huge{{{-1e300, -1e300, 0}, {1e300, -1e300, 0}, {0, 1e300, 0}}};
     CHECK(aabb::exact_triangle::intersects(huge, corner_at(0)));
     CHECK_FALSE(aabb::exact_triangle::intersects(huge, corner_at(0x1p-1074)));
-}
-
-TEST_CASE("triangles through one point meet") {
-    REQUIRE(rc::check("a common point with weights in quarters", [] {
-        const triangle_pairs::triangle s = any_triangle(100);
-        const std::array<double, 3> w = any_weights();
-        triangle_pairs::triangle t = any_triangle(100);
-        for (std::size_t k = 0; k < 3; ++k)  // p = (t0 + t1 + 2 t2) / 4
-            t[2][k] = (w[0] * s[0][k] + w[1] * s[1][k] + w[2] * s[2][k] - t[0][k] - t[1][k]) / 2;
-        RC_ASSERT(meet<float>({s, t}));
-        RC_ASSERT(meet<double>({s, t}));
-    }));
-}
-
-TEST_CASE("triangles on two sides of a plane are apart") {
-    REQUIRE(rc::check("with the least distance between them that integers allow", [] {
-        const triangle_pairs::point normal = any_point(5);
-        RC_PRE(normal[0] != 0 || normal[1] != 0 || normal[2] != 0);
-        const auto height = [&](const triangle_pairs::point& p) {
-            return normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2];
-        };
-        const triangle_pairs::triangle s = any_triangle(5);
-        triangle_pairs::triangle t = any_triangle(5);
-        const double top = std::max({height(s[0]), height(s[1]), height(s[2])});
-        const double bottom = std::min({height(t[0]), height(t[1]), height(t[2])});
-        const double steps = std::max(0.0, std::floor((top - bottom) / height(normal)) + 1);
-        for (triangle_pairs::point& p : t)
-            for (std::size_t k = 0; k < 3; ++k) p[k] += steps * normal[k];
-        RC_ASSERT(!meet<float>({s, t}));
-        RC_ASSERT(!meet<double>({s, t}));
-    }));
 }
