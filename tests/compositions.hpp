@@ -69,6 +69,14 @@ inline std::vector<aabb::composition> all_global_compositions() {
 inline std::vector<aabb::composition> all_local_compositions() {
     return all_compositions(aabb::stage::local_detection);
 }
+inline bool is_exact_locally(const aabb::composition& c) {
+    return is_exact(c, aabb::stage::local_detection);
+}
+inline std::vector<aabb::composition> exact_local_compositions() {
+    std::vector<aabb::composition> all = all_local_compositions();
+    std::erase_if(all, [](const aabb::composition& c) { return !is_exact_locally(c); });
+    return all;
+}
 
 /// These strategies, as the command line takes them, and what goes with them: `composed({{kind::sort, "shell"}})`.
 inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy_kind, const char*>> choices) {
@@ -88,7 +96,4 @@ inline auto global_of(const aabb::composition& c, aabb::instrumentation counted 
 }
 inline auto local_of(const aabb::composition& c, aabb::instrumentation counted = aabb::instrumentation::none) {
     return aabb::compose_local_detection(c, counted);
-}
-inline bool is_exact_locally(const aabb::composition& c) {
-    return is_exact(c, aabb::stage::local_detection);
 }

@@ -59,6 +59,11 @@ template <class T, class Allocator>
     return all;
 }
 
+template <class T>
+[[nodiscard]] std::vector<T> sorted(std::span<const T> all) {
+    return sorted(std::vector<T>(all.begin(), all.end()));
+}
+
 /// The sentence with which a call is refused; "accepted" where it is not.
 template <class Error, class Call>
 std::string refusal_in(Call call) {

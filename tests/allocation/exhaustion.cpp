@@ -1,8 +1,8 @@
 // Memory that runs out at any allocation, in every stage there is: afterwards a stage is exact or refuses.
 
+#include "../boxes.hpp"
 #include "../compositions.hpp"
 #include "../meshes.hpp"
-#include "../strategies/overlapping.hpp"
 #include "counted_new.hpp"
 
 import aabb.validation;

@@ -6,19 +6,8 @@ using namespace aabb;
 
 namespace {
 
-pose any_pose() {
-    std::array<double, 4> q{};
-    for (double& c : q) c = uniform(-1, 1);
-    q[0] += 2;
-    return turned_by(q, {uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)});
-}
-
 vec3d column(const pose& p, std::size_t j) {
     return {p.rotation[j], p.rotation[3 + j], p.rotation[6 + j]};
-}
-
-double product(const vec3d& p, const vec3d& q) {
-    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
 /// The point may lie on a face, an edge or a corner.
@@ -46,8 +35,8 @@ answer tested(const pose& pose_a, const box& a, const pose& pose_b, const box& b
 
 TEST_CASE("boxes that hold a vertex and its image are parted by no axis, even where they only touch there") {
     REQUIRE(rc::check([] {
-        const pose pose_a = any_pose();
-        const pose pose_b = any_pose();
+        const pose pose_a = any_turned(any_vector(3));
+        const pose pose_b = any_turned(any_vector(3));
         vec3f vertex{};
         for (float& c : vertex.at) c = static_cast<float>(uniform(-5, 5));
         const box b = around(vertex);
@@ -59,12 +48,12 @@ TEST_CASE("boxes that hold a vertex and its image are parted by no axis, even wh
 
 TEST_CASE("boxes with a gap along an axis are parted by it") {
     REQUIRE(rc::check([] {
-        const pose pose_a = any_pose();
-        pose pose_b = any_pose();
+        const pose pose_a = any_turned(any_vector(3));
+        pose pose_b = any_turned(any_vector(3));
         const auto axis = *rc::gen::inRange<std::size_t>(0, 15);
         vec3d along = column(axis < 3 ? pose_a : pose_b, axis % 3);
         if (axis >= 6) along = cross(column(pose_a, axis % 3), column(pose_b, axis / 3 - 2));
-        const double length = std::sqrt(product(along, along));
+        const double length = std::sqrt(dot(along, along));
         RC_PRE(length > 0.1);
         for (double& c : along.at) c /= length;
         // Boxes about their frames' origins, so that B's is as far off as both reach.
@@ -77,8 +66,8 @@ TEST_CASE("boxes with a gap along an axis are parted by it") {
             a.min[k] = -a.max[k];
             b.min[k] = -b.max[k];
             const auto j = static_cast<std::size_t>(k);
-            reach += std::abs(product(along, column(pose_a, j))) * double{a.max[k]} +
-                     std::abs(product(along, column(pose_b, j))) * double{b.max[k]};
+            reach += std::abs(dot(along, column(pose_a, j))) * double{a.max[k]} +
+                     std::abs(dot(along, column(pose_b, j))) * double{b.max[k]};
         }
         for (int k = 0; k < 3; ++k) pose_b.translation[k] = pose_a.translation[k] + along[k] * reach;
         const answer both = tested(pose_a, a, pose_b, b);

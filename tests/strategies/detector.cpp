@@ -88,14 +88,9 @@ std::vector<contact> expected_contacts(const std::vector<pose>& poses, std::opti
     every_two.update(poses);
     every_two.search();
     every_two.detect();
-    std::vector<contact> found(every_two.contacts().begin(), every_two.contacts().end());
+    std::vector<contact> found = sorted(every_two.contacts());
     std::erase_if(found, [&](const contact& c) { return c.a == away || c.b == away; });
-    return ::sorted(found);
-}
-
-template <class T>
-std::vector<T> sorted(std::span<const T> found) {
-    return ::sorted(std::vector<T>(found.begin(), found.end()));
+    return found;
 }
 
 /// Boxes of which some overlap, others in each frame.
@@ -110,7 +105,7 @@ std::vector<box> boxes_of(int frame) {
 }
 
 template <class Detector>
-void find_pairs(Detector& detector) {
+void find_pairs(Detector&& detector) {
     CHECK_THROWS_AS(detector.pairs(boxes_of(0)), input_error);  // nothing was inserted
     insert_all(detector, 40);
     std::vector<bool> without_7(40, true);
@@ -132,7 +127,7 @@ void find_pairs(Detector& detector) {
 }
 
 template <class Detector>
-void find_contacts(Detector& detector) {
+void find_contacts(Detector&& detector) {
     for (int frame = 0; frame < 6; ++frame) {
         const std::vector<pose> poses = poses_of(frame);
         const std::vector<contact> all = expected_contacts(poses);
@@ -166,25 +161,18 @@ std::size_t bytes_of_part(const std::vector<part_bytes>& parts, const std::strin
 
 TEST_CASE(
     "a detector of boxes finds the pairs that overlap, of whoever is present, and goes on after a refused frame") {
-    detector<bare_search> bare;
-    find_pairs(bare);
+    find_pairs(detector<bare_search>());
     detector<counted_search> counted;
     find_pairs(counted);
     CHECK(counted.global().counters()[work::box_tests] > 0);
     axial_cut_partition::config one_axis;
     one_axis.axes = 1;
-    detector<cut_search> cut(cut_search({}, axial_cut_partition(one_axis), {}));
-    find_pairs(cut);
-    detector<column_search_of_all> columns;
-    find_pairs(columns);
-    detector<global_search<insertion_sort, none_partition, incremental_sweep>> coherent;
-    find_pairs(coherent);
-    detector<prepared_search<split_large_prepare, bare_search>> prepared;
-    find_pairs(prepared);
-    auto_detector selected;
-    find_pairs(selected);
-    auto_detector named({"prepare=none", "sort=shell:gaps=ciura", "partition=none"});
-    find_pairs(named);
+    find_pairs(detector<cut_search>(cut_search({}, axial_cut_partition(one_axis), {})));
+    find_pairs(detector<column_search_of_all>());
+    find_pairs(detector<global_search<insertion_sort, none_partition, incremental_sweep>>());
+    find_pairs(detector<prepared_search<split_large_prepare, bare_search>>());
+    find_pairs(auto_detector());
+    find_pairs(auto_detector({"prepare=none", "sort=shell:gaps=ciura", "partition=none"}));
 }
 
 TEST_CASE("a detector of meshes finds the contacts of whoever is present, and goes on after a refused frame") {
@@ -193,17 +181,15 @@ TEST_CASE("a detector of meshes finds the contacts of whoever is present, and go
     detector<counted_search, counted_detection> counted(meshes, mesh_of);
     find_contacts(counted);
     CHECK(counted.local().counters()[work::triangle_tests] > 0);
-    detector<column_search_of_all, mesh_detection<median_build, implicit_tree, exact_triangle>> usual(meshes, mesh_of);
-    find_contacts(usual);
+    using usual_detection = mesh_detection<median_build, implicit_tree, exact_triangle>;
+    find_contacts(detector<column_search_of_all, usual_detection>(meshes, mesh_of));
     detector<prepared_search<split_mesh_prepare, bare_search>, bare_detection> parted(
         meshes, mesh_of, prepared_search<split_mesh_prepare, bare_search>(split_mesh_prepare({.size = 1})));
     find_contacts(parted);
     // Pairs of parts, of which one object pair may have several.
     CHECK(parted.candidates().size() != bare.candidates().size());
-    auto_detector selected(meshes, mesh_of);
-    find_contacts(selected);
-    auto_detector named(meshes, mesh_of, {"prepare=split_mesh:size=1", "tree=compressed"}, 1);
-    find_contacts(named);
+    find_contacts(auto_detector(meshes, mesh_of));
+    find_contacts(auto_detector(meshes, mesh_of, {"prepare=split_mesh:size=1", "tree=compressed"}, 1));
 }
 
 TEST_CASE("the bytes of a detector have no part that it is not made of") {

@@ -1,7 +1,6 @@
 #include <rapidcheck.h>
 #include <catch2/catch_approx.hpp>
 
-#include "../validation/support.hpp"
 #include "searches.hpp"
 
 import aabb.prepare.list_pause;
@@ -79,7 +78,7 @@ struct travellers {
 
     /// A frame whose pairs must be exact; the margin of its list.
     double play(const std::vector<box>& boxes) {
-        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+        CHECK(found_by(*stage, boxes) == overlapping(boxes));
         return margin_of(*stage);
     }
 
@@ -91,7 +90,7 @@ struct travellers {
 /// Tests of boxes that a frame takes, whose pairs must be exact.
 std::uint64_t tests_of(global_stage& stage, const std::vector<box>& boxes) {
     const std::uint64_t before = stage.counters()[work::box_tests];
-    CHECK(pairs_of(stage, boxes) == overlapping(boxes));
+    CHECK(found_by(stage, boxes) == overlapping(boxes));
     return stage.counters()[work::box_tests] - before;
 }
 
@@ -118,7 +117,7 @@ played played_about_homes(int frames, Displacement displacement) {
     for (int frame = 0; frame < frames; ++frame) {
         const std::vector<box> boxes = cubes.at([&](std::size_t i) { return displacement(frame, i); });
         const work_counters before = stage->counters();
-        const std::vector<index_pair> found = pairs_of(*stage, boxes);
+        const std::vector<index_pair> found = found_by(*stage, boxes);
         REQUIRE(found == overlapping(boxes));
         p.pairs.push_back(found.size());
         p.tests.push_back(stage->counters()[work::box_tests] - before[work::box_tests]);
@@ -157,29 +156,29 @@ TEST_CASE("a neighbour list is searched for again when an object leaves its grow
     const auto stage = search_of(c, boxes.size());
     // Each search makes cells anew.
     const auto cells = [&] { return stage->counters()[work::subsets]; };
-    CHECK(pairs_of(*stage, boxes).empty());
+    CHECK(found_by(*stage, boxes).empty());
     const std::uint64_t first = cells();
     CHECK(first > 0);
     boxes[0] = cube(0.5F);
     boxes[1] = cube(1.5F);
-    CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 1}});
+    CHECK(found_by(*stage, boxes) == std::vector<index_pair>{{0, 1}});
     CHECK(cells() == first);
     stage->remove(3);
-    CHECK(pairs_of(*stage, boxes).size() == 1);
+    CHECK(found_by(*stage, boxes).size() == 1);
     CHECK(cells() == first);
     boxes[2] = cube(2.25F);
-    CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 1}, {1, 2}});
+    CHECK(found_by(*stage, boxes) == std::vector<index_pair>{{0, 1}, {1, 2}});
     const std::uint64_t second = cells();
     CHECK(second > first);
     boxes[3] = cube(0);
     stage->insert(3);
-    CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 1}, {0, 3}, {1, 2}});
+    CHECK(found_by(*stage, boxes) == std::vector<index_pair>{{0, 1}, {0, 3}, {1, 2}});
     CHECK(cells() > second);
 }
 
 TEST_CASE("what a list planned is told in numbers, and in a sentence that has them") {
     const auto stage = search_of(listing("0.5", "0"), 2);
-    CHECK(pairs_of(*stage, std::vector<box>{cube(0), cube(1.75F)}).empty());
+    CHECK(found_by(*stage, std::vector<box>{cube(0), cube(1.75F)}).empty());
     const std::vector<stage_plan> plans = stage->plans();
     REQUIRE(!plans.empty());
     CHECK(plans.back().what == "list of neighbours");
@@ -218,7 +217,7 @@ TEST_CASE("a neighbour list serves boxes that move alike, however far, and is ex
                     boxes[id].max[k] = std::max(boxes[id].min[k], boxes[id].max[k] + ways[id][k]);
                 }
             const std::uint64_t before = counted->counters()[work::moves];
-            RC_ASSERT(pairs_of(*counted, boxes) == pairs_of(*exact, boxes));
+            RC_ASSERT(found_by(*counted, boxes) == found_by(*exact, boxes));
             served += drift > 0 && counted->counters()[work::moves] == before;
         }
     }));
@@ -243,7 +242,7 @@ TEST_CASE("without a margin of its own a list is kept where it pays, and nothing
             for (std::size_t id = 0; id < boxes.size(); ++id)
                 boxes[id] = moved(boxes[id], {id / 100 % 2 == frame / 16 % 2 ? way : -way, 0, 0});
             const std::uint64_t before = listed->counters()[work::moves];
-            REQUIRE(pairs_of(*listed, boxes) == pairs_of(*plain, boxes));
+            REQUIRE(found_by(*listed, boxes) == found_by(*plain, boxes));
             found += listed->counters()[work::moves] > before;
         }
         return found;
@@ -269,8 +268,8 @@ TEST_CASE("a stale list misses pairs until its search comes round, and invents n
         std::vector<box> boxes(n);
         for (std::uint32_t frame = 0; frame < 9; ++frame) {
             for (box& b : boxes) b = cube(static_cast<float>(*rc::gen::inRange(0, 30)) / 2);
-            const std::vector<index_pair> all = pairs_of(*exact, boxes);
-            const std::vector<index_pair> found = pairs_of(*stale, boxes);
+            const std::vector<index_pair> all = found_by(*exact, boxes);
+            const std::vector<index_pair> found = found_by(*stale, boxes);
             RC_ASSERT(std::ranges::includes(all, found));
             // With a margin of its own each search comes when it is due, unless nothing moved.
             if (frame % every == 0 && margin != "auto") RC_ASSERT(found == all);
@@ -296,7 +295,7 @@ TEST_CASE("a neighbour list goes on after a frame that its search refuses") {
     std::vector<box> boxes{cube(0), cube(1e6F)};
     CHECK_THROWS_AS(stage->update(boxes), input_error);
     boxes = {box{{0, 0, 0}, {0, 0, 0}}, box{{0, 0, 0}, {0, 0, 0}}};
-    CHECK(pairs_of(*stage, boxes).size() == 1);
+    CHECK(found_by(*stage, boxes).size() == 1);
 }
 
 TEST_CASE("the margin is a number of at least 0, or auto") {
@@ -315,7 +314,7 @@ TEST_CASE("boxes that came to rest are not tested again") {
         for (int frame = 0; frame < frames; ++frame) {
             for (std::size_t i = 1; i <= moving; ++i) boxes[i] = moved(boxes[i], {0, 0.004F, 0});
             const std::uint64_t before = listed->counters()[work::box_tests];
-            CHECK(pairs_of(*listed, boxes).size() == 999);
+            CHECK(found_by(*listed, boxes).size() == 999);
             tested += listed->counters()[work::box_tests] > before;
         }
         return tested;
@@ -331,9 +330,9 @@ TEST_CASE("boxes that came to rest are not tested again") {
 TEST_CASE("boxes that never move are not tested again after two frames") {
     const auto listed = listing_stage(1000);
     const std::vector<box> boxes = row(1000, 0.8F);
-    for (int frame = 0; frame <= 2; ++frame) CHECK(pairs_of(*listed, boxes).size() == 999);
+    for (int frame = 0; frame <= 2; ++frame) CHECK(found_by(*listed, boxes).size() == 999);
     const work_counters before = listed->counters();
-    for (int frame = 0; frame < 5; ++frame) CHECK(pairs_of(*listed, boxes).size() == 999);
+    for (int frame = 0; frame < 5; ++frame) CHECK(found_by(*listed, boxes).size() == 999);
     CHECK(listed->counters()[work::box_tests] == before[work::box_tests]);
     CHECK(listed->counters()[work::moves] == before[work::moves]);
 }
@@ -350,7 +349,7 @@ TEST_CASE("a neighbour list is exact where boxes move by more than floats hold")
                     const float x = at + apart * static_cast<float>(i);
                     boxes[i] = {{x, 0, 0}, {x, 1, 1}};
                 }
-                return pairs_of(*stage, boxes).size();
+                return found_by(*stage, boxes).size();
             };
             INFO(n << " boxes, margin " << margin);
             CHECK(spread(-far, far / 100) == 0);
@@ -364,13 +363,13 @@ TEST_CASE("an object that leaves in a frame that is refused has left the neighbo
         INFO(margin);
         const auto stage = search_of(listing(margin, "0"), 3);
         std::vector<box> boxes{cube(0), cube(0.5F), cube(0.75F)};
-        CHECK(pairs_of(*stage, boxes).size() == 3);
+        CHECK(found_by(*stage, boxes).size() == 3);
         stage->remove(1);
         const box valid = boxes[2];
         boxes[2].max[2] = boxes[2].min[2] - 1;
         CHECK_THROWS_AS(stage->update(boxes), input_error);
         boxes[2] = valid;
-        CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 2}});
+        CHECK(found_by(*stage, boxes) == std::vector<index_pair>{{0, 2}});
     }
 }
 
@@ -381,10 +380,10 @@ TEST_CASE("a neighbour list ends just beyond its margin") {
         std::vector<box> boxes{cube(0), cube(2.02F)};
         for (std::size_t i = 0; i < others; ++i) boxes.push_back(cube(100 + 10 * static_cast<float>(i)));
         INFO(others << " others");
-        CHECK(pairs_of(*stage, boxes).empty());
+        CHECK(found_by(*stage, boxes).empty());
         boxes[0] = cube(0.52F);
         boxes[1] = cube(1.5F);
-        CHECK(pairs_of(*stage, boxes) == std::vector<index_pair>{{0, 1}});
+        CHECK(found_by(*stage, boxes) == std::vector<index_pair>{{0, 1}});
     }
 }
 
@@ -418,7 +417,7 @@ TEST_CASE("a list that would hold each box with every other is never kept, nor i
             // Crowded, not, crowded, not.
             const bool crowded = (frame / 20 % 2 == 0) == begins_crowded && frame < 60;
             const std::vector<box> boxes = boxes_at(frame, crowded);
-            REQUIRE(pairs_of(*stage, boxes) == pairs_of(*exact, boxes));
+            REQUIRE(found_by(*stage, boxes) == found_by(*exact, boxes));
             for (const part_bytes& part : stage->bytes()) {
                 CAPTURE(frame, part.part);
                 CHECK(part.bytes < 1000 * n);
@@ -443,7 +442,7 @@ TEST_CASE("lists are kept once boxes are long enough for how they move") {
             const vec3f low{20 * any(), 20 * any(), 20 * any()};
             b = {low, low + vec3f{0.004F, 0.004F, 0.004F}};
         }
-        (void)pairs_of(*stage, boxes);
+        (void)found_by(*stage, boxes);
     }
     // A look at boxes that are no numbers takes nothing away.
     std::vector<box> none = boxes;
@@ -453,7 +452,7 @@ TEST_CASE("lists are kept once boxes are long enough for how they move") {
     int kept = 0;
     for (int frame = 0; frame < 60; ++frame) {
         for (std::size_t i = 0; i < n; ++i) boxes[i] = moved(boxes[i], {i % 2 == 0 ? 0.01F : -0.01F, 0, 0});
-        (void)pairs_of(*stage, boxes);
+        (void)found_by(*stage, boxes);
         if (frame >= 40) kept += keeps_list(*stage);
     }
     CHECK(kept == 20);
@@ -465,11 +464,11 @@ TEST_CASE("whoever comes to boxes at rest does not unsettle them for long") {
     const std::vector<box> boxes = row(n, 0.8F);
     std::size_t there = n - 4;
     for (int visit = 0; visit < 4; ++visit) {
-        for (int frame = 0; frame < 6; ++frame) CHECK(pairs_of(*stage, boxes).size() == there - 1);
+        for (int frame = 0; frame < 6; ++frame) CHECK(found_by(*stage, boxes).size() == there - 1);
         stage->insert(static_cast<std::uint32_t>(there++));
-        for (int frame = 0; frame < 2; ++frame) CHECK(pairs_of(*stage, boxes).size() == there - 1);
+        for (int frame = 0; frame < 2; ++frame) CHECK(found_by(*stage, boxes).size() == there - 1);
         const work_counters before = stage->counters();
-        CHECK(pairs_of(*stage, boxes).size() == there - 1);
+        CHECK(found_by(*stage, boxes).size() == there - 1);
         CHECK(stage->counters()[work::moves] == before[work::moves]);
         CHECK(stage->counters()[work::box_tests] == before[work::box_tests]);
     }
@@ -539,7 +538,7 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
                         }
                     }
                 }
-                RC_ASSERT(pairs_of(*stage, boxes) == pairs_of(*exact, boxes));
+                RC_ASSERT(found_by(*stage, boxes) == found_by(*exact, boxes));
                 const std::vector<stage_plan> plans = stage->plans();
                 kept += static_cast<std::size_t>(std::ranges::count(plans, "list of neighbours", &stage_plan::what));
                 rested += static_cast<std::size_t>(std::ranges::count(plans, "frame at rest", &stage_plan::what));
@@ -558,7 +557,7 @@ TEST_CASE("where no list pays, a few boxes are looked at and nothing is kept") {
         int kept = 0;
         for (int frame = 0; frame < frames; ++frame) {
             for (std::size_t i = 0; i < n; ++i) boxes[i] = cube(boxes[i].min[0] + (i % 2 == 0 ? way : -way));
-            (void)pairs_of(*stage, boxes);
+            (void)found_by(*stage, boxes);
             kept += keeps_list(*stage);
         }
         return kept;
@@ -636,7 +635,7 @@ TEST_CASE("what swings about its place gets a list that lasts, though the first 
                 at[k] += 0.12F * std::sin(6.283F * (static_cast<float>(frame) / 12 + cubes.ways[i][k]));
             boxes.push_back({at, at + vec3f{1, 1, 1}});
         }
-        (void)pairs_of(*cubes.stage, boxes);
+        (void)found_by(*cubes.stage, boxes);
         if (frame >= 40) kept += keeps_list(*cubes.stage);
     }
     CHECK(kept == 40);
@@ -763,13 +762,13 @@ TEST_CASE("pairs that could not part are tested once boxes shrink") {
     std::vector<box> boxes = row(100, 0.3F);
     for (int frame = 0; frame < 8; ++frame) {
         boxes[0] = moved(boxes[0], {0, 0.001F, 0});
-        CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+        CHECK(found_by(*stage, boxes) == overlapping(boxes));
     }
     CHECK(keeps_list(*stage));
     const std::size_t before = overlapping(boxes).size();
     for (box& b : boxes) b.max[0] = b.min[0] + 0.4F;
     CHECK(overlapping(boxes).size() < before);
-    CHECK(pairs_of(*stage, boxes) == overlapping(boxes));
+    CHECK(found_by(*stage, boxes) == overlapping(boxes));
     CHECK(keeps_list(*stage));
 }
 
@@ -805,7 +804,7 @@ TEST_CASE("boxes without an end are refused, however they lie") {
     const auto stage = listing_stage(40);
     std::vector<box> floors;
     for (int i = 0; i < 40; ++i) floors.push_back({{0, 0, static_cast<float>(i)}, {1, 1, static_cast<float>(i)}});
-    (void)pairs_of(*stage, floors);
+    (void)found_by(*stage, floors);
     for (box& b : floors) b.max[0] = std::numeric_limits<float>::infinity();
     CHECK_THROWS_AS(stage->update(floors), input_error);
 }
@@ -852,23 +851,23 @@ TEST_CASE("a list that lasted as planned is made again with its margin, unless i
         return boxes;
     };
     const auto stage = listing_stage(100);
-    (void)pairs_of(*stage, placed(3, 0));
+    (void)found_by(*stage, placed(3, 0));
     const double first = margin_of(*stage);
     CHECK(first == Catch::Approx(0.1));
     // Nothing lies near, so that longer margins list no more.
-    for (int frame = 1; frame <= 15; ++frame) (void)pairs_of(*stage, placed(3, frame));
+    for (int frame = 1; frame <= 15; ++frame) (void)found_by(*stage, placed(3, frame));
     const double second = margin_of(*stage);
     CHECK(second > 2 * first);
     std::size_t made = 0;
     for (int frame = 16; frame <= 160; ++frame) {
         const std::uint64_t moves = stage->counters()[work::moves];
-        (void)pairs_of(*stage, placed(3, frame % 80));
+        (void)found_by(*stage, placed(3, frame % 80));
         made += stage->counters()[work::moves] > moves ? 1U : 0U;
     }
     INFO(made << " lists");
     CHECK(margin_of(*stage) > first);
     // All within reach of each other, of which none overlap.
-    for (int frame = 0; frame < 3; ++frame) CHECK(pairs_of(*stage, placed(1.15F, frame)).empty());
+    for (int frame = 0; frame < 3; ++frame) CHECK(found_by(*stage, placed(1.15F, frame)).empty());
     CHECK(told_of_list(*stage, "pairs") < 200);
 }
 
@@ -877,11 +876,11 @@ TEST_CASE("a few boxes are not watched") {
         INFO(n << " boxes");
         const auto stage = listing_stage(n);
         std::vector<box> boxes(n, cube(0));
-        (void)pairs_of(*stage, boxes);
+        (void)found_by(*stage, boxes);
         CHECK(says(*stage, "no list of neighbours: so few") == (n == 2 * simd::width));
         // A margin that is named is kept to.
         const auto named = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=1"}}), n);
-        (void)pairs_of(*named, boxes);
+        (void)found_by(*named, boxes);
         CHECK(keeps_list(*named));
     }
 }
@@ -946,7 +945,7 @@ TEST_CASE("of few frames no list is made before boxes have shown that it repays 
     travellers late(1000, 6);
     late.stage = listing_stage(0);
     late.stage->expect(6);
-    for (int frame = 0; frame < 2; ++frame) REQUIRE(pairs_of(*late.stage, {}).empty());
+    for (int frame = 0; frame < 2; ++frame) REQUIRE(found_by(*late.stage, {}).empty());
     insert_all(*late.stage, 1000);
     for (int frame = 2; frame < 6; ++frame) CHECK(late.play(late.at(0.001F * static_cast<float>(frame))) == 0);
 }

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <random>
-
+#include "../boxes.hpp"
 #include "../compositions.hpp"
-#include "overlapping.hpp"
 
 /// Objects 0 to n - 1 come.
 template <class Search>
@@ -15,15 +13,6 @@ inline std::unique_ptr<aabb::global_stage> search_of(const aabb::composition& c,
     auto search = global_of(c, aabb::instrumentation::counters);
     insert_all(*search, objects);
     return search;
-}
-
-/// The pairs of a frame, in ascending order.
-template <class Search>
-std::vector<aabb::index_pair> found_by(Search& search, std::span<const aabb::box> boxes) {
-    std::vector<aabb::index_pair> pairs;
-    search.update(boxes);
-    search.search(pairs);
-    return sorted(pairs);
 }
 
 /// Does it say that it does without this?
@@ -62,14 +51,4 @@ inline std::vector<aabb::box> cubes(std::size_t n, const aabb::vec3f& widths, st
             b.max[k] = b.min[k] + 1;
         }
     return boxes;
-}
-
-/// With whole numbers, so that many touch.
-inline aabb::box lattice_box(std::mt19937& random, std::uint32_t side, std::uint32_t extent) {
-    aabb::box b{};
-    for (int k = 0; k < 3; ++k) {
-        b.min[k] = static_cast<float>(random() % side);
-        b.max[k] = b.min[k] + static_cast<float>(random() % extent);
-    }
-    return b;
 }

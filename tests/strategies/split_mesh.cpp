@@ -40,8 +40,7 @@ struct played {
         both.update(poses);
         both.search();
         both.detect();
-        std::vector<contact> found(both.contacts().begin(), both.contacts().end());
-        std::ranges::sort(found);
+        std::vector<contact> found = sorted(both.contacts());
         CHECK(both.count_contacts() == found.size());
         const std::optional<contact> first = both.first_contact();
         CHECK(first.has_value() == !found.empty());
@@ -64,8 +63,7 @@ composition splitting(const std::string& size, const strategy_choice& tree = {"c
 std::vector<pose> scattered(std::size_t objects, double reach) {
     std::vector<pose> poses;
     for (std::size_t i = 0; i < objects; ++i)
-        poses.push_back(turned_by({1 + uniform(0, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
-                                  {uniform(0, reach), uniform(0, reach), uniform(0, reach)}));
+        poses.push_back(any_turned({uniform(0, reach), uniform(0, reach), uniform(0, reach)}));
     return poses;
 }
 

@@ -50,12 +50,6 @@ std::uint64_t pairs_on(const std::vector<box>& boxes, const std::vector<int>& ax
     return pairs;
 }
 
-std::vector<box> lattice_boxes(std::mt19937& random, std::size_t n, std::uint32_t side, std::uint32_t extent) {
-    std::vector<box> boxes(n);
-    for (box& b : boxes) b = lattice_box(random, side, extent);
-    return boxes;
-}
-
 /// Some of the objects leave, others come back.
 void come_and_go(global_stage& stage, std::vector<bool>& present, std::mt19937& random, std::uint32_t one_in) {
     for (std::uint32_t id = 0; id < present.size(); ++id)

@@ -51,26 +51,26 @@ TEST_CASE("an engine that was left out is refused for that") {
             "the engine 'two' is not in this build: Two's library was not found");
     REQUIRE(refusal_of_engine("twwo", built, left_out) == "unknown engine 'twwo'; did you mean 'two'?");
     for (const left_out_engine& engine : left_out_engines()) {
-        REQUIRE(refusal_in([&] { (void)make_box_engine(engine.name); }) == refusal_of_engine(engine.name));
-        REQUIRE(refusal_in([&] { (void)make_mesh_engine(engine.name); }) == refusal_of_engine(engine.name));
-        REQUIRE(refusal_in([&] { (void)is_exact_engine(engine.name); }) == refusal_of_engine(engine.name));
+        CHECK_REFUSED(make_box_engine(engine.name), refusal_of_engine(engine.name));
+        CHECK_REFUSED(make_mesh_engine(engine.name), refusal_of_engine(engine.name));
+        CHECK_REFUSED(is_exact_engine(engine.name), refusal_of_engine(engine.name));
     }
 }
 
 TEST_CASE("an engine nobody knows is refused with the nearest name") {
-    REQUIRE(refusal_in([] { (void)make_box_engine("cgl"); }) == "unknown engine 'cgl'; did you mean 'cgal'?");
-    REQUIRE(refusal_in([] { (void)make_mesh_engine("libcd"); }) == "unknown engine 'libcd'; did you mean 'libccd'?");
+    CHECK_REFUSED(make_box_engine("cgl"), "unknown engine 'cgl'; did you mean 'cgal'?");
+    CHECK_REFUSED(make_mesh_engine("libcd"), "unknown engine 'libcd'; did you mean 'libccd'?");
 }
 
 TEST_CASE("an engine is refused for what it cannot do") {
     for (const engine_info& info : engines()) {
         if (!info.searches_boxes)
-            REQUIRE(refusal_in([&] { (void)make_box_engine(info.name); }) ==
-                    "the engine '" + info.name +
-                        "' has no broad phase, so it cannot search boxes; it only collides meshes");
+            CHECK_REFUSED(make_box_engine(info.name),
+                          "the engine '" + info.name +
+                              "' has no broad phase, so it cannot search boxes; it only collides meshes");
         if (!info.collides_meshes)
-            REQUIRE(refusal_in([&] { (void)make_mesh_engine(info.name); }) ==
-                    "the engine '" + info.name +
-                        "' has no narrow phase, so it cannot collide meshes; it only searches boxes");
+            CHECK_REFUSED(make_mesh_engine(info.name),
+                          "the engine '" + info.name +
+                              "' has no narrow phase, so it cannot collide meshes; it only searches boxes");
     }
 }

@@ -37,7 +37,7 @@ void require_all_found(global_stage& stage, const std::vector<frame>& frames) {
     for (std::uint32_t id = 0; id < frames[0].boxes.size(); ++id) stage.insert(id);
     for (const frame& f : frames) {
         REQUIRE_FALSE(f.pairs.empty());
-        REQUIRE(pairs_of(stage, f.boxes) == f.pairs);
+        REQUIRE(found_by(stage, f.boxes) == f.pairs);
     }
 }
 

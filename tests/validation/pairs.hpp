@@ -12,13 +12,7 @@ namespace triangle_pairs {
 /// As the library has it.
 template <class Real>
 aabb::triangle_pair<Real> of_type(const pair& made) {
-    aabb::triangle_pair<Real> p;
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) {
-            p.a[i][k] = static_cast<Real>(made[0][static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
-            p.b[i][k] = static_cast<Real>(made[1][static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
-        }
-    return p;
+    return {as<aabb::triangle3<Real>>(made[0]), as<aabb::triangle3<Real>>(made[1])};
 }
 
 /// Takes `count` pairs of every pattern in every placement.

@@ -6,8 +6,7 @@ using namespace aabb;
 TEST_CASE("every composed local detection with an exact triangle test equals CGAL") {
     for (const mesh_case& c : mesh_cases()) {
         const std::vector<index_pair> pairs = pairs_of(*make_mesh_engine("cgal"), c.a, c.pose_a, c.b, c.pose_b);
-        for (const aabb::composition& composition : all_local_compositions()) {
-            if (!is_exact_locally(composition)) continue;
+        for (const aabb::composition& composition : exact_local_compositions()) {
             INFO(text_of_local(composition) << ", " << c.name);
             const auto stage = local_of(composition, instrumentation::none);
             REQUIRE(pairs_of(*stage, c.a, c.pose_a, c.b, c.pose_b) == pairs);
@@ -19,8 +18,7 @@ TEST_CASE("two meshes moved together keep their pairs, up to 10^7 times their si
     const mesh ball = sphere(12);
     const pose still = turned({1, 2, 3}, 0.4, {0, 0, 0});
     const pose near = turned({3, -1, 1}, 1.3, {0.6, 0.3, -0.2});
-    for (const aabb::composition& composition : all_local_compositions()) {
-        if (!is_exact_locally(composition)) continue;
+    for (const aabb::composition& composition : exact_local_compositions()) {
         INFO(text_of_local(composition));
         const auto stage = local_of(composition, instrumentation::none);
         const std::vector<index_pair> pairs = pairs_of(*stage, ball, still, ball, near);
@@ -48,9 +46,8 @@ TEST_CASE("every composition and engine holds a mesh against itself alike, and a
     std::vector<std::pair<std::string, std::unique_ptr<local_stage>>> stages;
     for (const engine_info& engine : engines())
         if (engine.exact && engine.collides_meshes) stages.emplace_back(engine.name, make_mesh_engine(engine.name));
-    for (const aabb::composition& composition : all_local_compositions())
-        if (is_exact_locally(composition))
-            stages.emplace_back(text_of_local(composition), local_of(composition, instrumentation::none));
+    for (const aabb::composition& composition : exact_local_compositions())
+        stages.emplace_back(text_of_local(composition), local_of(composition));
     for (auto& [name, stage] : stages) stage->add_model(ball);
     for (const bool deformed : {false, true}) {
         if (deformed)

@@ -1,29 +1,13 @@
 #pragma once
-#include <random>
 
-#include "../testing.hpp"
-
-#include "../sheets.hpp"
+#include "../boxes.hpp"
+#include "../meshes.hpp"
 
 namespace aabb {
 
 /// In [low, high), alike in every standard library.
 inline float uniform(std::mt19937& random, float low, float high) {
     return low + (high - low) * (static_cast<float>(random() >> 8) * 0x1p-24F);
-}
-
-/// The sentence with which a call refuses its input.
-template <class Call>
-std::string refusal_in(Call call) {
-    return ::refusal_in<input_error>(call);
-}
-
-/// What a global stage finds in one frame.
-inline std::vector<index_pair> pairs_of(global_stage& stage, std::span<const box> boxes) {
-    stage.update(boxes);
-    std::vector<index_pair> pairs;
-    stage.search(pairs);
-    return sorted(pairs);
 }
 
 /// What a local stage finds for two meshes.
@@ -36,21 +20,6 @@ inline std::vector<index_pair> pairs_of(local_stage& stage, const mesh& a, const
     return sorted(pairs);
 }
 
-/// The pairs of boxes that overlap, by the definition, in the tests' own words.
-/// @param present by number; empty where all are there
-inline std::vector<index_pair> overlapping(std::span<const box> boxes, const std::vector<bool>& present = {}) {
-    const auto is_there = [&](std::uint32_t id) { return present.empty() || present[id]; };
-    std::vector<index_pair> pairs;
-    for (std::uint32_t a = 0; a < boxes.size(); ++a)
-        for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-            bool meet = is_there(a) && is_there(b);
-            for (int k = 0; k < 3; ++k)
-                meet = meet && boxes[a].min[k] <= boxes[b].max[k] && boxes[b].min[k] <= boxes[a].max[k];
-            if (meet) pairs.push_back({a, b});
-        }
-    return pairs;
-}
-
 /// Boxes of sizes up to `size` in a cube of side 10.
 inline std::vector<box> random_boxes(std::mt19937& random, std::size_t count, float size) {
     std::vector<box> boxes(count);
@@ -58,17 +27,6 @@ inline std::vector<box> random_boxes(std::mt19937& random, std::size_t count, fl
         for (int k = 0; k < 3; ++k) {
             b.min[k] = uniform(random, 0, 10);
             b.max[k] = b.min[k] + uniform(random, 0, size);
-        }
-    return boxes;
-}
-
-/// Boxes with corners on a coarse lattice: many equal ends, many that only touch, some flat, some points.
-inline std::vector<box> lattice_boxes(std::mt19937& random, std::size_t count) {
-    std::vector<box> boxes(count);
-    for (box& b : boxes)
-        for (int k = 0; k < 3; ++k) {
-            b.min[k] = static_cast<float>(random() % 8);
-            b.max[k] = b.min[k] + static_cast<float>(random() % 3);
         }
     return boxes;
 }
@@ -89,10 +47,6 @@ inline pose turned(vec3d axis, double angle, vec3d shift) {
 
 inline mesh one_triangle(const triangle3f& t) {
     return {{t[0], t[1], t[2]}, {{0, 1, 2}}};
-}
-
-inline mesh tetrahedron() {
-    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
 /// n × n squares of side 1 in the plane z = 0, each cut into two triangles.
@@ -141,9 +95,10 @@ inline std::vector<mesh_case> mesh_cases() {
         {"spheres, far out", sphere(6), turned({0, 1, 0}, 0.4, {1e6, 0, -1e6}), sphere(7),
          turned({0, 1, 3}, 1.4, {1e6 + 0.7, 0.1, -1e6})},
         {"a sphere on itself", sphere(6), still, sphere(6), still},
-        {"tetrahedra, corner in corner", tetrahedron(), still, tetrahedron(), turned({1, 1, 1}, 0.5, {0.2, 0.2, 0.2})},
-        {"tetrahedra that share a face", tetrahedron(), still, tetrahedron(), turned({0, 1, 0}, 0, {0, 0, 0})},
-        {"tetrahedra that share a corner", tetrahedron(), still, tetrahedron(), turned({0, 0, 1}, 0, {1, 0, 0})},
+        {"tetrahedra, corner in corner", tetrahedron(1), still, tetrahedron(1),
+         turned({1, 1, 1}, 0.5, {0.2, 0.2, 0.2})},
+        {"tetrahedra that share a face", tetrahedron(1), still, tetrahedron(1), turned({0, 1, 0}, 0, {0, 0, 0})},
+        {"tetrahedra that share a corner", tetrahedron(1), still, tetrahedron(1), turned({0, 0, 1}, 0, {1, 0, 0})},
         {"grids that cross", grid(5), still, grid(5), turned({1, 0, 0}, std::numbers::pi / 3, {0.25, 1.5, -1.3})},
         {"grids that cross on a line of vertices", grid(4), still, grid(4), {{1, 0, 0, 0, 0, -1, 0, 1, 0}, {0, 2, -2}}},
         {"grids in one plane", grid(3), still, grid(3), turned({0, 0, 1}, 0, {0.5, 0.5, 0})},
