@@ -108,44 +108,56 @@ std::string room_of(const std::string& file) {
     return best;
 }
 
-struct imports {
+constexpr std::array folders{"modules", "strategies", "validation", "experiments", "paper"};
+
+struct source {
     std::string file;
-    std::vector<std::string> modules;
+    std::string module;  ///< none of a partition
+    bool is_interface = false;
+    std::vector<std::string> imports;
 };
 
-/// What stands in a source before any code: the module it declares, and those it imports.
-imports imports_of(const std::filesystem::path& path, const std::string& file,
-                   std::map<std::string, std::string>& home) {
-    static const std::regex declaration(R"(^(export )?module ([a-z_.0-9]+)(:[a-z_0-9]+)?;)");
-    static const std::regex import_line(R"(^(export )?import ([a-z_.0-9]+);)");
-    imports all{file, {}};
-    std::ifstream in(path);
-    for (std::string line; std::getline(in, line);) {
+/// What stands in the sources of a folder before any code: the module that each is of, and those that it imports.
+/// @param root what the names of files begin in
+std::vector<source> sources_in(const std::filesystem::path& folder, const std::filesystem::path& root) {
+    static const std::regex declaration(R"(^(export )?module ([a-z_.0-9]+);)");
+    static const std::regex import_line(R"(^(?:export )?import ([a-z_.0-9:]+);)");
+    std::vector<source> all;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        const std::string ending = entry.path().extension().string();
+        if (ending != ".cpp" && ending != ".cppm" && ending != ".hpp") continue;
+        source& one = all.emplace_back();
+        one.file = std::filesystem::relative(entry.path(), root).generic_string();
         std::smatch found;
-        if (std::regex_search(line, found, declaration) && found[1].matched && !found[3].matched) home[found[2]] = file;
-        if (std::regex_search(line, found, import_line)) all.modules.push_back(found[2]);
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+            if (std::regex_search(line, found, declaration)) {
+                one.module = found[2];
+                one.is_interface = found[1].matched;
+            }
+            if (std::regex_search(line, found, import_line)) one.imports.push_back(found[1]);
+        }
     }
+    std::ranges::sort(all, {}, &source::file);
     return all;
 }
 
 /// The arrows from files to rooms, each once.
 std::vector<arrow> arrows_in(const std::filesystem::path& root) {
     std::map<std::string, std::string> home{{"aabb.strategies", "strategies/registry/strategies.cppm.in"}};
-    std::vector<imports> sources;
-    for (const char* folder : {"modules", "strategies", "validation", "experiments", "paper"}) {
-        if (!std::filesystem::exists(root / folder)) continue;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-            const std::string ending = entry.path().extension().string();
-            if (ending == ".cpp" || ending == ".cppm" || ending == ".hpp")
-                sources.push_back(
-                    imports_of(entry.path(), std::filesystem::relative(entry.path(), root).generic_string(), home));
-        }
-    }
-    std::ranges::sort(sources, {}, &imports::file);
+    std::vector<source> sources;
+    for (const char* folder : folders)
+        if (std::filesystem::exists(root / folder))
+            for (const source& one : sources_in(root / folder, root)) {
+                if (one.is_interface) home[one.module] = one.file;
+                sources.push_back(one);
+            }
     std::vector<arrow> arrows;
     std::set<std::pair<std::string, std::string>> known;
-    for (const auto& [file, modules] : sources)
-        for (const std::string& module : modules) {
+    for (const source& importing : sources)
+        for (const std::string& module : importing.imports) {
+            if (module.starts_with(':')) continue;
+            const std::string& file = importing.file;
             INFO(file << " imports " << module);
             REQUIRE(home.contains(module));
             const arrow one{room_of(file), room_of(home.at(module)), file, module};
@@ -157,35 +169,15 @@ std::vector<arrow> arrows_in(const std::filesystem::path& root) {
 
 /// Imports that the interface of an implementation unit has already: "FILE imports MODULE", a line each.
 std::string repeated_imports(const std::filesystem::path& root) {
-    static const std::regex declaration(R"(^(export )?module ([a-z_.0-9]+);)");
-    static const std::regex import_line(R"(^(?:export )?import ([a-z_.0-9:]+);)");
+    const std::vector<source> sources = sources_in(root, root);
     std::map<std::string, std::set<std::string>> of_interface;  // by module
-    std::map<std::string, std::pair<std::string, std::vector<std::string>>> units;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
-        const std::string ending = entry.path().extension().string();
-        if (ending != ".cpp" && ending != ".cppm") continue;
-        std::vector<std::string> imported;
-        std::smatch found;
-        std::smatch declared;
-        std::string module;
-        bool is_interface = false;
-        std::ifstream in(entry.path());
-        for (std::string line; std::getline(in, line);) {
-            if (std::regex_search(line, declared, declaration)) {
-                module = declared[2];
-                is_interface = declared[1].matched;
-            }
-            if (std::regex_search(line, found, import_line)) imported.push_back(found[1]);
-        }
-        if (is_interface)
-            of_interface[module].insert(imported.begin(), imported.end());
-        else if (!module.empty())
-            units[std::filesystem::relative(entry.path(), root).generic_string()] = {module, imported};
-    }
+    for (const source& one : sources)
+        if (one.is_interface) of_interface[one.module].insert(one.imports.begin(), one.imports.end());
     std::string text;
-    for (const auto& [file, unit] : units)
-        for (const std::string& one : unit.second)
-            if (of_interface[unit.first].contains(one)) text += file + " imports " + one + "\n";
+    for (const source& one : sources)
+        for (const std::string& imported : one.imports)
+            if (!one.is_interface && of_interface[one.module].contains(imported))
+                text += one.file + " imports " + imported + "\n";
     return text;
 }
 
@@ -222,8 +214,7 @@ TEST_CASE("No import runs back from a room to one that stands on it") {
 }
 
 TEST_CASE("No implementation unit imports what its interface does") {
-    for (const char* folder : {"modules", "strategies", "validation", "experiments", "paper"})
-        CHECK(repeated_imports(std::filesystem::path(AABBLAB_SOURCE) / folder) == "");
+    for (const char* folder : folders) CHECK(repeated_imports(std::filesystem::path(AABBLAB_SOURCE) / folder) == "");
     const temporary_folder folder;
     std::ofstream(folder / "a.cppm") << "export module a;\nimport b;\nexport import :c;\n";
     std::ofstream(folder / "a.cpp") << "module a;\nimport :c;\nimport b;\nimport d;\n";
