@@ -35,8 +35,8 @@ mesh waves(std::uint32_t edges, float height) {
     });
 }
 
-pose moved(const std::array<double, 3>& by, double turn) {
-    return turned_by({1, turn, -turn / 2, turn / 3}, {by[0], by[1], by[2]});
+pose moved(const vec3d& by, double turn) {
+    return turned_by({1, turn, -turn / 2, turn / 3}, by);
 }
 
 /// Of one stage, what a query adds.
@@ -191,8 +191,7 @@ TEST_CASE("kept pairs of leaves hold all that meets, however meshes creep, stop,
                 if (*rc::gen::weightedElement<bool>({{12, false}, {1, true}})) choose_way(o);
                 for (std::size_t k = 0; k < 3; ++k) o.at[k] += o.way[k];
                 o.turn += o.turned;
-                pose pose_b =
-                    turned_by({1, o.turn, -o.turn / 2, o.turn / 3}, {o.at[0] * size, o.at[1] * size, o.at[2] * size});
+                pose pose_b = moved({o.at[0] * size, o.at[1] * size, o.at[2] * size}, o.turn);
                 for (const std::size_t r : {0U, 4U, 8U}) pose_b.rotation[r] *= 1 + o.skew;
                 std::vector<index_pair> truth;
                 fresh->all_pairs(o.models[0], {}, o.models[1], pose_b, truth);
@@ -318,7 +317,7 @@ TEST_CASE("a front that makes room forgets what met") {
     const auto first = [&](std::uint32_t model, std::size_t i, double step) {
         const std::size_t row = i / 40;
         const vec3d by{step * static_cast<double>(i % 40), step * static_cast<double>(row), 0.03};
-        return kept->first_pair(model, {}, model, moved({by[0], by[1], by[2]}, 0.2));
+        return kept->first_pair(model, {}, model, moved(by, 0.2));
     };
     const std::size_t most = front_keeper::most;
     std::array<std::size_t, 2> met{};

@@ -253,10 +253,7 @@ TEST_CASE("overlapping boxes have one leaf that owns them where heaps of them le
             const auto k = *rc::gen::inRange(0, 3);
             const float way = static_cast<float>(*rc::gen::inRange(-20, 21));
             for (box& b : boxes)
-                if (frame > 0 && b.min[k] >= from && b.min[k] < from + 15) {
-                    b.min[k] += way;
-                    b.max[k] += way;
-                }
+                if (frame > 0 && b.min[k] >= from && b.min[k] < from + 15) b.min[k] += way, b.max[k] += way;
             p.take(boxes);
             require_one_owner(p);
         }
@@ -290,10 +287,7 @@ TEST_CASE("planes stay while boxes do, and are chosen anew only where these went
     SECTION("some where a corner empties into another") {
         for (box& b : boxes)
             if (b.max[0] < 20 && b.max[1] < 20 && b.max[2] < 20)
-                for (int k = 0; k < 3; ++k) {
-                    b.min[k] = 45 + b.min[k] / 3;
-                    b.max[k] = b.min[k] + 1;
-                }
+                for (int k = 0; k < 3; ++k) b.min[k] = 45 + b.min[k] / 3, b.max[k] = b.min[k] + 1;
         // It waits for the next frame.
         p.take(boxes);
         CHECK(p.partition.made_nodes() == 0);
@@ -304,10 +298,7 @@ TEST_CASE("planes stay while boxes do, and are chosen anew only where these went
     }
     SECTION("all at once where the frame would be much dearer") {
         for (box& b : boxes)
-            for (int k = 0; k < 3; ++k) {
-                b.min[k] = b.min[k] / 60;
-                b.max[k] = b.min[k] + 1.0F / 60;
-            }
+            for (int k = 0; k < 3; ++k) b.min[k] /= 60, b.max[k] = b.min[k] + 1.0F / 60;
         p.take(boxes);
         CHECK(p.partition.made_nodes() > 50);
     }

@@ -189,15 +189,9 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
 TEST_CASE("the half-steps hold the canonical tree, box by box") {
     for_each_build([&](const auto& build) {
         for (const mesh& m : meshes()) {
-            canonical_tree canonical;
-            shared_planes_tree shared;
-            leafless_tree leafless;
-            compressed_literal_tree literal;
             const std::vector<build_node> nodes = build.build(m, leaf_arrangement::any);
+            canonical_tree canonical;
             canonical.pack(nodes);
-            shared.pack(nodes);
-            leafless.pack(nodes);
-            literal.pack(nodes);
             const auto same = [&](auto self, const auto& other, auto at, auto there, bool lossless) -> void {
                 REQUIRE(canonical.is_leaf(at) == other.is_leaf(there));
                 if (canonical.is_leaf(at)) {
@@ -211,9 +205,13 @@ TEST_CASE("the half-steps hold the canonical tree, box by box") {
                 const auto others = other.children(there, m);
                 for (std::size_t side = 0; side < 2; ++side) self(self, other, children[side], others[side], lossless);
             };
-            same(same, shared, canonical.root(m), shared.root(m), true);
-            same(same, leafless, canonical.root(m), leafless.root(m), true);
-            same(same, literal, canonical.root(m), literal.root(m), false);
+            const auto check_packed = [&](auto other, bool lossless) {
+                other.pack(nodes);
+                same(same, other, canonical.root(m), other.root(m), lossless);
+            };
+            check_packed(shared_planes_tree(), true);
+            check_packed(leafless_tree(), true);
+            check_packed(compressed_literal_tree(), false);
         }
     });
 }

@@ -55,10 +55,7 @@ TEST_CASE("engines follow boxes that move and objects that come and go") {
         for (int frame = 0; frame < 8; ++frame) {
             for (box& b : boxes) {
                 const float step = uniform(random, -0.3F, 0.3F);
-                for (int k = 0; k < 3; ++k) {
-                    b.min[k] += step;
-                    b.max[k] += step;
-                }
+                for (int k = 0; k < 3; ++k) b.min[k] += step, b.max[k] += step;
             }
             for (std::uint32_t id = 0; id < count; ++id) {
                 if (random() % 3 != 0) continue;

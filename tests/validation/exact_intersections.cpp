@@ -45,11 +45,9 @@ TEST_CASE("an intersection is held against the exact one, however its corners ar
     for (int turn = 0; turn < 6; ++turn) {
         CHECK(polygon.errors_of(hexagon).within);
         triangle_intersection reversed = hexagon;
-        for (std::size_t i = 0; i < 6; ++i) reversed.corners[i] = hexagon.corners[5 - i];
+        std::ranges::reverse(reversed.corners);
         CHECK(polygon.errors_of(reversed).within);
-        const aabb::vec3d first = hexagon.corners[0];
-        for (std::size_t i = 0; i < 5; ++i) hexagon.corners[i] = hexagon.corners[i + 1];
-        hexagon.corners[5] = first;
+        std::ranges::rotate(hexagon.corners, hexagon.corners.begin() + 1);
     }
     std::swap(hexagon.corners[0], hexagon.corners[1]);
     CHECK_FALSE(polygon.errors_of(hexagon).within);
