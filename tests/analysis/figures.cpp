@@ -19,21 +19,11 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 aabblab::series series_of(std::string label, series_style style, std::vector<figure_point> points) {
-    aabblab::series s;
-    s.label = std::move(label);
-    s.style = style;
-    s.points = std::move(points);
-    return s;
+    return {std::move(label), style, std::move(points)};
 }
 
 figure figure_of(std::vector<aabblab::series> lines) {
-    figure f;
-    f.name = "figure1";
-    f.caption = "Time against the number of objects.";
-    f.x.label = "objects";
-    f.y.label = "time a frame (ms)";
-    f.lines = std::move(lines);
-    return f;
+    return {"figure1", "Time against the number of objects.", {"objects"}, {"time a frame (ms)"}, std::move(lines)};
 }
 
 /// One that varies, one that does not, points, a level and a mark.
@@ -127,9 +117,8 @@ std::set<std::string> set_in(const std::string& text, const std::string& pattern
 
 /// No text is cut off.
 void require_texts_inside(const std::string& svg) {
-    const std::regex size("<svg [^>]*width=\"([0-9.]+)\" height=\"([0-9.]+)\"");
     std::smatch found;
-    REQUIRE(std::regex_search(svg, found, size));
+    REQUIRE(std::regex_search(svg, found, std::regex("<svg [^>]*width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
     const std::vector<placed_text> texts = texts_of(svg);
     REQUIRE(!texts.empty());
     for (const placed_text& t : texts) {
@@ -279,9 +268,8 @@ TEST_CASE("What is text to the user is text in pictures") {
 TEST_CASE("A long label is broken into lines and keeps every word") {
     std::string words;
     for (int i = 0; i < 30; ++i) words += "word" + std::to_string(i) + ' ';
-    const std::string one_word(150, 'w');
     const std::string svg = svg_of(figure_of({series_of(words, series_style::line, {{1, 1, 1, 1}}),
-                                              series_of(one_word, series_style::line, {{1, 2, 2, 2}})}));
+                                              series_of(std::string(150, 'w'), series_style::line, {{1, 2, 2, 2}})}));
     require_svg(svg);
     for (int i = 0; i < 30; ++i) REQUIRE_THAT(svg, ContainsSubstring("word" + std::to_string(i)));
     REQUIRE(count_of("w", svg) >= 150);
@@ -340,10 +328,7 @@ TEST_CASE("A single point is drawn, on every kind of axis") {
 TEST_CASE("A logarithmic axis leaves out what is not positive") {
     const std::vector<figure_point> positive{{1, 1, 1, 1}, {10, 100, 50, 200}, {100, 30, 30, 30}};
     std::vector<figure_point> more = positive;
-    more.push_back({0, 5, 5, 5});
-    more.push_back({-7, 5, 5, 5});
-    more.push_back({5, 0, 0, 0});
-    more.push_back({5, -3, -4, 5000});
+    more.insert(more.end(), {{0, 5, 5, 5}, {-7, 5, 5, 5}, {5, 0, 0, 0}, {5, -3, -4, 5000}});
     figure f = figure_of({series_of("points", series_style::points, positive)});
     figure g = figure_of({series_of("points", series_style::points, more)});
     f.x.logarithmic = f.y.logarithmic = g.x.logarithmic = g.y.logarithmic = true;
@@ -420,9 +405,8 @@ TEST_CASE("Points of several series over one name stand side by side") {
     const std::vector<figure_point> points{{1, 1, 1, 1}, {2, 2, 2, 2}};
     figure f = figure_of({series_of("", series_style::points, points), series_of("", series_style::points, points)});
     // Places of discs, and of the left edges of squares.
-    const auto first_places = [&] { return found_in(svg_of(f), "d=\"M([0-9.]+) [^\"]*(?:h0|z)\"[^>]* stroke=\"#"); };
     const auto distance = [&] {
-        const std::vector<std::string> at = first_places();
+        const auto at = found_in(svg_of(f), "d=\"M([0-9.]+) [^\"]*(?:h0|z)\"[^>]* stroke=\"#");
         REQUIRE(at.size() == 2);
         return std::stod(at[1]) - std::stod(at[0]);
     };

@@ -137,23 +137,6 @@ TEST_CASE("The outcome is where the interval lies against the band") {
     CHECK(outcome_at(1.06, 0) == outcome::more);
 }
 
-TEST_CASE("Several outcomes at once are decided step by step, the surest first") {
-    const auto together = [](const std::vector<double>& chances) {
-        std::vector<evidence> all;
-        for (const double p : chances) all.push_back({outcome::less, p});
-        std::vector<bool> decided;
-        for (const outcome o : decide_together(all)) decided.push_back(o == outcome::less);
-        return decided;
-    };
-    // Holm, 1979: the k-th of m surest is held against 0.025 / (m - k + 1).
-    CHECK(together({0.02}) == std::vector{true});
-    CHECK(together({0.02, 0.02}) == std::vector{false, false});
-    CHECK(together({0.02, 0.01}) == std::vector{true, true});
-    CHECK(together({0.024, 0.001, 0.012}) == std::vector{true, true, true});
-    CHECK(together({0.024, 0.001, 0.013}) == std::vector{false, true, false});
-    CHECK(together({}).empty());
-}
-
 TEST_CASE("A direction is found however small it is, unless it makes no difference") {
     const auto of = [](double ratio, double error) {
         return direction_of(aabblab::tails_of({std::log(ratio), error, 50}));
@@ -192,24 +175,35 @@ TEST_CASE("A claim of less is favoured by less only, one of not more by all that
     CHECK(found(expectation::not_more, 1.02, 0.03) == support::undecided);
 }
 
-TEST_CASE("Several claims at once are decided step by step, the surest first") {
-    using aabblab::expectation;
-    const auto decided = [](const std::vector<double>& chances) {
-        std::vector<aabblab::tested> all;
-        for (const double p : chances) all.push_back({expectation::less, {p, 1, 1, 1}});
-        std::vector<bool> found;
-        for (std::size_t i = 0; const double level : levels_together(all))
-            found.push_back(direction_of(all[i++].p, level) == outcome::less);
-        return found;
+TEST_CASE("Several outcomes or claims at once are decided step by step, the surest first") {
+    struct together {
+        std::vector<double> chances;
+        std::vector<bool> decided;
     };
     // Holm, 1979: the k-th of m surest is held against 0.025 / (m - k + 1).
-    CHECK(decided({0.02}) == std::vector{true});
-    CHECK(decided({0.02, 0.02}) == std::vector{false, false});
-    CHECK(decided({0.024, 0.001, 0.012}) == std::vector{true, true, true});
-    CHECK(decided({0.024, 0.001, 0.013}) == std::vector{false, true, false});
-    // What is sure beyond doubt stays so beside what is not.
-    CHECK(decided({0, 0.5}) == std::vector{true, false});
-    CHECK(decided({}).empty());
+    for (const auto& [chances, decided] : {together{{0.02}, {true}},
+                                           {{0.02, 0.02}, {false, false}},
+                                           {{0.02, 0.01}, {true, true}},
+                                           {{0.024, 0.001, 0.012}, {true, true, true}},
+                                           {{0.024, 0.001, 0.013}, {false, true, false}},
+                                           // What is sure beyond doubt stays so beside what is not.
+                                           {{0, 0.5}, {true, false}},
+                                           {{}, {}}}) {
+        CAPTURE(chances);
+        std::vector<evidence> outcomes;
+        std::vector<aabblab::tested> claims;
+        for (const double p : chances) {
+            outcomes.push_back({outcome::less, p});
+            claims.push_back({aabblab::expectation::less, {p, 1, 1, 1}});
+        }
+        std::vector<bool> found;
+        for (const outcome o : decide_together(outcomes)) found.push_back(o == outcome::less);
+        CHECK(found == decided);
+        found.clear();
+        for (std::size_t i = 0; const double level : levels_together(claims))
+            found.push_back(direction_of(claims[i++].p, level) == outcome::less);
+        CHECK(found == decided);
+    }
 }
 
 TEST_CASE("Machines that disagree make a wide interval, those that agree a narrow one") {

@@ -36,10 +36,6 @@ void change_lines(const std::filesystem::path& file, const std::function<void(st
     for (const std::string& line : lines) out << line << "\n";
 }
 
-void replace_once(std::string& text, std::string_view what, std::string_view by) {
-    text = replaced(text, what, by);
-}
-
 }  // namespace
 
 TEST_CASE("An archive, and results with other ends of lines and another order of rows, give the very report") {
@@ -100,23 +96,13 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
     };
     const auto of_file = [](const std::string& name, const std::string& what, const std::string& by) {
         return [=](const std::filesystem::path& results) {
-            std::string text = bytes_of_file(results / name);
-            replace_once(text, what, by);
+            const std::string text = replaced(bytes_of_file(results / name), what, by);
             std::ofstream(results / name, std::ios::binary) << text;
         };
     };
-    const std::string rows = "c3/results.csv was altered after the run: its rows do not have the checksum";
-    refused(rows, of_table([](auto& lines) { replace_once(lines[6], "50.000000", "50.000001"); }));
-    refused(rows, of_table([](auto& lines) {
-                for (std::size_t i = 1; i < lines.size(); ++i) replace_once(lines[i], "50.000000", "25.000000");
-            }));
-    refused("c3/results.csv:7: the row is exact, but its digest is '0000000000000000'; that of the scene is " +
-                std::string(worlds::exact_digest),
-            of_table([](auto& lines) { replace_once(lines[6], worlds::exact_digest, "0000000000000000"); }));
-    const std::size_t there = lines_of(bytes_of_file(whole / "c3/results.csv")).size() - 1;
-    refused("c3/results.csv has " + std::to_string(there - 1) + " rows; when the run was finished it had " +
-                std::to_string(there),
-            of_table([](auto& lines) { lines.erase(lines.begin() + 6); }));
+    // seal.cpp has what else may be altered in a table.
+    refused("c3/results.csv was altered after the run: its rows do not have the checksum",
+            of_table([](auto& lines) { lines[6] = replaced(lines[6], "50.000000", "50.000001"); }));
     refused("c3/manifest.json was altered after the run",
             of_file("c3/manifest.json", worlds::exact_digest, "0000000000000000"));
     refused("c6/process-1.json was altered after the run", of_file("c6/process-1.json", "0.6", "0.5"));

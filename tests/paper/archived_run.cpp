@@ -7,6 +7,15 @@
 namespace {
 
 const std::filesystem::path root = AABBLAB_CONFIGS "/../..";
+const std::string full_run = "paper/archive/full_run.tar.xz";
+
+/// Judges an archive, which is whole, into a folder.
+void judge_published(const std::string& archive, const temporary_folder& folder) {
+    const program_result judged =
+        run_well({"reproduce", "--judge", (root / archive).string(), "--out", folder.path().string()});
+    CHECK_FALSE(holds(judged.err, "not sealed"));
+    CHECK(judged.out.ends_with("These results are the published run, " + archive + ".\n"));
+}
 
 }  // namespace
 
@@ -16,9 +25,8 @@ TEST_CASE("What is unpacked of an archive ends with the program, however that en
     const temporary_folder folder;
     const std::filesystem::path unpacked = folder / "tmp";
     std::filesystem::create_directory(unpacked);
-    const std::string archive = (root / "paper/archive/full_run.tar.xz").string();
     const pid_t program = started({"env", "TMPDIR=" + unpacked.string(), AABBLAB_UNDER_TEST, "reproduce", "--judge",
-                                   archive, "--out", (folder / "out").string()});
+                                   (root / full_run).string(), "--out", (folder / "out").string()});
     // In the midst of it.
     const bool began = comes_true([&] { return !std::filesystem::is_empty(unpacked); });
     usleep(200'000);
@@ -32,11 +40,7 @@ TEST_CASE("What is unpacked of an archive ends with the program, however that en
 
 TEST_CASE("The archived run is whole, README says what is found in it, and so does a program of another language") {
     const temporary_folder folder;
-    const std::string archive = (root / "paper/archive/full_run.tar.xz").string();
-    const program_result judged = run_well({"reproduce", "--judge", archive, "--out", folder.path()});
-    CHECK_FALSE(holds(judged.err, "not sealed"));
-    CHECK(judged.out.ends_with("These results are the published run, paper/archive/full_run.tar.xz.\n"));
-
+    judge_published(full_run, folder);
     const std::string report = bytes_of_file(folder / "report.md");
     const std::size_t from = report.find("\n|") + 1;
     const std::string whole = report.substr(from, report.find("\n\n", from) + 1 - from);
@@ -46,17 +50,13 @@ TEST_CASE("The archived run is whole, README says what is found in it, and so do
     REQUIRE(holds(table, "| C13 |"));
     CHECK(holds(bytes_of_file(root / "README.md"), table));
 
-    const program_result again =
-        run_command({"python3", (root / "tests/paper/recompute.py").string(), folder.path(), archive});
+    const program_result again = run_command(
+        {"python3", (root / "tests/paper/recompute.py").string(), folder.path(), (root / full_run).string()});
     INFO(again.out + again.err);
     CHECK(again.status == 0);
     CHECK(again.out.ends_with("of 14 claims recomputed, 0 differences\n"));
 }
 
 TEST_CASE("The archived quick run is whole, and what quick runs are compared with") {
-    const temporary_folder folder;
-    const program_result judged =
-        run_well({"reproduce", "--judge", (root / "paper/archive/quick_run.tar.xz").string(), "--out", folder.path()});
-    CHECK_FALSE(holds(judged.err, "not sealed"));
-    CHECK(judged.out.ends_with("These results are the published run, paper/archive/quick_run.tar.xz.\n"));
+    judge_published("paper/archive/quick_run.tar.xz", temporary_folder());
 }

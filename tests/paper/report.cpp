@@ -15,18 +15,15 @@ using aabblab::verdict_kind;
 namespace {
 
 claim_result claim(const std::string& id, verdict_kind verdict, double ratio, aabblab::interval range) {
-    claim_result c;
-    c.id = id;
-    c.claim = "What the paper says in " + id;
-    c.measured = "one over the other";
-    c.verdict = verdict;
-    c.sentence = "The verdict on " + id + " in words.";
-    c.brief = "The verdict on " + id + " in brief.";
-    c.because = "The figures of " + id + ".";
-    c.has_primary = true;
-    c.primary.ratio = ratio;
-    c.primary.range = range;
-    return c;
+    return {.id = id,
+            .claim = "What the paper says in " + id,
+            .measured = "one over the other",
+            .verdict = verdict,
+            .sentence = "The verdict on " + id + " in words.",
+            .brief = "The verdict on " + id + " in brief.",
+            .because = "The figures of " + id + ".",
+            .has_primary = true,
+            .primary = {.ratio = ratio, .range = range}};
 }
 
 aabblab::reproduction made_up() {
@@ -144,14 +141,6 @@ TEST_CASE("The rule is drawn once, and every verdict that there can be is explai
     for (const char* word : {"Holds", "Holds in part", "No difference", "Does not hold", "Undecided"})
         CHECK(holds(page, ">" + std::string(word) + "</span></dt>"));
     CHECK(holds(page, "Verdicts by band."));
-}
-
-TEST_CASE("The page asks the network for nothing and runs nothing") {
-    const std::string page = written(made_up()).html;
-    for (const char* part : {"<script", "<link rel=\"stylesheet", "@import", "url(", "<iframe", "onload"})
-        CHECK_FALSE(holds(page, part));
-    for (const std::string& to : found_in(page, R"((?:src|href)="([^"]{0,5}))"))
-        CHECK((to.starts_with("data:") || to.starts_with("#")));
 }
 
 TEST_CASE("The paper learns from its numbers which claims there are, and what each has") {

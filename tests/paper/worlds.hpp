@@ -230,17 +230,14 @@ struct claim_row {
 /// A row for each claim.
 inline const std::vector<claim_row>& claim_rows() {
     static const std::vector<claim_row> all{
-        {"C1",
-         "no difference",
-         true,
-         {"brownian, objects 10,000, displacement 0.1", "brownian, objects 10,000, displacement 0.1, sweep all_axes",
-          "brownian, objects 10,000, displacement 0.001, over incremental"}},
+        {.id = "C1",
+         .primaries = {"brownian, objects 10,000, displacement 0.1",
+                       "brownian, objects 10,000, displacement 0.1, sweep all_axes",
+                       "brownian, objects 10,000, displacement 0.001, over incremental"}},
         {"C2", "holds", false},
-        {"C3",
-         "no difference",
-         true,
-         {"brownian, objects 10,000, displacement 0.1, gaps ciura",
-          "line, objects 100,000, displacement 300, gaps ciura"}},
+        {.id = "C3",
+         .primaries = {"brownian, objects 10,000, displacement 0.1, gaps ciura",
+                       "line, objects 100,000, displacement 300, gaps ciura"}},
         {"C4", "holds in part"},  // more segments bring nothing, and fewer lose nothing
         {"C5"},
         {"C6", "holds", false},
@@ -250,10 +247,10 @@ inline const std::vector<claim_row>& claim_rows() {
         {"C9"},
         {"C10", "holds"},
         {"C11"},
-        {"C12",
-         "no difference",
-         false,
-         {"brownian, objects 10,000, displacement 0.1", "brownian, objects 10,000, displacement 0.1, sweep all_axes"}},
+        {.id = "C12",
+         .is_timed = false,
+         .primaries = {"brownian, objects 10,000, displacement 0.1",
+                       "brownian, objects 10,000, displacement 0.1, sweep all_axes"}},
         {"C13", "holds", false},
     };
     return all;
