@@ -45,8 +45,7 @@ std::filesystem::path packed(const temporary_folder& folder, const std::vector<e
     return file;
 }
 
-void is_refused(const std::filesystem::path& file, const std::string& sentence,
-                const aabblab::archive_limits& limits = {}) {
+void is_refused(const std::filesystem::path& file, const std::string& sentence, aabblab::archive_limits limits = {}) {
     CHECK_THROWS_MATCHES(unpacked_archive(file, "results", limits), aabb::input_error,
                          MessageMatches(ContainsSubstring(sentence)));
 }
@@ -132,7 +131,6 @@ TEST_CASE("An archive that is cut off, damaged or of another kind is refused") {
     damaged[whole.size() / 2] = static_cast<char>(~damaged[whole.size() / 2]);
     is_refused(folder.write("damaged.tar.xz", damaged), "damaged.tar.xz is damaged or cut off: ");
     for (const std::string& foreign : {std::string(), std::string("PK\3\4 a zip"), noise(1000), whole.substr(0, 10)})
-        is_refused(folder.write("foreign", foreign),
-                   "foreign is not an archive of results, which is tar compressed by xz");
+        is_refused(folder.write("foreign", foreign), "is not an archive of results, which is tar compressed by xz");
     is_refused(folder / "none", "none cannot be read");
 }

@@ -1,6 +1,5 @@
 #include "program.hpp"
 
-import aabb.policy;
 import aabb.registry;
 import aabblab.archive;
 import aabblab.atlas;
@@ -119,9 +118,8 @@ TEST_CASE("A model of a line's times is fitted to the map, and judged by the sce
             for (const double pairs_an_object : {0.1, 2.0}) {
                 // 10 ns a box and 5 a pair; beside the map, half as much again.
                 const double n = static_cast<double>(objects);
-                const double ms = (10 * n + 5 * n * pairs_an_object) * 1e-6;
-                atlas.push_back(
-                    cloud("0.1", {line("linear", unseen ? 1.5 * ms : ms), line("slow", 1e-6 * n * n)}, unseen));
+                const double ms = (10 * n + 5 * n * pairs_an_object) * (unseen ? 1.5e-6 : 1e-6);
+                atlas.push_back(cloud("0.1", {line("linear", ms), line("slow", 1e-6 * n * n)}, unseen));
                 atlas.back().scene.settings[0].value = std::to_string(objects);
                 atlas.back().measures.objects = objects;
                 atlas.back().measures.pairs_an_object = pairs_an_object;
@@ -174,8 +172,7 @@ TEST_CASE("A single ratio of single repeats is as sure as the repeats of others 
 
 TEST_CASE("Whoever a statement speaks of plays in the map") {
     std::set<std::string> players;
-    const aabblab::experiment e =
-        aabblab::read_experiment(AABBLAB_CONFIGS "/atlas/atlas.toml", aabblab::experiment_size::full);
+    const auto e = aabblab::read_experiment(AABBLAB_CONFIGS "/atlas/atlas.toml", aabblab::experiment_size::full);
     for (const std::string& engine : e.engines) players.insert(engine);
     for (const aabb::composition& c : e.compositions) {
         std::string label;

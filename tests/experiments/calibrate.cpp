@@ -155,12 +155,10 @@ TEST_CASE("What is wrong in a file of costs is said with its line") {
           "costs.toml:9: search_box must be a number above 0");
     CHECK(refusal_of(replaced(good, "\nprocessor", "\nprocessors")) ==
           "costs.toml:1: there is no processor; aabblab calibrate writes it");
-    CHECK(
-        refusal_of(replaced(good, "\n[costs]", "\nmore = 1\n[costs]")).starts_with("costs.toml:8: unknown key 'more'"));
+    CHECK(refusal_of(replaced(good, "\n[costs]", "\nmore=1\n[costs]")).starts_with("costs.toml:8: unknown key 'more'"));
     CHECK(refusal_of(good + "[").starts_with("costs.toml:"));
     // Of another version nothing but that is known.
-    CHECK(refusal_of("version = \"0.0.1\"\nprocessor = \"p\"\ninstructions = \"i\"\n[costs]\nanything = 1\n") ==
-          "accepted");
+    CHECK(refusal_of("version = \"0.0.1\"\nprocessor = \"p\"\ninstructions = \"i\"\n[costs]\na = 1\n") == "accepted");
 }
 
 TEST_CASE("The program plans by the costs that are kept, and says so") {
@@ -180,8 +178,7 @@ TEST_CASE("The program plans by the costs that are kept, and says so") {
     const nlohmann::json costs = kept.costs_of_run();
     CHECK(costs["source"] == "calibrated");
     CHECK(costs["ns"].size() == aabb::cost_infos.size());
-    for (const aabb::cost_info& cost : aabb::cost_infos)
-        CHECK(costs["ns"][std::string(cost.name)] == odd_costs().*cost.value);
+    for (const auto& cost : aabb::cost_infos) CHECK(costs["ns"][std::string(cost.name)] == odd_costs().*cost.value);
 }
 
 TEST_CASE("A run is not resumed with other costs") {
@@ -189,9 +186,7 @@ TEST_CASE("A run is not resumed with other costs") {
     REQUIRE(kept.run_experiment().status == 0);
     CHECK(kept.run_experiment({"--resume"}).status == 0);
     REQUIRE(kept.run({"calibrate", "--reset"}).status == 0);
-    const program_result other = kept.run_experiment({"--resume"});
-    CHECK(other.status == 2);
-    CHECK(holds(other.err, "were made with other costs (aabblab calibrate)"));
+    CHECK(holds(as_refused(kept.run_experiment({"--resume"})).err, "were made with other costs (aabblab calibrate)"));
 }
 
 TEST_CASE("Costs of another processor, instruction set or version are left alone, with a note") {
@@ -208,9 +203,7 @@ TEST_CASE("Costs of another processor, instruction set or version are left alone
 
 TEST_CASE("A malformed file of costs stops every command but calibrate, which removes it") {
     const configured wrong(replaced(text_here(), "cut_test", "cut_tets"));
-    const program_result listed = wrong.run({"list"});
-    CHECK(listed.status == 2);
-    CHECK(is_one_sentence(listed.err));
+    const program_result listed = as_refused(wrong.run({"list"}));
     CHECK(holds(listed.err, "costs.toml:17: unknown key of [costs] 'cut_tets'; did you mean 'cut_test'?"));
     CHECK(holds(listed.err, "; aabblab calibrate --reset removes it"));
     CHECK(wrong.run({"--version"}).status == 0);
@@ -247,10 +240,7 @@ TEST_CASE("calibrate writes over no file but one of costs") {
 TEST_CASE("calibrate says where costs cannot be kept, before it measures") {
     const configured user;
     user.folder.write("file", "");
-    const program_result refused =
-        user.run({"calibrate", "--quick", "--out", (user.folder / "file/costs.toml").string()});
-    CHECK(refused.status == 2);
-    CHECK(is_one_sentence(refused.err));
+    as_refused(user.run({"calibrate", "--quick", "--out", (user.folder / "file/costs.toml").string()}));
     CHECK(holds(run_command({"env", "-u", "HOME", "-u", "XDG_CONFIG_HOME", AABBLAB_UNDER_TEST, "calibrate"}).err,
                 "--out FILE says where costs go"));
     CHECK(user.run({"calibrate", "--reset", "--quick"}).status == 2);

@@ -100,9 +100,3 @@ TEST_CASE("classify names the line and the number that is wrong, after the answe
     REQUIRE(is_one_sentence(result.err));
     REQUIRE(holds(result.err, said));
 }
-
-TEST_CASE("classify refuses what is no readable file") {
-    const temporary_folder folder;
-    for (const std::string& file : {(folder / "missing.txt").string(), folder.path().string()})
-        REQUIRE(holds(run_refused({"classify", file}).err, file));
-}

@@ -12,6 +12,8 @@ namespace {
 
 /// The least there is to say.
 const std::string minimal = "name = \"test\"\n[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
+const std::string compose = minimal + "[compose]\n";
+const std::string measure = minimal + "[measure]\n";
 
 experiment parsed(const std::string& text, experiment_size size = experiment_size::full) {
     return aabblab::parse_experiment(text, "test.toml", size);
@@ -32,9 +34,7 @@ TEST_CASE("A config that says little has the default composition, nine repeats a
 }
 
 TEST_CASE("Strategies that a config does not name are played where it says so, but none that is refused") {
-    const auto played = [](const std::string& compose) {
-        return parsed(minimal + "[compose]\n" + compose).compositions;
-    };
+    const auto played = [](const std::string& strategies) { return parsed(compose + strategies).compositions; };
     const std::string rest = "partition = \"none\"\nsweep = [\"one_axis\", \"incremental\"]\n";
     // incremental goes with insertion alone.
     std::vector<std::string> sorts;
@@ -44,7 +44,7 @@ TEST_CASE("Strategies that a config does not name are played where it says so, b
     REQUIRE(std::set(sorts.begin(), sorts.end()).size() == aabb::strategies(aabb::strategy_kind::sort).size());
     REQUIRE(std::ranges::count(sorts, "insertion + none + incremental") == 1);
     REQUIRE(std::ranges::count(sorts, "shell + none + one_axis") == 0);
-    REQUIRE(refusal_of(minimal + "[compose]\nsort = [\"std\", { others_but = [\"shall\"] }]\n") ==
+    REQUIRE(refusal_of(compose + "sort = [\"std\", { others_but = [\"shall\"] }]\n") ==
             "test.toml:6: unknown sort 'shall'; did you mean 'shell'?");
 }
 
@@ -121,27 +121,25 @@ TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in 
 }
 
 TEST_CASE("A metric that is named is recorded and shown; a group is recorded") {
-    const experiment e = parsed(minimal + "[measure]\nmetrics = [\"time\", \"box_tests\", \"tree_bytes\"]\n");
+    const experiment e = parsed(measure + "metrics = [\"time\", \"box_tests\", \"tree_bytes\"]\n");
     REQUIRE(e.recorded ==
             std::set{aabblab::metric_group::time, aabblab::metric_group::counts, aabblab::metric_group::bytes});
     REQUIRE(e.shown == std::vector<std::string>{"box_tests", "tree_bytes"});
-    REQUIRE(refusal_of(minimal + "[measure]\nmetrics = [\"box_test\"]\n")
-                .ends_with("unknown metric 'box_test'; did you mean 'box_tests'?"));
 }
 
 TEST_CASE("What was a key or a parameter once is refused with the new spelling") {
     REQUIRE(
-        refusal_of(minimal + "[compose]\nsplit_large = 4\n")
+        refusal_of(compose + "split_large = 4\n")
             .ends_with("'split_large' is a strategy, not a kind of them; write prepare = \"split_large\", or { name = "
                        "\"split_large\", … } with its parameters"));
     REQUIRE(
-        refusal_of(minimal + "[compose]\ntree = { name = \"leafless\", build = \"sah\" }\n")
+        refusal_of(compose + "tree = { name = \"leafless\", build = \"sah\" }\n")
             .ends_with(
                 "leafless has no parameter build, which is a kind of its own: write build = \"sah\" or --build sah"));
 }
 
 TEST_CASE("A strategy may be written as the command line takes it, and what stands under quick is checked at once") {
-    const experiment e = parsed(minimal + "[compose]\npartition = \"axial_cut:axes=3\"\n");
+    const experiment e = parsed(compose + "partition = \"axial_cut:axes=3\"\n");
     REQUIRE(to_text(e.compositions[0], aabb::stage::global_search) == "std + axial_cut:axes=3 + one_axis");
     REQUIRE_THROWS(parsed(minimal + "quick = { objects = -1 }\n"));
 }
@@ -165,8 +163,7 @@ TEST_CASE("The option --quick takes what the config says under quick") {
 }
 
 TEST_CASE("The hash is of what a config says, not of how it is written") {
-    const std::string text =
-        minimal + "frames = 7\n[compose]\nsort = [\"insertion\", \"std\"]\n[measure]\nrepeats = 9\n";
+    const auto text = minimal + "frames = 7\n[compose]\nsort = [\"insertion\", \"std\"]\n[measure]\nrepeats = 9\n";
     const auto changed = [&](const std::string& from, const std::string& to) {
         return aabblab::hash_of(parsed(replaced(text, from, to)));
     };
@@ -193,9 +190,9 @@ TEST_CASE("What is asked of meshes, and with which caches, is read, checked and 
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\ncaches = \"cold\"\n")) != plain);
     REQUIRE(refusal_of(meshes + "[measure]\nask = \"frist\"\n")
                 .ends_with(":7: unknown ask 'frist'; did you mean 'first'?"));
-    REQUIRE(refusal_of(minimal + "[measure]\ncaches = \"cold\"\n")
+    REQUIRE(refusal_of(measure + "caches = \"cold\"\n")
                 .ends_with("caches = \"cold\" is for scenes of meshes, and brownian has none"));
-    REQUIRE(refusal_of(minimal + "[measure]\nask = \"first\"\n")
+    REQUIRE(refusal_of(measure + "ask = \"first\"\n")
                 .ends_with("ask = \"first\" is for scenes of meshes, and brownian has none"));
 }
 
@@ -226,7 +223,7 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
     const auto [text, place, said] = GENERATE_COPY(table<std::string, std::string, std::string>({
         {"name = \"x\nseed = 1\n", ":1:10: ", "this is not TOML"},
         {"name = \"x\"\nseed = = 1\n", ":2:8: ", "this is not TOML"},
-        {minimal + "[compose]\nsort = \"std\"\nsort = \"std\"\n", ":7:", "this is not TOML"},
+        {compose + "sort = \"std\"\nsort = \"std\"\n", ":7:", "this is not TOML"},
         {"seed = 1\n", ":1: ", "has no name"},
         {"name = \"a/b\"\n", ":1: ", "'a/b' must consist of letters, digits, - and _"},
         {"name = 3\n", ":1: ", "name is a number; expected a name"},
@@ -242,8 +239,8 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
         {minimal + "quick = true\n", ":5: ", "expected a table"},
         {"name = \"x\"\n[[scene]]\nkind = \"mesh_swarm\"\nmeshes = []\n",
          ":4: ", "meshes is an empty list; expected at least one mesh"},
-        {minimal + "[measure]\nmetrics = []\n", ":6: ", "metrics is an empty list; expected at least one metric"},
-        {minimal + "[measure]\nrepeats = 99999999999\n", ":6: ", "repeats must be at most 1000000"},
+        {measure + "metrics = []\n", ":6: ", "metrics is an empty list; expected at least one metric"},
+        {measure + "repeats = 99999999999\n", ":6: ", "repeats must be at most 1000000"},
         {minimal + "meshes = [\"icosphere\"]\n", ":5: ", "unknown key of scene brownian 'meshes'"},
         {minimal + "frames = \"many\"\n", ":2: ", "frames must be"},
         {minimal + "frames = []\n", ":5: ", "frames is an empty list"},
@@ -256,24 +253,22 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
         {"engines = [\"cgall\"]\n" + minimal, ":1: ", "unknown engine 'cgall'; did you mean 'cgal'?"},
         {"engines = 3\n" + minimal, ":1: ", "engines is a number; expected a list or a name"},
         {"engines = [\"cgal\", \"cgal\"]\n" + minimal, ":1: ", "engines lists 'cgal' twice"},
-        {minimal + "[compose]\nsortt = \"std\"\n", ":6: ", "unknown key of [compose] 'sortt'; did you mean 'sort'?"},
-        {minimal + "[compose]\nsort = [\"std\",\n\"insert\"]\n",
-         ":7: ", "unknown sort 'insert'; did you mean 'insertion'?"},
-        {minimal + "[compose]\nsort = []\n", ":6: ", "sort is an empty list"},
-        {minimal + "[compose]\nsort = 3\n", ":6: ", "sort is a number; expected a name"},
-        {minimal + "[compose]\nsort = { gaps = \"ciura\" }\n", ":6: ", "sort has no name"},
-        {minimal + "[compose]\nsort = [\"std\", \"std\"]\n", ":6: ", "sort lists 'std' twice"},
-        {minimal + "[compose]\npartition = { name = \"uniform_grid\", cellsize = 2 }\n",
-         ":6: ", "did you mean 'cell_size'?"},
-        {minimal + "[compose]\npartition = { name = \"uniform_grid\", cell_size = -2 }\n",
+        {compose + "sortt = \"std\"\n", ":6: ", "unknown key of [compose] 'sortt'; did you mean 'sort'?"},
+        {compose + "sort = [\"std\",\n\"insert\"]\n", ":7: ", "unknown sort 'insert'; did you mean 'insertion'?"},
+        {compose + "sort = []\n", ":6: ", "sort is an empty list"},
+        {compose + "sort = 3\n", ":6: ", "sort is a number; expected a name"},
+        {compose + "sort = { gaps = \"ciura\" }\n", ":6: ", "sort has no name"},
+        {compose + "sort = [\"std\", \"std\"]\n", ":6: ", "sort lists 'std' twice"},
+        {compose + "partition = { name = \"uniform_grid\", cellsize = 2 }\n", ":6: ", "did you mean 'cell_size'?"},
+        {compose + "partition = { name = \"uniform_grid\", cell_size = -2 }\n",
          ":6: ", "cell_size must be a number above 0 or auto, not '-2'"},
-        {minimal + "[measure]\nrepeats = 0\n", ":6: ", "repeats must be a whole number, at least 1, not 0"},
-        {minimal + "[measure]\nrepeats = \"3\"\n",
-         ":6: ", "repeats must be a whole number, at least 1, not the text \"3\""},
-        {minimal + "[measure]\nrepeats = 2.5\n", ":6: ", "repeats must be a whole number, at least 1, not 2.5"},
-        {minimal + "[measure]\nmetrics = [\"times\"]\n", ":6: ", "unknown metric 'times'; did you mean 'time'?"},
-        {minimal + "[measure]\nmetrics = [\"xyzzyq\"]\n", ":6: ", "unknown metric 'xyzzyq'; see aabblab list metrics"},
-        {minimal + "[measure]\nmetric = []\n", ":6: ", "did you mean 'metrics'?"},
+        {measure + "repeats = 0\n", ":6: ", "repeats must be a whole number, at least 1, not 0"},
+        {measure + "repeats = \"3\"\n", ":6: ", "repeats must be a whole number, at least 1, not the text \"3\""},
+        {measure + "repeats = 2.5\n", ":6: ", "repeats must be a whole number, at least 1, not 2.5"},
+        {measure + "metrics = [\"times\"]\n", ":6: ", "unknown metric 'times'; did you mean 'time'?"},
+        {measure + "metrics = [\"box_test\"]\n", ":6: ", "did you mean 'box_tests'?"},
+        {measure + "metrics = [\"xyzzyq\"]\n", ":6: ", "unknown metric 'xyzzyq'; see aabblab list metrics"},
+        {measure + "metric = []\n", ":6: ", "did you mean 'metrics'?"},
     }));
     const std::string sentence = refusal_of(text);
     INFO(text << "\n" << sentence);
@@ -284,11 +279,9 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
 
 TEST_CASE("A config that cannot be read is refused by name") {
     const temporary_folder folder;
-    REQUIRE_THROWS_AS(aabblab::read_experiment(folder / "no.toml", experiment_size::full), aabb::input_error);
     REQUIRE_THROWS_WITH(
         aabblab::read_experiment(folder / "first.toml", experiment_size::full),
         Catch::Matchers::EndsWith("first.toml is not there; did you mean " AABBLAB_CONFIGS "/first.toml?"));
-    REQUIRE_THROWS_AS(aabblab::read_experiment(folder.path(), experiment_size::full), aabb::input_error);
     REQUIRE(aabblab::read_experiment(folder.write("yes.toml", minimal), experiment_size::full).text == minimal);
 }
 

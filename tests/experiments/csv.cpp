@@ -1,9 +1,6 @@
 #include <rapidcheck.h>
 
-#include "../testing.hpp"
-
-import aabb;
-import aabblab.results;
+#include "csv_rows.hpp"
 
 using aabblab::csv_line;
 using aabblab::read_csv;
@@ -11,12 +8,6 @@ using aabblab::read_csv;
 namespace {
 
 using table = std::vector<std::vector<std::string>>;
-
-table fields_of(const std::string& text) {
-    table all;
-    for (const auto& record : read_csv(text, "t.csv").records) all.push_back(record.fields);
-    return all;
-}
 
 std::string refusal_of(const std::string& text) {
     return refusal_in<aabb::input_error>([&] { return read_csv(text, "t.csv"); });

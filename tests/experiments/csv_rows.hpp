@@ -4,6 +4,13 @@
 
 import aabblab.results;
 
+/// The fields of each record of a CSV text.
+[[nodiscard]] inline std::vector<std::vector<std::string>> fields_of(const std::string& text) {
+    std::vector<std::vector<std::string>> all;
+    for (const aabblab::csv_record& record : aabblab::read_csv(text, "t.csv").records) all.push_back(record.fields);
+    return all;
+}
+
 /// The rows of a CSV file below its columns' names, each cell by the name of its column.
 [[nodiscard]] inline std::vector<std::map<std::string, std::string>> csv_rows(const std::filesystem::path& file) {
     const auto records = aabblab::read_csv(bytes_of_file(file), file.string()).records;

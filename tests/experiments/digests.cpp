@@ -2,7 +2,7 @@
 
 #include "program_json.hpp"
 
-import aabblab.results;
+#include "csv_rows.hpp"
 
 namespace {
 
@@ -11,11 +11,9 @@ using rows = std::vector<std::vector<std::uint32_t>>;
 /// What a CSV file holds below its column names.
 rows rows_of(const std::string& text) {
     rows all;
-    for (const std::string& line : lines_of(text.substr(text.find('\n') + 1))) {
-        std::istringstream numbers(line);
+    for (const std::vector<std::string>& fields : fields_of(text.substr(text.find('\n') + 1))) {
         std::vector<std::uint32_t>& row = all.emplace_back();
-        for (std::string number; std::getline(numbers, number, ',');)
-            row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
+        for (const std::string& number : fields) row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
     }
     return all;
 }

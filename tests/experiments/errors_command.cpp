@@ -204,9 +204,8 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
         "[[curve]]\nprepare = { name = \"neighbour_list\", margin = [0.1, 0.5] }\n"
         "[[curve]]\nlabel = \"stale\"\nprepare = { name = \"neighbour_list\", margin = 0, every = [4, 8] }\n"
         "[[plot]]\nx = \"frame_ms\"\ny = \"wrong_share\"\n[[plot]]\nx = \"all_bytes\"\ny = \"box_tests\"\n");
-    const program_result ran = run_well({"errors", config, "--out", folder / "out"});
     // Lines are broken where they are too long, names of compositions too.
-    std::string words = ran.out;
+    std::string words = run_well({"errors", config, "--out", folder / "out"}).out;
     std::erase_if(words, [](char c) { return c == ' ' || c == '\n'; });
     CHECK(holds(words, "hasthebestwrong_share,0,withaframe_msof"));
     std::map<std::string, std::set<std::string>> answers;
@@ -219,9 +218,8 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
                                                                   {"neighbour_list:margin=0.5", exact},
                                                                   {"neighbour_list:margin=0,every=4", stale},
                                                                   {"neighbour_list:margin=0,every=8", stale}});
-    const std::string scene = "brownian-objects-300-frames-9";
-    for (const std::string plot : {"wrong_share_over_frame_ms_", "box_tests_over_all_bytes_"}) {
-        const std::string points = bytes_of_file(folder / "out/figures" / (plot + scene + ".csv"));
+    for (const std::string plot : {"wrong_share_over_frame_ms", "box_tests_over_all_bytes"}) {
+        const auto points = bytes_of_file(folder / "out/figures" / (plot + "_brownian-objects-300-frames-9.csv"));
         INFO(points);
         CHECK(std::ranges::count(points, '\n') > 4);
     }
@@ -277,9 +275,8 @@ TEST_CASE("what one seed of several gets wrong shows in the plot") {
     // Fewer than half of the seeds, so that a median would be zero.
     REQUIRE(seeds > 0);
     REQUIRE(seeds < 3);
-    const auto study = aabblab::read_error_study(config, experiment_size::full);
     const auto scenes = aabblab::summarise(aabblab::read_rows(folder / "out/results.csv"));
-    const std::vector<aabblab::figure> figures = metric_figures(study, scenes);
+    const auto figures = metric_figures(aabblab::read_error_study(config, experiment_size::full), scenes);
     const auto stale = std::ranges::find(figures.at(0).lines, "stale", &aabblab::series::label);
     REQUIRE(stale != figures[0].lines.end());
     CHECK(stale->points.at(0).y > 0.5 / static_cast<double>(exact) * static_cast<double>(missing));
@@ -333,7 +330,6 @@ TEST_CASE("the config that errors runs by default reads, and classify takes the 
     CHECK(hits.curves.empty());
     const std::string crossing = "0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 5 5 1\n";
     CHECK(run_program({"classify", "-", "--triangle", "epeck"}, crossing).out == "1\n");
-    CHECK(run_program({"classify", "-", "--triangle", "interval_arithmetic:fallback=intersects"}, crossing).out ==
-          "1\n");
+    CHECK(run_well({"classify", "-", "--triangle", "interval_arithmetic:fallback=intersects"}, crossing).out == "1\n");
     CHECK(holds(run_program({"classify", "-", "--triangle", "epek"}, crossing).err, "did you mean 'epeck'?"));
 }

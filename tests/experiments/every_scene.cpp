@@ -18,9 +18,8 @@ TEST_CASE("every composition is exact on every scene of boxes") {
         if (info.name == "needles") scene.settings.push_back({"length", "4"});
         if (info.name == "mixed_sizes") scene.settings.push_back({"ratio", "20"});
         // All at once would take more memory than some machines have.
-        for (std::size_t begin = 0; begin < contenders.size(); begin += 250) {
-            const auto some =
-                std::span(contenders).subspan(begin, std::min<std::size_t>(250, contenders.size() - begin));
+        for (std::size_t at = 0; at < contenders.size(); at += 250) {
+            const auto some = std::span(contenders).subspan(at, std::min<std::size_t>(250, contenders.size() - at));
             const aabblab::scene_validation all = aabblab::validate_scene(scene, some);
             REQUIRE(all.contenders.size() == some.size());
             for (const aabblab::validated_row& v : all.contenders) {

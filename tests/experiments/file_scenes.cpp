@@ -125,8 +125,7 @@ TEST_CASE("Seeds of a config do not multiply what has none, and one of its own i
     CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + file);
     const std::string said = " recording plays a file as it is and has no seed";
     CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + said);
-    CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nquick = { seed = 1 }\n")) ==
-          "test.toml:6:" + said);
+    CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nquick={ seed = 1 }\n")) == "test.toml:6:" + said);
     CHECK_THROWS_AS(aabblab::make_box_scene({"recording", {{"file", file}}, {}, 1}), aabb::input_error);
     CHECK_NOTHROW(aabblab::make_box_scene({"recording", {{"file", file}}, {}, std::nullopt}));
     CHECK_THROWS_AS(aabblab::make_box_scene({"still", {}, {}, std::nullopt}), aabb::input_error);

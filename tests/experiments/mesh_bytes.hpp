@@ -4,6 +4,9 @@
 
 import aabblab.files;
 
+inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+
 using triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 /// A mesh in a file of that name.
@@ -33,5 +36,4 @@ template <class Value>
 }
 
 /// The text of an OFF file.
-inline constexpr const char* tetrahedron =
-    "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+inline constexpr char tetrahedron[] = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";

@@ -54,8 +54,7 @@ TEST_CASE("OFF in its variants") {
              std::string("OFF\n4 2 0\n\t+0 0.0 0e5\n1. 0 -0e0\n0 1e0 0\n0 0 100e-2\n") + faces,
          }) {
         CAPTURE(file);
-        const aabblab::loaded_mesh loaded = read("a.OFF", file);
-        require_two_triangles(loaded);
+        require_two_triangles(read("a.OFF", file));
     }
 }
 
@@ -100,27 +99,23 @@ TEST_CASE("OBJ: faces of its first versions are read, and statements that may ma
     require_two_triangles(read("a.obj", vertices + "f 1 2 3\nfo 1 3 4\n"));
     // A backslash carries a statement on, behind a blank or a word.
     require_two_triangles(read("a.obj", vertices + "f 1 2\\\n3\nf 1 \\\n3\\\n 4\n"));
-    const aabblab::loaded_mesh with_weights = read("a.obj", vertices + "v 0 0 0 \\\n1.0\nf 1 2 3\nf 1 3 4\n");
-    CHECK(with_weights.report.text().empty());
+    CHECK(read("a.obj", vertices + "v 0 0 0 \\\n1.0\nf 1 2 3\nf 1 3 4\n").report.text().empty());
     require_two_triangles(
         read("a.obj", vertices + "f 1 2 3\nf 1 3 4\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 \\\n3 4\nparm u 0 "
                                  "1\nend\nl 1 2\nl 2 3\nF 1 2 4\n"),
         "1 statement 'surf' skipped, 2 statements 'l' skipped, 1 statement 'F' skipped");
     std::string many = vertices + "f 1 2 3\nf 1 3 4\n";
     for (char name = 'a'; name < 'a' + 10; ++name) many += "x" + std::string(1, name) + " 1\n";
-    const std::string report = read("a.obj", many).report.text();
-    CHECK(report.ends_with("1 statement 'xh' skipped, 2 of other names skipped"));
+    CHECK(read("a.obj", many).report.text().ends_with("1 statement 'xh' skipped, 2 of other names skipped"));
 }
 
 TEST_CASE("A vertex that no face uses may be NaN or infinite, keeps its number and is in no box") {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinity = std::numeric_limits<float>::infinity();
     const std::string ply =
         "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
         "property list uchar int vertex_indices\nend_header\n";
-    const std::string values = raw(nan) + raw(-infinity) + raw(0.0F) + raw(2.0F) + raw(3.0F) + raw(4.0F) + raw(5.0F) +
-                               raw(3.0F) + raw(4.0F) + raw(2.0F) + raw(5.0F) + raw(4.0F) + raw(std::uint8_t{3}) +
-                               raw(1) + raw(2) + raw(3);
+    const std::string values = raw(not_a_number) + raw(-infinity) + raw(0.0F) + raw(2.0F) + raw(3.0F) + raw(4.0F) +
+                               raw(5.0F) + raw(3.0F) + raw(4.0F) + raw(2.0F) + raw(5.0F) + raw(4.0F) +
+                               raw(std::uint8_t{3}) + raw(1) + raw(2) + raw(3);
     const std::string rest = "2 3 4\n5 3 4\n2 5 4\n";
     for (const auto& [name, bytes] : {
              std::pair<std::string, std::string>{"a.off", "OFF\n4 1 0\nnan -inf 0\n" + rest + "3 1 2 3\n"},
@@ -220,11 +215,10 @@ TEST_CASE("PLY: text and binary, any scalar types, other properties and elements
 }
 
 TEST_CASE("PLY: faces may come before vertices") {
-    const aabblab::loaded_mesh loaded =
-        read("a.ply",
-             "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
-             "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
-    REQUIRE(loaded.mesh.triangles == triangles{{0, 1, 2}});
+    CHECK(read("a.ply",
+               "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
+               "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n")
+              .mesh.triangles == triangles{{0, 1, 2}});
 }
 
 TEST_CASE("STL: text and binary; equal vertices merge in the order of the file") {
@@ -240,42 +234,15 @@ TEST_CASE("STL: text and binary; equal vertices merge in the order of the file")
     REQUIRE(read("a.stl", stl_header(1) + stl_triangle({0, 0, 0, -0.0F, 0, 0, 1, 1, 1})).mesh.vertices.size() == 3);
 }
 
-TEST_CASE("glTF: nodes place their meshes, points are dropped") {
-    const temporary_folder folder;
-    std::string bytes;
-    for (const aabb::vec3f& v : corners)
-        for (int k = 0; k < 3; ++k) bytes += raw(v[k]);
-    for (const auto& t : two)
-        for (const std::uint32_t v : t) bytes += raw(static_cast<std::uint16_t>(v));
-    folder.write("a.bin", bytes);
-    const auto file = folder.write("a.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-        "nodes":[{"mesh":0,"translation":[10,0,0]}],
-        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":0},"mode":0}]}],
-        "buffers":[{"uri":"a.bin","byteLength":60}],
-        "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
-        "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
-                     {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}]})");
-    const aabblab::loaded_mesh loaded = aabblab::read_mesh(file);
-    REQUIRE(loaded.mesh.triangles == two);
-    REQUIRE(loaded.mesh.vertices[1] == aabb::vec3f{11, 0, 0});
-    REQUIRE(loaded.report.dropped == 4);
-}
-
 TEST_CASE("triangles of polygons stand in file order, and everything done to a mesh is counted") {
     const aabblab::loaded_mesh loaded = read("a.off",
                                              "OFF\n6 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.1 0 0\n16777217 0 0\n"
                                              "4 0 1 2 3\n5 0 1 2 3 4\n3 0 1 5\n2 0 1\n3 2 2 1\n");
     REQUIRE(loaded.mesh.triangles ==
             triangles{{0, 1, 2}, {0, 2, 3}, {4, 0, 1}, {3, 4, 1}, {1, 2, 3}, {0, 1, 5}, {2, 2, 1}});
-    REQUIRE(loaded.report.polygons == 2);
-    REQUIRE(loaded.report.concave == 1);
-    REQUIRE(loaded.report.zero_area == 3);
-    REQUIRE(loaded.report.rounded == 2);
-    REQUIRE(loaded.report.dropped == 1);
     REQUIRE(loaded.report.text() ==
             "1 polygon fan-triangulated, 1 concave polygon ear-clipped, 3 triangles of zero area kept, 2 coordinates "
-            "rounded to "
-            "float, 1 face of fewer than three corners dropped");
+            "rounded to float, 1 face of fewer than three corners dropped");
 }
 
 TEST_CASE("zero area is decided exactly") {

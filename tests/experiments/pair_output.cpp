@@ -5,15 +5,12 @@
 import aabb;
 import aabblab.pair_output;
 
-TEST_CASE("A pair that a stage reports twice is a defect") {
+TEST_CASE("A pair or a contact that a stage reports twice is a defect") {
     std::vector<aabb::index_pair> pairs = {{0, 1}, {0, 7}, {2, 3}};
     REQUIRE_NOTHROW(aabblab::require_each_once(pairs, "a stage"));
     pairs.insert(pairs.begin() + 1, {0, 7});
     REQUIRE_THROWS_MATCHES(aabblab::require_each_once(pairs, "a stage, frame 3"), aabblab::defect,
                            Catch::Matchers::Message("a stage, frame 3: the pair 0,7 was reported more than once"));
-}
-
-TEST_CASE("A contact that a stage reports twice is a defect") {
     std::vector<aabb::contact> contacts = {{0, 1, 2, 3}, {0, 1, 7, 3}, {0, 1, 7, 3}};
     REQUIRE_THROWS_MATCHES(aabblab::require_each_once(contacts, "a stage"), aabblab::defect,
                            Catch::Matchers::Message("a stage: the contact 0,1,7,3 was reported more than once"));

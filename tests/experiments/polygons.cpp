@@ -203,38 +203,30 @@ TEST_CASE("polygons: repeated corners count once") {
 }
 
 TEST_CASE("polygons: a boundary may touch itself, and go back where it came from") {
-    const auto require_filled = [](const flat_polygon& flat) {
+    // Each corner is two digits, its coordinates.
+    const auto require_filled = [](std::string_view corners) {
+        flat_polygon flat;
         polygon p;
-        for (const point& q : flat) p.push_back({static_cast<float>(q.u), static_cast<float>(q.v), 0});
+        for (std::size_t i = 0; i < corners.size(); i += 3) {
+            const point& q = flat.emplace_back(point{corners[i] - '0', corners[i + 1] - '0'});
+            p.push_back({static_cast<float>(q.u), static_cast<float>(q.v), 0});
+        }
         const aabblab::loaded_mesh loaded = cut(p);
         CHECK(loaded.report.concave == 1);
         require_fills(flat, loaded.mesh.triangles);
     };
     // A hole; two holes; a hole to which the way has a bend.
-    require_filled({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 4}, {3, 6}, {6, 6}, {6, 3}, {3, 4}});
-    require_filled({{0, 0},
-                    {9, 0},
-                    {9, 9},
-                    {0, 9},
-                    {0, 0},
-                    {1, 1},
-                    {1, 2},
-                    {2, 2},
-                    {1, 1},
-                    {3, 3},
-                    {3, 4},
-                    {4, 4},
-                    {3, 3},
-                    {1, 1}});
-    require_filled({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {2, 5}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}, {2, 5}});
+    require_filled("00 90 99 09 00 34 36 66 63 34");
+    require_filled("00 90 99 09 00 11 12 22 11 33 34 44 33 11");
+    require_filled("00 90 99 09 00 25 33 36 66 63 33 25");
     // Two squares that share a corner; two squares and a way from one to the other, with a bend.
-    require_filled({{0, 0}, {1, 0}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 1}, {0, 1}});
-    require_filled({{0, 0}, {1, 0}, {1, 1}, {2, 3}, {4, 2}, {5, 2}, {5, 3}, {4, 3}, {4, 2}, {2, 3}, {1, 1}, {0, 1}});
+    require_filled("00 10 11 21 22 12 11 01");
+    require_filled("00 10 11 23 42 52 53 43 42 23 11 01");
     // Needles outwards and inwards, one with a bend.
-    require_filled({{0, 0}, {4, 0}, {4, 2}, {6, 2}, {4, 2}, {4, 4}, {0, 4}});
-    require_filled({{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, 3}, {2, 2}, {4, 2}, {4, 4}, {0, 4}});
+    require_filled("00 40 42 62 42 44 04");
+    require_filled("00 40 42 22 23 22 42 44 04");
     // A corner that touches an edge.
-    require_filled({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}});
+    require_filled("00 40 44 20 04");
 }
 
 TEST_CASE("polygons: every decision is exact") {
@@ -245,8 +237,7 @@ TEST_CASE("polygons: every decision is exact") {
     };
     CHECK(cut_at(16777215) == 0);
     CHECK(cut_at(16777216) == 0);
-    const auto bent = [](float inwards, float scale) {
-        const float one = scale;
+    const auto bent = [](float inwards, float one) {
         return cut({{0, 0, one}, {3 * one, 0, one}, {3 * one, 3 * one, one}, {2 * one, 2 * one - inwards, one}});
     };
     CHECK(bent(0, 1).report.concave == 0);

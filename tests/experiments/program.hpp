@@ -122,13 +122,17 @@ inline program_result run_well(std::vector<std::string> arguments, const std::st
     return text.starts_with("aabblab: ") && text.find('\n') == text.size() - 1;
 }
 
-/// Runs the program where it must refuse, with status 2 and one sentence.
-inline program_result run_refused(std::vector<std::string> arguments, const std::string& input = {}) {
-    program_result result = run_program(std::move(arguments), input);
+/// The same result, which must be a refusal: status 2 and one sentence.
+inline program_result as_refused(program_result result) {
     INFO(result.out << result.err);
     REQUIRE(result.status == 2);
     REQUIRE(is_one_sentence(result.err));
     return result;
+}
+
+/// Runs the program where it must refuse.
+inline program_result run_refused(std::vector<std::string> arguments, const std::string& input = {}) {
+    return as_refused(run_program(std::move(arguments), input));
 }
 
 /// Command lines, and what each must say as it is refused.
@@ -151,6 +155,18 @@ inline void check_refused(const std::vector<std::string>& before, const refusals
     std::istringstream in(text);
     for (std::string line; std::getline(in, line);) lines.push_back(line);
     return lines;
+}
+
+/// `what` so many times, with `between`.
+[[nodiscard]] inline std::string repeated(const std::string& what, std::size_t times, const std::string& between = {}) {
+    std::string text;
+    for (std::size_t i = 0; i < times; ++i) text += (i == 0 ? "" : between) + what;
+    return text;
+}
+
+/// A unit cube with its lowest corner there.
+[[nodiscard]] inline aabb::box cube(float x, float y, float z) {
+    return {{x, y, z}, {x + 1, y + 1, z + 1}};
 }
 
 /// No line is longer than 80 characters.

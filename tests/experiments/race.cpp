@@ -157,8 +157,7 @@ TEST_CASE("Who was disturbed once is not dropped") {
         std::ofstream(played) << "once";
         return slow.who.make_global(counted);
     };
-    const aabblab::race_result race = race_of(scene, std::move(all), 5);
-    CHECK(holds(race.finalists, "disturbed"));
+    CHECK(holds(race_of(scene, std::move(all), 5).finalists, "disturbed"));
 }
 
 TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
@@ -202,8 +201,7 @@ TEST_CASE("Each repeat of a race begins with another racer") {
         racer& r = all.emplace_back(delayed(name, sleeping(5ms)));
         r.who = noted(r.who, name, file);
     }
-    const aabblab::race_result race = race_of(scene, std::move(all), 20);
-    REQUIRE(race.finalists.size() == 2);
+    REQUIRE(race_of(scene, std::move(all), 20).finalists.size() == 2);
     const std::string order = bytes_of_file(file);
     // A round, then at least five repeats.
     REQUIRE(order.size() >= 2 + 2 * 5);
@@ -239,8 +237,7 @@ TEST_CASE("What is done apart is told as far as it comes, and how it ends") {
     CHECK(refused.reason == "it is wrong");
     const temporary_folder folder;
     const std::string file = folder / "begun";
-    const aabblab::work_apart none =
-        aabblab::done_apart([&](const aabblab::telling&) { std::ofstream(file) << "yes"; }, 0);
+    const auto none = aabblab::done_apart([&](const aabblab::telling&) { std::ofstream(file) << "yes"; }, 0);
     CHECK(none.end == ending::stopped);
     CHECK(none.seconds == 0);
     CHECK_FALSE(std::filesystem::exists(file));
@@ -434,8 +431,7 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     const racer winner = finished("winner", 10, 1);
     const racer second = finished("second", 10, 1.01);
     const auto told = [](const aabblab::race_result& race, const std::string& begin) {
-        return std::ranges::any_of(aabblab::advice_of(race),
-                                   [&](const std::string& one) { return one.starts_with(begin); });
+        return std::ranges::any_of(aabblab::advice_of(race), [&](const auto& one) { return one.starts_with(begin); });
     };
     CHECK(told(ended({winner, second, automatic}), "auto (= x) takes 1."));
     racer noisy = finished("auto (= x)", {1, 3, 1, 3, 1, 3, 2.1});

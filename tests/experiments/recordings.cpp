@@ -70,8 +70,7 @@ TEST_CASE("a recording plays as it was recorded") {
          {std::vector<frame>{{}}, {{small}}, {{small, large}, {large, small}, {small, small}}, {{}, {}}}) {
         given_scene scene(frames);
         std::vector<std::size_t> heard;
-        aabblab::write_recording(scene, "name", "type", folder / "a.aabbs",
-                                 [&](std::size_t done) { heard.push_back(done); });
+        aabblab::write_recording(scene, "name", "type", folder / "a.aabbs", [&](auto done) { heard.push_back(done); });
         REQUIRE(heard.size() == frames.size());
         REQUIRE(heard.back() == frames.size());
         const auto recording = aabblab::open_recording(folder / "a.aabbs");
@@ -128,7 +127,6 @@ TEST_CASE("frames without objects are played up to a million of them") {
 
 TEST_CASE("recordings that cannot be used are refused") {
     const temporary_folder folder;
-    const float nan = std::numeric_limits<float>::quiet_NaN();
     using malformed = std::pair<std::string, std::string>;
     for (const auto& [bytes, error] : {
              malformed{"", "is empty"},
@@ -137,7 +135,7 @@ TEST_CASE("recordings that cannot be used are refused") {
              {std::string(400, 'x'), "is no recording: its header does not hold two names and two zeros"},
              {header(-1, 0), "its header announces -1 objects and 0 frames; neither can be negative"},
              {header(1, -1), "its header announces 1 objects and -1 frames; neither can be negative"},
-             {header(1, 0, box_bytes({0, 0, 0}, {nan, 1, 1})) + unit,
+             {header(1, 0, box_bytes({0, 0, 0}, {not_a_number, 1, 1})) + unit,
               "the world box in its header is inverted or not finite"},
              {header(1, 1) + unit,
               "its header announces 2 boxes (1 objects, 1 + 1 frames), but the file has 32 bytes of them, 32 each"},
@@ -149,9 +147,8 @@ TEST_CASE("recordings that cannot be used are refused") {
              {header(0, 2147483647), "a recording of 0 objects holds at most 1000000 frames, not 2147483648"},
              {header(2147483647, 2147483647) + unit,
               "its header announces 4611686016279904256 boxes (2147483647 objects, 2147483647 + 1 frames), but the "
-              "file "
-              "has 32 bytes of them, 32 each"},
-             {header(2, 1) + unit + unit + unit + box_bytes({0, nan, 0}, {1, 1, 1}),
+              "file has 32 bytes of them, 32 each"},
+             {header(2, 1) + unit + unit + unit + box_bytes({0, not_a_number, 0}, {1, 1, 1}),
               "frame 1: box 1 has a coordinate that is not finite"},
              {header(1, 0) + box_bytes({0, 2, 0}, {1, 1, 1}),
               "frame 0: box 0 is inverted: its minimum is above its maximum"},

@@ -21,8 +21,7 @@ std::string config_of(const std::string& mesh) {
 /// A small experiment, and a folder for what it makes.
 struct small_run {
     temporary_folder folder;
-    std::string config =
-        folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n");
+    std::string config = folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes=1\n");
     std::string out = folder / "out";
 };
 
@@ -34,10 +33,9 @@ TEST_CASE("Two runs do not write into one folder at once") {
     auto held = std::make_unique<aabblab::folder_lock>(folder / "out");
     CHECK_THROWS_WITH(aabblab::folder_lock(folder / "out"),
                       StartsWith("another aabblab writes into ") && EndsWith("with --out"));
-    const std::string said = "another aabblab writes into " + out;
     for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out},
                                   std::vector<std::string>{"reproduce", "--quick", "--out", out}})
-        CHECK(holds(run_refused(arguments).err, said));
+        CHECK(holds(run_refused(arguments).err, "another aabblab writes into " + out));
     CHECK(std::filesystem::is_empty(folder / "out"));
     held.reset();
     run_well({"run", config, "--out", out});
@@ -52,10 +50,9 @@ TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines
     const std::size_t second_line = text.find('\n') + 1;
     std::ofstream(folder / "out/results.csv", std::ios::app)
         << text.substr(second_line, text.find('\n', second_line) + 1 - second_line);
-    const std::string said = "/results.csv:11: the measurement of line 2 stands here again";
     for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out, "--resume"},
                                   std::vector<std::string>{"compare", out, out}})
-        CHECK(holds(run_refused(arguments).err, said));
+        CHECK(holds(run_refused(arguments).err, "/results.csv:11: the measurement of line 2 stands here again"));
 }
 
 TEST_CASE("Results of before a count was there are read without it, others are refused") {

@@ -246,8 +246,7 @@ TEST_CASE("huge objects of a swarm are the first, of the first mesh, and as long
 
 TEST_CASE("meshes that are not normalised keep their coordinates and still meet") {
     const temporary_folder folder;
-    const auto file =
-        folder.write("far.off", "OFF\n4 2 0\n1000 0 0\n1010 0 0\n1000 10 0\n1000 0 10\n3 0 1 2\n3 0 2 3\n");
+    const auto file = folder.write("a.off", "OFF\n4 2 0\n1000 0 0\n1010 0 0\n1000 10 0\n1000 0 10\n3 0 1 2\n3 0 2 3\n");
     for (const std::string kind : {"mesh_swarm", "mesh_pair"}) {
         const auto scene = aabblab::make_mesh_scene({kind, {{"normalise", "no"}}, {file.string()}, 1});
         REQUIRE(scene->meshes[0].vertices[1] == aabb::vec3f{1010, 0, 0});
@@ -266,9 +265,8 @@ TEST_CASE("a pair passes through itself") {
 }
 
 TEST_CASE("a pair with distance and turn 0 stands still") {
-    const auto frames =
-        play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0"}, {"turn", "0"}}, {"icosphere"}, 1});
-    for (const auto& poses : frames) REQUIRE(poses == frames[0]);
+    const auto all = play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0"}, {"turn", "0"}}, {"icosphere"}, 1});
+    for (const auto& poses : all) REQUIRE(poses == all[0]);
 }
 
 TEST_CASE("scenes that cannot be made are refused") {
@@ -286,10 +284,4 @@ TEST_CASE("scenes that cannot be made are refused") {
                 "brownian: displacement must be a number above 0 and at most 1e+09 or auto, not '" + number + "'");
     REQUIRE(error_of({"mesh_pair", {}, {"icosphere", "icosphere", "icosphere"}, 1}, true) ==
             "mesh_pair takes at most 2 meshes, not 3");
-}
-
-TEST_CASE("a scene that does not fit into memory is refused") {
-    const auto refused = [] { aabblab::require_memory("a scene", 1e18); };
-    REQUIRE_THROWS_WITH(refused(), Catch::Matchers::StartsWith("a scene would take 931322574.6 GiB of memory"));
-    REQUIRE_NOTHROW(aabblab::require_memory("a scene", 1e6));
 }

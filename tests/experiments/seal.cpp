@@ -46,9 +46,8 @@ std::vector<std::string> keys_of(const std::vector<row>& rows) {
     return keys;
 }
 
-void check_refused_rows(const finished_run& run, const std::string& sentence) {
-    CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error,
-                         MessageMatches(ContainsSubstring(sentence)));
+void check_refused_rows(const finished_run& run, const std::string& said) {
+    CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error, MessageMatches(ContainsSubstring(said)));
 }
 
 std::string joined_lines(const std::vector<std::string>& lines, const char* end) {
@@ -64,10 +63,9 @@ std::string shuffled(const std::string& table) {
 }
 
 /// The field of a line, as long as none is in quotes before it.
-std::string with_field(const std::string& table, std::size_t line, const std::string& before,
-                       const std::string& after) {
+std::string with_field(const std::string& table, std::size_t line, const std::string& from, const std::string& to) {
     std::vector<std::string> lines = lines_of(table);
-    lines.at(line - 1) = replaced(lines.at(line - 1), before, after);
+    lines.at(line - 1) = replaced(lines.at(line - 1), from, to);
     return joined_lines(lines, "\n");
 }
 

@@ -72,8 +72,7 @@ aabblab::reproduction reproduction_where(
 /// Of the LaTeX report, without its comments.
 std::string paper_text() {
     std::string text;
-    for (const auto& file :
-         std::filesystem::recursive_directory_iterator(std::filesystem::path(AABBLAB_CONFIGS) / "../tex")) {
+    for (const auto& file : std::filesystem::recursive_directory_iterator(AABBLAB_CONFIGS "/../tex")) {
         if (file.path().extension() != ".tex") continue;
         std::ifstream in(file.path());
         for (std::string line; std::getline(in, line);)
@@ -127,8 +126,7 @@ TEST_CASE("Machines that agree give the verdict of each, and what they differ in
 }
 
 TEST_CASE("Where noise hides everything, what is timed is undecided") {
-    check_verdicts(judged_worlds({0.97}, 1),
-                   [](const worlds::claim_row& row) { return row.is_timed ? "undecided" : ""; });
+    check_verdicts(judged_worlds({0.97}, 1), [](const auto& row) { return row.is_timed ? "undecided" : ""; });
 }
 
 TEST_CASE("Without measurements every claim is undecided") {
@@ -273,8 +271,7 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
             CAPTURE(partition);
             const aabblab::figure& f = named(all, e.name == "c4" ? "C4" : "C5").figures.front();
             const aabblab::series& line = f.panels.empty() ? f.lines.front() : f.panels.front().lines.front();
-            CHECK(std::ranges::any_of(line.points,
-                                      [&](const aabblab::figure_point& p) { return p.x == std::stod(number); }));
+            CHECK(std::ranges::any_of(line.points, [&](const auto& p) { return p.x == std::stod(number); }));
         }
     }
 }
@@ -378,8 +375,7 @@ TEST_CASE("What was wrong in a run is said by every later judgement") {
     CHECK(run_program({"reproduce", "--judge", "--out", folder / "none"}).status == 2);
 }
 
-TEST_CASE(
-    "A reproduction is one page without addresses, every table and figure, and every number that the paper names") {
+TEST_CASE("A reproduction is one page without addresses, every table and figure, and every number the paper names") {
     const temporary_folder folder;
     worlds::write_world(folder.path(), 0.6, 0.05);
     const aabblab::measurements results(folder.path());

@@ -95,8 +95,7 @@ TEST_CASE("Verdicts are compared with those of another run, and each that differ
           "2 of 5 verdicts agree with the other: C1: here holds, there holds in part; C8: here no difference, there "
           "does not hold; C9: here undecided, there none.");
     const reports told = written(made_up(), "4 of 5 verdicts agree with the other.");
-    for (const std::string& report : {told.html, told.markdown})
-        CHECK(holds(report, "4 of 5 verdicts agree with the other."));
+    for (const auto& report : {told.html, told.markdown}) CHECK(holds(report, "4 of 5 verdicts agree with the other."));
 }
 
 TEST_CASE("Every claim that was measured has its interval drawn in its row, beside its verdict in words") {

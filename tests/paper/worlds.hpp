@@ -65,11 +65,8 @@ inline void write_experiment(
                 for (auto& count : r.counts) count = 1000 * r.objects;
                 for (auto& bytes : r.bytes) bytes = 30'000;
                 tell(p, r);
-                r.build_cpu_ms = r.build_ms;
-                r.first_cpu_ms = r.first_ms;
-                r.update_cpu_ms = r.update_ms;
-                r.search_cpu_ms = r.search_ms;
-                r.detect_cpu_ms = r.detect_ms;
+                std::tie(r.build_cpu_ms, r.first_cpu_ms, r.update_cpu_ms, r.search_cpu_ms, r.detect_cpu_ms) =
+                    std::tie(r.build_ms, r.first_ms, r.update_ms, r.search_ms, r.detect_ms);
                 disturb(r);
                 results.add(r);
             }
