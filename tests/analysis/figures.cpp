@@ -201,7 +201,7 @@ TEST_CASE("A figure is a table and two pictures, in a folder that need not be th
     REQUIRE(std::distance(std::filesystem::directory_iterator(deep), {}) == 6);
     for (const char* text : {"objects", "time a frame (ms)", "varies", "stays", "dots", "line", "three hundred"}) {
         REQUIRE_THAT(svg_of(other), ContainsSubstring(">" + std::string(text) + "</text>"));
-        std::string in_pdf = std::regex_replace(text, std::regex("[()]"), "\\$&");
+        const std::string in_pdf = std::regex_replace(text, std::regex("[()]"), "\\$&");
         REQUIRE_THAT(pdf_of(other), ContainsSubstring("(" + in_pdf + ") Tj"));
     }
 }

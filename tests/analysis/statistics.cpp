@@ -119,8 +119,7 @@ TEST_CASE("The difference of two estimates has the noise of both") {
     const estimate both = difference_of({2, 0.3, 10}, {0.5, 0.4, 10});
     CHECK(both.value == 1.5);
     CHECK(std::abs(both.error - 0.5) < 1e-12);
-    CHECK(both.degrees > 10);
-    CHECK(both.degrees < 20);
+    CHECK_BETWEEN(10, both.degrees, 20);
     CHECK(difference_of({2, 0, 1}, {1, 0, 1}).range().low == 1);
 }
 

@@ -370,8 +370,7 @@ TEST_CASE("population comes and goes as told, and the absent overlap nothing") {
         for (std::size_t f = 0; f < frames.size(); ++f) {
             REQUIRE(frames[f].present.size() == 1000);
             const auto present = std::ranges::count(frames[f].present, 1);
-            REQUIRE(present > 430);
-            REQUIRE(present < 570);
+            CHECK_BETWEEN(430, present, 570);
             REQUIRE(pairs_of(frames[f], true) == pairs_of(frames[f], false));
             REQUIRE(pairs_of(frames[f], true).size() > 100);
             for (std::size_t i = 0; i < 1000; ++i) {

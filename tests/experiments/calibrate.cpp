@@ -59,10 +59,7 @@ struct configured {
     temporary_folder folder;
 
     configured() = default;
-    explicit configured(const std::string& costs) {
-        std::filesystem::create_directories(file().parent_path());
-        folder.write("config/aabblab/costs.toml", costs);
-    }
+    explicit configured(const std::string& costs) { folder.write("config/aabblab/costs.toml", costs); }
     [[nodiscard]] std::filesystem::path file() const { return folder / "config/aabblab/costs.toml"; }
     [[nodiscard]] program_result run(const std::vector<std::string>& arguments) const {
         return run_command(

@@ -54,10 +54,7 @@ TEST_CASE("classify gives kind, corners and error of what two triangles have in 
     std::istringstream words(answer(through, {}));
     std::string kind;
     int corners = 0;
-    double x[2] = {};
-    double y[2] = {};
-    double z[2] = {};
-    double error[3] = {};
+    double x[2] = {}, y[2] = {}, z[2] = {}, error[3] = {};
     words >> kind >> corners >> x[0] >> y[0] >> z[0] >> x[1] >> y[1] >> z[1] >> error[0] >> error[1] >> error[2];
     REQUIRE(words);
     CHECK(kind == "transversal");
@@ -65,9 +62,8 @@ TEST_CASE("classify gives kind, corners and error of what two triangles have in 
     CHECK(std::abs(x[0] + x[1] - 2.25) <= 2 * error[0]);
     CHECK(std::abs(y[0] + y[1] - 2) <= 2 * error[1]);
     CHECK(std::abs(z[0]) + std::abs(z[1]) <= 2 * error[2]);
-    CHECK(error[0] > 0);
+    CHECK_BETWEEN(0, error[0], 1e-14);
     CHECK(error[1] == 0);
-    CHECK(error[0] < 1e-14);
     CHECK(answer(through, {"--triangle", "epeck"}).ends_with(" 0 0 0\n"));
     // A tenth, as float and as double.
     CHECK(answer(".1 1 0 .1 1 3 .1 2 3", {}) == "point 1 0.10000000149011612 1 0 0 0 0\n");

@@ -166,10 +166,8 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
             CHECK(std::abs(number(there, x + 1) - (200 + number(here, x))) < 1e-6);
             CHECK(std::abs(number(there, x + 2) - (300 + number(here, x + 2))) < 1e-6);
         }
-        for (std::size_t k = 4; k < 7; ++k) {
-            CHECK(number(there, k) > 1e-14);  // some roundings at 100
-            CHECK(number(there, k) < 1e-12);
-        }
+        // Some roundings at 100.
+        for (std::size_t k = 4; k < 7; ++k) CHECK_BETWEEN(1e-14, number(there, k), 1e-12);
     }
     const program_result first = run_program({"collide", a, b, "--first", "--geometry"});
     CHECK(holds(first.out, " intersect: "));
@@ -198,8 +196,7 @@ TEST_CASE("neighbours in a mesh have an edge or a corner in common") {
     const auto& [folder, a, b] = files;
     for (const auto& [mesh, edges, points] : {std::tuple(a, 6, 0), std::tuple(b, 9, 6)}) {
         run_well({"collide", mesh, "--self", "--geometry", "--out", folder / "self.csv"});
-        int segment = 0;
-        int point = 0;
+        int segment = 0, point = 0;
         for (const auto& row : fields_of(bytes_of_file(folder / "self.csv"))) {
             segment += static_cast<int>(row[2] == "2" && row[3] == "segment" && row[4] == "2" && row[5] == "0");
             point += static_cast<int>(row[2] == "1" && row[3] == "point" && row[4] == "1" && row[5] == "0");
@@ -236,8 +233,8 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     std::vector<std::size_t> counts;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const std::string out = folder / "one.csv";
-        const auto one = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who));
-        counts.push_back(one["pairs"]);
+        counts.push_back(
+            json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who))["pairs"]);
         for (const std::string& line : lines_of(bytes_of_file(out)))
             if (line != "a,b") rows += std::to_string(i) + "," + line + "\n";
     }

@@ -273,8 +273,7 @@ TEST_CASE("compare takes folders of several experiments, and leaves out what one
     const temporary_folder folder;
     write_results(folder / "a/first", rows_of({.experiment = "first"}));
     write_results(folder / "a/second", rows_of({.experiment = "second"}));
-    std::filesystem::create_directories(folder / "a/c6");
-    std::ofstream(folder / "a/c6/process-0.json") << "{}";
+    folder.write("a/c6/process-0.json", "{}");
     const std::string b = write_results(folder / "b", rows_of({.experiment = "second", .hour = 2}));
     const program_result result = run_well({"compare", folder / "a", b, "--all"});
     CHECK(holds(result.out, "\nsecond: brownian, "));

@@ -190,10 +190,8 @@ TEST_CASE("What is asked of meshes, and with which caches, is read, checked and 
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\ncaches = \"cold\"\n")) != plain);
     REQUIRE(refusal_of(meshes + "[measure]\nask = \"frist\"\n")
                 .ends_with(":7: unknown ask 'frist'; did you mean 'first'?"));
-    REQUIRE(refusal_of(measure + "caches = \"cold\"\n")
-                .ends_with("caches = \"cold\" is for scenes of meshes, and brownian has none"));
-    REQUIRE(refusal_of(measure + "ask = \"first\"\n")
-                .ends_with("ask = \"first\" is for scenes of meshes, and brownian has none"));
+    for (const std::string line : {"caches = \"cold\"", "ask = \"first\""})
+        REQUIRE(refusal_of(measure + line + "\n").ends_with(line + " is for scenes of meshes, and brownian has none"));
 }
 
 TEST_CASE("A mesh file that changes makes another hash") {

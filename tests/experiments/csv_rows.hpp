@@ -11,6 +11,16 @@ import aabblab.results;
     return all;
 }
 
+/// What stands below the names of columns in a CSV text of whole numbers.
+[[nodiscard]] inline std::vector<std::vector<std::uint32_t>> numbers_of(const std::string& text) {
+    std::vector<std::vector<std::uint32_t>> all;
+    for (const std::vector<std::string>& fields : fields_of(text.substr(text.find('\n') + 1))) {
+        std::vector<std::uint32_t>& row = all.emplace_back();
+        for (const std::string& number : fields) row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
+    }
+    return all;
+}
+
 /// The rows of a CSV file below its columns' names, each cell by the name of its column.
 [[nodiscard]] inline std::vector<std::map<std::string, std::string>> csv_rows(const std::filesystem::path& file) {
     const auto records = aabblab::read_csv(bytes_of_file(file), file.string()).records;

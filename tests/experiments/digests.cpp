@@ -8,16 +8,6 @@ namespace {
 
 using rows = std::vector<std::vector<std::uint32_t>>;
 
-/// What a CSV file holds below its column names.
-rows rows_of(const std::string& text) {
-    rows all;
-    for (const std::vector<std::string>& fields : fields_of(text.substr(text.find('\n') + 1))) {
-        std::vector<std::uint32_t>& row = all.emplace_back();
-        for (const std::string& number : fields) row.push_back(static_cast<std::uint32_t>(std::stoul(number)));
-    }
-    return all;
-}
-
 std::string digest_of(const rows& all) {
     aabb::digest made;
     for (const std::vector<std::uint32_t>& row : all) made.add(row);
@@ -36,7 +26,7 @@ struct outcome {
     outcome(const temporary_folder& folder, std::vector<std::string> arguments) {
         const std::string out = folder / "out.csv";
         digest = json_of(joined(std::move(arguments), {"--json", "--out", out}))["digest"];
-        written = rows_of(bytes_of_file(out));
+        written = numbers_of(bytes_of_file(out));
         REQUIRE(written.size() > 3);
     }
 

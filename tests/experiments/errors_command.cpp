@@ -263,9 +263,7 @@ TEST_CASE("what one seed of several gets wrong shows in the plot") {
                      "[[curve]]\nlabel = \"stale\"\nprepare = { name = \"neighbour_list\", every = 4 }\n"
                      "[[curve]]\nlabel = \"none\"\nprepare = \"none\"\n");
     run_well({"errors", config, "--out", folder / "out"});
-    std::uint64_t seeds = 0;
-    std::uint64_t missing = 0;
-    std::uint64_t exact = 0;
+    std::uint64_t seeds = 0, missing = 0, exact = 0;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv")) {
         if (r.name[aabb::strategy_kind::prepare] == "none") continue;
         missing += *r.missing;
@@ -273,8 +271,7 @@ TEST_CASE("what one seed of several gets wrong shows in the plot") {
         exact += r.candidates + *r.missing;
     }
     // Fewer than half of the seeds, so that a median would be zero.
-    REQUIRE(seeds > 0);
-    REQUIRE(seeds < 3);
+    CHECK_BETWEEN(0, seeds, 3);
     const auto scenes = aabblab::summarise(aabblab::read_rows(folder / "out/results.csv"));
     const auto figures = metric_figures(aabblab::read_error_study(config, experiment_size::full), scenes);
     const auto stale = std::ranges::find(figures.at(0).lines, "stale", &aabblab::series::label);

@@ -174,14 +174,10 @@ TEST_CASE("An interrupted run leaves neither its external engine nor what was ex
     waitpid(program, nullptr, 0);
     REQUIRE(began);
     REQUIRE(was_there);
-    pid_t engine = 0;
-    pid_t of_engine = 0;
-    pid_t gone_astray = 0;
+    pid_t engine = 0, of_engine = 0, gone_astray = 0;
     std::ifstream(folder / "began") >> engine >> of_engine >> gone_astray;
     REQUIRE(gone_astray > 0);
-    CHECK(comes_true([&] { return has_ended(engine); }));
-    CHECK(comes_true([&] { return has_ended(of_engine); }));
-    CHECK(comes_true([&] { return has_ended(gone_astray); }));
+    for (const pid_t one : {engine, of_engine, gone_astray}) CHECK(comes_true([&] { return has_ended(one); }));
     CHECK(comes_true([&] { return std::filesystem::is_empty(exchanged); }));
 }
 

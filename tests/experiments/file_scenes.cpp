@@ -178,9 +178,8 @@ TEST_CASE("A relative path is taken as given, else from the folder of the config
 
 TEST_CASE("A mesh in the folder of the config comes before one of the data folder, and results say only its name") {
     const temporary_folder folder;
-    std::filesystem::create_directory(folder / "sub");
-    const std::string triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    folder.write("sub/elephant.off", triangle);  // of the name of a mesh that is in the data folder, or may be
+    // Of the name of a mesh that is in the data folder, or may be.
+    folder.write("sub/elephant.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const std::string config =
         folder.write("sub/c.toml",
                      "name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nframes = 1\nmeshes = \"elephant.off\"\n"
@@ -230,12 +229,10 @@ TEST_CASE("A recording in place of a config is refused with what takes it") {
     const temporary_folder folder;
     const std::string file = folder / "s.aabbs";
     run_well({"scene", "brownian", "--n", "20", "--frames", "1", "--out", file});
-    for (const char* command : {"run", "validate"}) {
-        const program_result refused = run_refused({command, file});
-        CHECK(
-            refused.err.ends_with("/s.aabbs is a recording, not a config: pairs, explain and recommend take it, and a "
-                                  "config plays it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
-    }
+    for (const char* command : {"run", "validate"})
+        CHECK(run_refused({command, file})
+                  .err.ends_with("/s.aabbs is a recording, not a config: pairs, explain and recommend take it, and a "
+                                 "config plays it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
 }
 
 TEST_CASE("list says which scenes play a file, and that it must be given") {

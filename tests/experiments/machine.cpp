@@ -2,30 +2,21 @@
 
 import aabblab.machine;
 
-namespace {
-
-void write(const temporary_folder& folder, const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((folder / name).parent_path());
-    (void)folder.write(name, text);
-}
-
-}  // namespace
-
 TEST_CASE("A machine is told as Linux has it: processor, caches by level, governor, whether it is virtual") {
     const temporary_folder root;
-    write(root, "proc/cpuinfo",
-          "processor\t: 0\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n\n"
-          "processor\t: 1\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n");
+    root.write("proc/cpuinfo",
+               "processor\t: 0\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n\n"
+               "processor\t: 1\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n");
     const std::string core = "sys/devices/system/cpu/cpu0/";
     const auto write_cache = [&](const std::string& index, const char* level, const char* type, const char* size) {
-        write(root, core + "cache/index" + index + "/level", std::string(level) + "\n");
-        write(root, core + "cache/index" + index + "/type", std::string(type) + "\n");
-        write(root, core + "cache/index" + index + "/size", std::string(size) + "\n");
+        root.write(core + "cache/index" + index + "/level", std::string(level) + "\n");
+        root.write(core + "cache/index" + index + "/type", std::string(type) + "\n");
+        root.write(core + "cache/index" + index + "/size", std::string(size) + "\n");
     };
     write_cache("0", "1", "Data", "48K");
     write_cache("1", "1", "Instruction", "32K");
     write_cache("2", "2", "Unified", "2M");
-    write(root, core + "cpufreq/scaling_governor", "performance\n");
+    root.write(core + "cpufreq/scaling_governor", "performance\n");
     const aabblab::machine m = aabblab::this_machine(root.path());
     CHECK(m.processor == "A Processor @ 2.40GHz");
     CHECK(m.processors == 2);

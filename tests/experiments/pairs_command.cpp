@@ -2,6 +2,8 @@
 
 #include "program_json.hpp"
 
+#include "csv_rows.hpp"
+
 namespace {
 
 std::string recording_in(const temporary_folder& folder, const std::string& objects = "60") {
@@ -31,15 +33,10 @@ TEST_CASE("pairs gives one set of pairs whatever finds it") {
     REQUIRE(summary["digest"] == reference["digest"]);
     REQUIRE(summary["exact"] == true);
 
-    const std::vector<std::string> rows = lines_of(bytes_of_file(out));
-    REQUIRE(rows.at(0) == "frame,a,b");
-    std::vector<std::vector<unsigned>> records;
-    for (const std::string& row : std::span(rows).subspan(1)) {
-        unsigned frame = 0, a = 0, b = 0;
-        REQUIRE(std::sscanf(row.c_str(), "%u,%u,%u", &frame, &a, &b) == 3);
-        REQUIRE(a < b);
-        records.push_back({frame, a, b});
-    }
+    const std::string rows = bytes_of_file(out);
+    REQUIRE(rows.starts_with("frame,a,b\n"));
+    const auto records = numbers_of(rows);
+    for (const auto& record : records) REQUIRE((record.size() == 3 && record[1] < record[2]));
     REQUIRE(records.size() == summary["pairs"]);
     REQUIRE(std::ranges::is_sorted(records));
 }

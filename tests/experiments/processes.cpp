@@ -92,7 +92,7 @@ TEST_CASE("A run whose process is killed leaves no other behind, and is resumed"
         const auto bytes = std::filesystem::file_size(shared.out / "results.csv", error);
         return error ? std::uintmax_t{0} : bytes;
     };
-    // Some rows are there, as the header is not so long, and more are to come.
+    // No header is so long: some rows are there, and more are to come.
     while (size() < 2000 && waitpid(child, nullptr, WNOHANG) == 0) usleep(1000);
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);

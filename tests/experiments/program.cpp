@@ -45,11 +45,8 @@ std::vector<std::vector<std::string>> every_command(const std::vector<std::strin
 
 /// What a terminal so many characters wide shows of a shell's command: of both streams.
 std::string shown_on_terminal(unsigned short columns, const std::string& command) {
-    winsize size{};
-    size.ws_row = 50;
-    size.ws_col = columns;
-    int terminal = -1;
-    int line = -1;
+    const winsize size{.ws_row = 50, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
+    int terminal = -1, line = -1;
     REQUIRE(openpty(&terminal, &line, nullptr, nullptr, &size) == 0);
     std::string shown;
     std::thread reader([&] {

@@ -307,9 +307,9 @@ TEST_CASE("Who did not end is not recommended where anybody did, and all are nam
     const auto not_played = std::ranges::count_if(
         race.dropped, [](const racer& r) { return text_of(r.broken_off.value()) == "not played: no time was left"; });
     CHECK_BETWEEN(0, not_played, 12);
-    const std::vector<std::string> advice = aabblab::advice_of(race);
-    CHECK(std::ranges::count(advice, "There was no time for " + std::to_string(not_played) + " other" +
-                                         (not_played > 1 ? "s" : "") + "; increase --seconds.") == 1);
+    CHECK(std::ranges::count(aabblab::advice_of(race), "There was no time for " + std::to_string(not_played) +
+                                                           " other" + (not_played > 1 ? "s" : "") +
+                                                           "; increase --seconds.") == 1);
 }
 
 TEST_CASE("A race that is refused a frame says why, as the command says it") {
@@ -328,9 +328,8 @@ TEST_CASE("recommend and explain report an invalid frame, whichever it is") {
         CAPTURE(frame);
         std::string wrong = bytes;
         wrong.replace(wrong.size() - (31 - frame) * 60 * 32 + 3 * 32, 4, nan);
-        const std::string named = folder.write("wrong.aabbs", wrong);
         for (const char* command : {"recommend", "explain"}) {
-            const program_result refused = run_program({command, named, "--seconds", "4"});
+            const program_result refused = run_program({command, folder.write("wrong.aabbs", wrong), "--seconds", "4"});
             CHECK(refused.status == 2);
             CHECK(refused.err.ends_with("frame " + std::to_string(frame) +
                                         ": box 3 has a coordinate that is not finite\n"));

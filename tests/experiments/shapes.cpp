@@ -44,8 +44,7 @@ public:
 
 }  // namespace
 
-TEST_CASE(
-    "shapes but the floor and slivers are closed and face outwards, and all have the triangles wanted, with area") {
+TEST_CASE("shapes but the floor and slivers are closed and face outwards; all have the triangles wanted, with area") {
     const temporary_folder folder;
     for (const auto& [shape, summary, parameters] : aabblab::shapes())
         for (const std::uint32_t wanted : {100U, 1000U, 1234U, 5000U, 20000U, 100000U}) {
@@ -73,8 +72,7 @@ TEST_CASE("boxes of slivers all overlap, and nothing touches, with a second row 
     const aabb::mesh m = aabblab::make_mesh("slivers:triangles=" + std::to_string(n)).mesh;
     const double gap = 10 * std::sqrt(0.5) / n;
     for (const double aside : {0.0, gap / 2}) {
-        std::uint64_t boxes = 0;
-        std::uint64_t hits = 0;
+        std::uint64_t boxes = 0, hits = 0;
         for (std::uint32_t i = 0; i < n; ++i)
             for (std::uint32_t j = 0; j < n; ++j) {
                 aabb::triangle3f other = m.triangle(j);

@@ -24,7 +24,9 @@ public:
     [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
+    /// The folders above it are made.
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::filesystem::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
     }

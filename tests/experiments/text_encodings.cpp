@@ -256,8 +256,7 @@ TEST_CASE("Whatever a byte of a file becomes, it is read or refused in a sentenc
                 if (bytes.empty()) break;
             }
             INFO(format.file << ": " << bytes);
-            const std::string said = error_of(format, folder.write(format.file, bytes));
-            CHECK(said.find('\0') == std::string::npos);
+            CHECK(error_of(format, folder.write(format.file, bytes)).find('\0') == std::string::npos);
         }
     }
 }

@@ -97,7 +97,7 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
             std::ofstream(results / name, std::ios::binary) << text;
         };
     };
-    // seal.cpp has what else may be altered in a table.
+    // What else may be altered in a table is in tests/experiments/seal.cpp.
     refused("c3/results.csv was altered after the run: its rows do not have the checksum",
             of_table([](auto& lines) { lines[6] = replaced(lines[6], "50.000000", "50.000001"); }));
     refused("c3/manifest.json was altered after the run",

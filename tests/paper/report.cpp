@@ -42,9 +42,7 @@ aabblab::reproduction made_up() {
 }
 
 struct reports {
-    std::string html;
-    std::string markdown;
-    std::string macros;
+    std::string html, markdown, macros;
 };
 
 reports written(const aabblab::reproduction& all, const std::string& agreement = {}) {
