@@ -233,8 +233,8 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     std::vector<std::size_t> counts;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const std::string out = folder / "one.csv";
-        counts.push_back(
-            json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who))["pairs"]);
+        const auto one = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who));
+        counts.push_back(one["pairs"]);
         for (const std::string& line : lines_of(bytes_of_file(out)))
             if (line != "a,b") rows += std::to_string(i) + "," + line + "\n";
     }

@@ -417,7 +417,7 @@ TEST_CASE("glTF: quantized positions, where the file says that it has them") {
 
 TEST_CASE("glTF: what is left out is counted") {
     parts p;
-    p.more = R"(,"animations":[{},{}])";
+    p.more = R"(,"scene":0,"animations":[{},{}])";
     p.primitive = R"({"attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":0}},)"
                   R"({"attributes":{"POSITION":0},"mode":1}]},{"primitives":[)";
     CHECK(load(p.text()).report.text() ==

@@ -9,7 +9,7 @@ namespace {
 std::string recording_in(const temporary_folder& folder, const std::string& objects = "60") {
     const std::string file = folder / "scene.aabbs";
     const program_result written =
-        run_well({"scene", "brownian", "--n", objects, "--frames", "3", "--seed", "7", "--out", file});
+        run_well({"scene", "brownian", "--objects", objects, "--frames", "3", "--seed", "7", "--out", file});
     REQUIRE(written.err.empty());
     REQUIRE(holds(written.out, objects + " objects, 4 frames"));
     return file;
