@@ -35,15 +35,12 @@ cells log_ratios(const racer& one, const racer& other) {
     return ratios;
 }
 
-double median_of(const cells& repeats) {
-    return resample(1, 1, level::none, 0).mean_of(repeats);
-}
-
-/// How far the nearest of the others is behind; below 0 where one is ahead.
+/// How far the nearest of the others is behind, in the median; below 0 where one is ahead.
 double lead_of(const racer& one, const std::vector<racer>& all) {
+    const resample as_measured(1, 1, level::none, 0);
     double least = std::numeric_limits<double>::infinity();
     for (const racer& other : all)
-        if (&other != &one) least = std::min(least, median_of(log_ratios(other, one)));
+        if (&other != &one) least = std::min(least, as_measured.mean_of(log_ratios(other, one)));
     return least;
 }
 
@@ -65,7 +62,7 @@ public:
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;
-        frames = play_first_round(frames, margin);
+        play_first_round(frames, margin);
         while (frames < result_.frames && running_.size() > most_finalists && left() > whole_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
             margin = std::max(last_margin, std::sqrt(margin));
@@ -88,21 +85,17 @@ public:
 private:
     [[nodiscard]] double left() const { return limits_.to_play(); }
 
-    /// For how long one may play frames that the fastest so far takes so many seconds for: far longer, but not so long
-    /// that a few take all time, unless it stays within the margin. The first of all has more.
-    [[nodiscard]] double patience(double least, double margin) const {
-        constexpr double far = 20;
-        const double to_begin = std::min(1.0, whole_ / 20);
-        return to_begin +
-               (std::isfinite(least) ? std::min(far * least, std::max(whole_ / 16, margin * least)) : whole_ / 4);
+    /// For how long one may play frames that the fastest so far takes so many seconds for; the first of all has more.
+    [[nodiscard]] double longest(double least, double margin) const {
+        const stopping_rule rule{.grace = std::min(1.0, whole_ / 20), .share = whole_ / 16, .margin = margin};
+        return std::isfinite(least) ? rule.longest(least) : rule.grace + whole_ / 4;
     }
 
     /// One plays the first frames; it is out where it does not come to their end, unless all time is over.
     /// @returns whether it did
     bool plays(racer& one, std::size_t frames, double seconds, double time_left) {
-        attempt tried = scene_.play(one.who, frames, std::min(seconds, time_left));
+        attempt tried = scene_.play(one.who, frames, seconds, time_left);
         if (tried.end != ending::done) {
-            tried.is_hopeless = tried.end == ending::stopped && seconds < time_left;
             one.frames = std::max(one.frames, tried.seen.frames);
             one.broken_off = std::move(tried);
             return false;
@@ -113,17 +106,18 @@ private:
         return true;
     }
 
-    /// Plays the first frames with all. Where they take too long, those are raced over that the first who came to the
-    /// end of any came to the end of.
-    /// @returns how many
-    std::size_t play_first_round(std::size_t frames, double margin) {
+    /// All play the first frames; who takes far longer than the fastest so far is stopped. Where those of the first
+    /// round take too long, those are raced over that the first who came to the end of any came to the end of.
+    /// @returns whether anybody came to their end
+    bool play_all(std::size_t& frames, double margin, bool is_first_round) {
         progress shown("racing over " + counted(frames, "frame"), running_.size());
+        const double kept = is_first_round ? (1 - share_of_first_round) * whole_ : 0;
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
         for (racer& one : running_) {
-            const double time_left = left() - (1 - share_of_first_round) * whole_;
-            bool ends = plays(one, frames, patience(least, margin), time_left);
-            if (!ends && !std::isfinite(least) && one.broken_off->end == ending::stopped && one.frames > 0) {
+            bool ends = plays(one, frames, longest(least, margin), left() - kept);
+            if (!ends && is_first_round && !std::isfinite(least) && one.broken_off->end == ending::stopped &&
+                one.frames > 0) {
                 frames = one.frames;
                 one.seconds = one.broken_off->seconds_of_frames;
                 one.last = std::move(one.broken_off->seen);
@@ -133,7 +127,11 @@ private:
             if (ends) least = std::min(least, one.seconds);
             shown.at(++done);
         }
-        if (!std::isfinite(least)) {
+        return std::isfinite(least);
+    }
+
+    void play_first_round(std::size_t& frames, double margin) {
+        if (!play_all(frames, margin, true)) {
             // Pairs that nobody found need not be compared: that time is the first one's, for a frame.
             frames = 1;
             racer& first = running_.front();
@@ -141,7 +139,6 @@ private:
             if (!plays(first, frames, limits_.to_end(), limits_.to_end())) refuse_all();
         }
         finish_round(frames, margin);
-        return frames;
     }
 
     /// Nobody came to the end of any frame.
@@ -154,25 +151,15 @@ private:
                                             first.broken_off->end == ending::stopped ? "; increase --seconds" : ""));
     }
 
-    /// Plays the first frames with all; who takes far longer than the fastest so far is stopped. Where all time is over
-    /// before all have played, or none finishes, the round does not count.
-    /// @returns whether all have
+    /// Where all time is over before all have played, or none finishes, the round does not count.
+    /// @returns whether it does
     bool play_round(std::size_t frames, double margin) {
-        progress shown("racing over " + counted(frames, "frame"), running_.size());
         const std::vector<racer> before = running_;
-        double least = std::numeric_limits<double>::infinity();
-        std::size_t done = 0;
-        for (racer& one : running_) {
-            if (plays(one, frames, patience(least, margin), left())) {
-                least = std::min(least, one.seconds);
-            } else if (one.broken_off->end == ending::stopped && !one.broken_off->is_hopeless) {
-                running_ = before;
-                return false;
-            }
-            shown.at(++done);
-        }
-        require_any_unrefused();
-        if (std::ranges::all_of(running_, [](const racer& r) { return r.broken_off.has_value(); })) {
+        const bool any_ends = play_all(frames, margin, false);
+        const bool is_cut =
+            std::ranges::any_of(running_, [](const racer& r) { return r.broken_off && r.broken_off->is_out_of_time; });
+        if (!is_cut) require_any_unrefused();
+        if (is_cut || !any_ends) {
             running_ = before;
             return false;
         }
@@ -200,7 +187,7 @@ private:
         constexpr double far = 2;
         for (racer& r : running_) {
             if (r.broken_off || r.behind <= margin || r.behind > far * margin || left() < whole_ / 2) continue;
-            const attempt second = scene_.play(r.who, frames, std::min(patience(r.seconds, margin), left()));
+            const attempt second = scene_.play(r.who, frames, longest(r.seconds, margin), left());
             if (second.end == ending::done && second.seen.whole_ms() < r.last->whole_ms()) r.last = second.seen;
         }
         set_behind();
@@ -250,13 +237,29 @@ private:
             frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
         progress shown("racing to the end", most_repeats);
         const std::vector<racer> before = running_;
-        double longest = seconds_of_repeat(frames);
-        for (std::size_t repeat = 0; repeat < most_repeats && longest < left() && !running_.empty(); ++repeat) {
-            const double begin = left();
-            if (!play_repeat(repeat, frames)) break;
-            longest = begin - left();
+        bool is_cut = false;  // all time is over within a repeat, of which nothing is kept
+        const auto play = [&](racer& r, std::size_t) {
+            attempt tried = scene_.play(r.who, frames, longest(seconds_of(r, frames), last_margin), left());
+            if (tried.is_out_of_time) {
+                is_cut = true;
+            } else if (tried.end == ending::done) {
+                r.times.push_back(std::move(tried.seen));
+                r.frames = frames;
+            } else {
+                r.broken_off = std::move(tried);
+            }
+        };
+        const auto drop = [&](std::size_t repeat) {
+            if (is_cut)
+                for (racer& r : running_) r.times.resize(std::min(repeat, r.times.size()));
+            else
+                require_any_unrefused();
+            keep([](const racer& r) { return !r.broken_off; });
             shown.at(repeat + 1);
-        }
+        };
+        const round_limits limits{
+            .end = most_repeats, .left = [&] { return left(); }, .expected = seconds_of_repeat(frames)};
+        run_rounds(running_, limits, play, drop);
         if (!running_.empty() && !running_.front().times.empty()) {
             result_.final_frames = frames;
             return;
@@ -272,30 +275,6 @@ private:
             throw aabb::input_error("nothing plays this scene to its end");
         result_.dropped.resize(result_.dropped.size() - before.size());
         running_ = std::move(before);
-    }
-
-    /// @returns whether there was time for it; otherwise nothing is kept of it
-    bool play_repeat(std::size_t repeat, std::size_t frames) {
-        for (std::size_t k = 0; k < running_.size(); ++k) {
-            racer& r = running_[in_turn(k, repeat, running_.size())];
-            const double time_left = left();
-            const double most = patience(seconds_of(r, frames), last_margin);
-            attempt tried = scene_.play(r.who, frames, std::min(most, time_left));
-            if (tried.end == ending::stopped && time_left <= most) {
-                for (racer& one : running_) one.times.resize(std::min(repeat, one.times.size()));
-                keep([](const racer& one) { return !one.broken_off; });
-                return false;
-            }
-            if (tried.end == ending::done) {
-                r.times.push_back(std::move(tried.seen));
-                r.frames = frames;
-            } else {
-                r.broken_off = std::move(tried);
-            }
-        }
-        require_any_unrefused();
-        keep([&](const racer& r) { return r.times.size() > repeat; });
-        return true;
     }
 
     /// A frame that is wrong is so for all.

@@ -14,7 +14,6 @@ namespace {
 struct timed_contender {
     const contender* who;
     row result;
-    bool strayed = false;  ///< it is not repeated
 };
 
 /// With what the experiment records.
@@ -31,16 +30,10 @@ row row_of(const experiment& e, const validated_row& v) {
 }
 
 /// The repeats of one process.
-struct share_of_repeats {
-    share_of_repeats(const experiment& e, std::size_t process) {
-        const std::size_t repeats = e.records(metric_group::time) ? e.repeats : 1;
-        begin = repeats * process / e.processes;
-        end = repeats * (process + 1) / e.processes;
-    }
-
-    std::size_t begin;
-    std::size_t end;
-};
+round_limits repeats_of(const experiment& e, std::size_t process) {
+    const std::size_t repeats = e.records(metric_group::time) ? e.repeats : 1;
+    return {.end = repeats * (process + 1) / e.processes, .begin = repeats * process / e.processes};
+}
 
 /// The rows of a scene that there are.
 std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
@@ -51,40 +44,37 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
 }
 
 /// Who is not repeated, of the rows of a scene: those who took too long in the first repeat of the share.
-std::set<contender_name> hopeless(const experiment& e, const share_of_repeats& share, std::span<const row> rows) {
+std::set<contender_name> given_up(const experiment& e, const round_limits& share, std::span<const row> rows) {
     std::set<contender_name> names;
     if (!e.patience) return names;
     const row_value& whole = measured("whole_ms");
     double least = std::numeric_limits<double>::infinity();
     for (const row& r : rows)
         if (r.repeat == share.begin) least = std::min(least, whole(r).value_or(least));
+    const double longest = stopping_rule{.ratio = static_cast<double>(*e.patience)}.hopeless_after(least);
     for (const row& r : rows)
-        if (r.repeat == share.begin && whole(r).value_or(0) > static_cast<double>(*e.patience) * least)
-            names.insert(r.name);
+        if (r.repeat == share.begin && whole(r).value_or(0) > longest) names.insert(r.name);
     return names;
 }
 
 /// Ratios are formed within a repeat, so one that was interrupted is played again, whole. It can only be the last.
-void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const share_of_repeats& share,
+void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const round_limits& share,
                              std::size_t contenders, results_folder& results) {
     if (results.rows().empty()) return;
     const row last = results.rows().back();
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
-    if (last.repeat > share.begin) contenders -= hopeless(e, share, rows).size();
+    if (last.repeat > share.begin) contenders -= given_up(e, share, rows).size();
     const auto played = std::ranges::count(rows, last.repeat, &row::repeat);
     if (static_cast<std::size_t>(played) < contenders) results.drop(scene, last.repeat);
 }
 
-std::vector<contender> unfinished(const experiment& e, std::span<const contender> contenders,
-                                  const share_of_repeats& share, std::span<const row> rows) {
-    // The fastest is known once all have played the first repeat.
-    const bool all_played =
-        static_cast<std::size_t>(std::ranges::count(rows, share.begin, &row::repeat)) == contenders.size();
-    const std::set<contender_name> given_up = hopeless(e, share, all_played ? rows : std::span<const row>());
+std::vector<contender> unfinished(const experiment& e, std::span<const contender> contenders, const round_limits& share,
+                                  std::span<const row> rows) {
+    const std::set<contender_name> out = given_up(e, share, rows);
     std::vector<contender> left;
     for (const contender& who : contenders) {
-        if (given_up.contains(who.name)) continue;
+        if (out.contains(who.name)) continue;
         const auto finished = std::ranges::count_if(
             rows, [&](const row& r) { return r.name == who.name && r.repeat >= share.begin && r.repeat < share.end; });
         if (static_cast<std::size_t>(finished) < share.end - share.begin) left.push_back(who);
@@ -117,7 +107,6 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_conten
     if (wrong.empty() && times.digest != r.digest && !goes_its_own_way(scene, *timed.who))
         wrong = "timed, its digest is " + times.digest + ", validated it was " + r.digest;
     if (wrong.empty()) return {};
-    timed.strayed = true;
     return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + wrong;
 }
 
@@ -174,38 +163,41 @@ std::vector<contender> shuffled(std::span<const contender> contenders, const sce
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                    std::span<const contender> contenders, results_folder& results,
                                    std::size_t process) {
-    const share_of_repeats share(e, process);
+    const round_limits share = repeats_of(e, process);
     drop_interrupted_repeat(e, scene, share, contenders.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
     const std::vector<contender> left = unfinished(e, shuffled(contenders, scene), share, rows);
     if (left.empty()) return {};
     auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
-    for (std::size_t repeat = share.begin, done = 0; repeat < share.end; ++repeat) {
-        const std::set<contender_name> given_up =
-            hopeless(e, share, repeat > share.begin ? rows_of(scene, results.rows()) : std::vector<row>());
-        for (std::size_t i = 0; i < timed.size(); ++i, shown.at(++done)) {
-            timed_contender& turn = timed[in_turn(i, repeat, timed.size())];
-            turn.result.repeat = repeat;
-            turn.result.process = process;
-            if (turn.strayed || given_up.contains(turn.result.name) || results.has(turn.result)) continue;
-            std::string failure;
-            try {
-                if (e.records(metric_group::time)) failure = time_into(scene, e.how, turn);
-            } catch (const engine_timeout& error) {
-                // What it did before stays.
-                failures.emplace_back(error.what());
-                turn.strayed = true;
-                continue;
-            }
-            if (failure.empty()) {
-                results.add(turn.result);
-                continue;
-            }
-            failures.push_back(failure);
-            results.drop(scene, turn.result.name);
+    const std::size_t in_round = timed.size();
+    std::size_t done = 0;
+    std::set<contender_name> out;  // who is not repeated
+    const auto play = [&](timed_contender& turn, std::size_t repeat) {
+        shown.at(done++);
+        turn.result.repeat = repeat;
+        turn.result.process = process;
+        if (results.has(turn.result)) return;
+        std::string failure;
+        try {
+            if (e.records(metric_group::time)) failure = time_into(scene, e.how, turn);
+        } catch (const engine_timeout& error) {
+            // What it did before stays.
+            failures.emplace_back(error.what());
+            out.insert(turn.result.name);
+            return;
         }
-    }
+        if (failure.empty()) return results.add(turn.result);
+        out.insert(turn.result.name);
+        failures.push_back(failure);
+        results.drop(scene, turn.result.name);
+    };
+    const auto give_up = [&](std::size_t repeat) {
+        out.merge(given_up(e, share, rows_of(scene, results.rows())));
+        std::erase_if(timed, [&](const timed_contender& t) { return out.contains(t.result.name); });
+        done = (repeat + 1 - share.begin) * in_round;
+    };
+    run_rounds(timed, share, play, give_up);
     return failures;
 }
 

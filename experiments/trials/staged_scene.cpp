@@ -188,9 +188,11 @@ work_apart staged_scene::apart(const std::function<void(scene_play&, const telli
         seconds);
 }
 
-attempt staged_scene::play(const contender& who, std::size_t frames, double seconds) {
-    return attempt_from(
-        apart([&](scene_play& scene, const telling& tell) { tell_play(scene, who, frames, tell); }, seconds));
+attempt staged_scene::play(const contender& who, std::size_t frames, double seconds, double left) {
+    attempt one = attempt_from(apart(
+        [&](scene_play& scene, const telling& tell) { tell_play(scene, who, frames, tell); }, std::min(seconds, left)));
+    one.is_out_of_time = one.end == ending::stopped && left <= seconds;
+    return one;
 }
 
 std::string text_of(const attempt& one) {

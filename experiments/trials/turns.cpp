@@ -9,40 +9,19 @@ namespace {
 
 /// Of the time that is left nobody takes more, unless that is less than twice what the first takes.
 constexpr double greatest_share = 0.25;
+/// So long in all that it matters.
+constexpr double hopeless_ms = 100;
 
 bool is_hopeless(const observation& time, const observation& first) {
     return time.whole_ms() > hopeless_ms && time.frame_ms() > hopeless_ratio * first.frame_ms();
 }
 
-/// The first of all, who decides how many frames there is time for.
-void play_first(turns& played, staged_scene& scene, const contender& who, const time_limits& limits) {
-    attempt first = scene.play(who, played.frames, greatest_share * limits.to_play());
-    if (first.end == ending::stopped && first.seen.frames > 0) {
-        // What is held and left out only a play tells that comes to its end.
-        played.frames = first.seen.frames;
-        first = scene.play(who, played.frames, 2 * greatest_share * limits.to_play());
-    }
-    if (first.end != ending::done) {
-        played.broken_off[0] = std::move(first);
-        return;
-    }
-    played.frames = first.seen.frames;
-    played.times[0].push_back(std::move(first.seen));
-}
-
-/// @param first seconds that the first took
-void play_once(turns& played, staged_scene& scene, std::size_t at, const contender& who, double first,
-               const time_limits& limits) {
-    const double left = limits.to_play();
-    const double share = std::min(left, std::max(2 * first, greatest_share * left));
-    const double hopeless = hopeless_ms / 1000 + hopeless_ratio * first;
-    attempt one = scene.play(who, played.frames, std::min(hopeless, share));
-    one.is_hopeless = one.end == ending::stopped && hopeless < share;
-    if (one.is_hopeless) played.hopeless[at] = true;
-    if (one.end == ending::done)
-        played.times[at].push_back(std::move(one.seen));
-    else if (played.times[at].empty())
-        played.broken_off[at] = std::move(one);
+/// The first of all plays as many frames as there is time for.
+attempt first_play(staged_scene& scene, const contender& who, std::size_t frames, const time_limits& limits) {
+    attempt first = scene.play(who, frames, greatest_share * limits.to_play());
+    if (first.end != ending::stopped || first.seen.frames == 0) return first;
+    // What is held and left out only a play tells that comes to its end.
+    return scene.play(who, first.seen.frames, 2 * greatest_share * limits.to_play());
 }
 
 }  // namespace
@@ -53,27 +32,39 @@ turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::siz
     turns played{frames, 0, std::vector<std::vector<observation>>(all.size()),
                  std::vector<std::optional<attempt>>(all.size()), std::vector<bool>(all.size())};
     const double before_first = limits.to_play();
-    play_first(played, scene, all[0], limits);
-    if (played.times[0].empty()) return played;
+    attempt of_first = first_play(scene, all[0], frames, limits);
     const double first = before_first - limits.to_play();
+    if (of_first.end != ending::done) {
+        played.broken_off[0] = std::move(of_first);
+        return played;
+    }
+    played.frames = of_first.seen.frames;
+    played.times[0].push_back(std::move(of_first.seen));
     std::vector<std::size_t> running(all.size());
     std::iota(running.begin(), running.end(), std::size_t{0});
-    double longest_round = 0;
-    for (; played.rounds < rounds && limits.to_play() > longest_round; ++played.rounds) {
-        const double before_round = limits.to_play();
-        for (std::size_t k = 0; k < running.size(); ++k) {
-            const std::size_t one = running[in_turn(k, played.rounds, running.size())];
-            if (one != 0 || played.rounds > 0) play_once(played, scene, one, all[one], first, limits);
-            shown.at(played.rounds * all.size() + k + 1);
-        }
-        longest_round = std::max(longest_round, before_round - limits.to_play());
+    std::size_t done = 0;
+    const auto play = [&](std::size_t one, std::size_t round) {
+        shown.at(done++);
+        if (one == 0 && round == 0) return;
+        const double left = limits.to_play();
+        const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * left, .margin = 2};
+        attempt tried = scene.play(all[one], played.frames, rule.longest(first), left);
+        if (tried.end == ending::stopped && !tried.is_out_of_time && rule.longest(first) >= rule.hopeless_after(first))
+            played.hopeless[one] = true;
+        if (tried.end == ending::done)
+            played.times[one].push_back(std::move(tried.seen));
+        else if (played.times[one].empty())
+            played.broken_off[one] = std::move(tried);
+    };
+    const auto give_up = [&](std::size_t round) {
         for (const std::size_t one : running)
             if (!played.times[one].empty() && is_hopeless(played.times[one][0], played.times[0][0]))
                 played.hopeless[one] = true;
-        std::erase_if(running, [&](std::size_t one) {
-            return played.hopeless[one] || played.times[one].size() <= played.rounds;
-        });
-    }
+        std::erase_if(running,
+                      [&](std::size_t one) { return played.hopeless[one] || played.times[one].size() <= round; });
+        done = (round + 1) * all.size();
+    };
+    played.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_play(); }}, play, give_up);
     return played;
 }
 

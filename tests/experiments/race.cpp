@@ -470,6 +470,26 @@ TEST_CASE("In rounds everybody plays once, begins in turn, and follows each othe
     }
 }
 
+TEST_CASE("Rounds are run in turn while there is time for one more, and the fewest in any case") {
+    std::vector<char> all{'a', 'b', 'c'};
+    std::string order;
+    double left = 10;
+    const auto run = [&](char one, std::size_t round) {
+        order += one + std::to_string(round);
+        left -= 2;
+    };
+    const auto after = [&](std::size_t) { std::erase(all, 'c'); };
+    CHECK(aabblab::run_rounds(all, {.end = 9, .fewest = 2, .left = [&] { return left; }}, run, after) == 2);
+    CHECK(order == "a0b0c0b1a1");
+}
+
+TEST_CASE("Who is compared with another may take far longer, or a share of the time, or stay within the margin") {
+    const aabblab::stopping_rule rule{.grace = 1, .share = 10, .margin = 2};
+    CHECK(rule.longest(0.25) == 6);
+    CHECK(rule.longest(1) == 11);
+    CHECK(rule.longest(8) == 17);
+}
+
 TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once") {
     const temporary_folder folder;
     const std::string file = folder / "order";
