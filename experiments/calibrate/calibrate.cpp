@@ -21,17 +21,16 @@ enum class cost_group : unsigned char { lists, cut, columns, median, sah, querie
 /// A part of a play whose work is all of one group.
 struct piece {
     cost_group group;
-    std::vector<double> work;
+    std::vector<double> work;  ///< of a play in which it is counted
+    double ns;                 ///< of one in which it is not
 };
 
 /// One way to play one scene.
 struct trial {
     std::string scene;
     bool held_out;  ///< not fitted to, but to check
-    /// Counts the work of each piece.
-    std::function<std::vector<piece>()> count;
-    /// Nanoseconds of each, in the same order.
-    std::function<std::vector<double>()> time;
+    std::function<std::vector<piece>(aabb::instrumentation)> play;
+    std::vector<std::pair<cost_group, timed_work>> seen = {};  ///< by piece
 };
 
 using box_frames = std::shared_ptr<const std::vector<std::vector<aabb::box>>>;
@@ -128,36 +127,29 @@ using work_of_frame = std::function<std::vector<double>(const frame_seen&)>;
 
 trial usual_frames(const made_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
-    const auto seen = [what = box_play{scene.frames, c, planned_by}](aabb::instrumentation counted) {
-        return mean_of(frames_seen(what, counted), first_usual, 1);
-    };
-    return {scene.name, scene.held_out,
-            [seen, group, work = std::move(work)] {
-                return std::vector{piece{group, work(seen(aabb::instrumentation::counters))}};
-            },
-            [seen] { return std::vector{seen(aabb::instrumentation::none).ns}; }};
+    return {
+        scene.name, scene.held_out,
+        [group, what = box_play{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
+            const frame_seen seen = mean_of(frames_seen(what, counted), first_usual, 1);
+            return std::vector{piece{group, work(seen), seen.ns}};
+        }};
 }
 
 /// A list that is made anew in every other frame: in those with an even number it is made, in the others it serves.
 trial made_and_served(const made_scene& scene) {
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
-    const auto seen = [what = box_play{scene.frames, c, {}}](aabb::instrumentation counted) {
-        const std::vector<frame_seen> all = frames_seen(what, counted);
-        return std::array{mean_of(all, first_usual, 2), mean_of(all, first_usual + 1, 2)};
-    };
     return {scene.name, scene.held_out,
-            [seen, n = scene.n] {
-                const auto [made, served] = seen(aabb::instrumentation::counters);
+            [n = scene.n, what = box_play{scene.frames, c, {}}](aabb::instrumentation counted) {
+                const std::vector<frame_seen> all = frames_seen(what, counted);
+                const frame_seen made = mean_of(all, first_usual, 2);
+                const frame_seen served = mean_of(all, first_usual + 1, 2);
                 // That a list serves takes a test of each of its pairs, and no search.
-                assert(made.work[aabb::work::subsets] > 0 && served.work[aabb::work::subsets] == 0);
+                assert(counted == aabb::instrumentation::none ||
+                       (made.work[aabb::work::subsets] > 0 && served.work[aabb::work::subsets] == 0));
                 const double listed = served.count(aabb::work::box_tests);
-                return std::vector{piece{cost_group::lists, {n, listed, n, n, listed}},
-                                   piece{cost_group::lists, {0, 0, 0, n, listed}}};
-            },
-            [seen] {
-                const auto [made, served] = seen(aabb::instrumentation::none);
-                return std::vector{made.ns, served.ns};
+                return std::vector{piece{cost_group::lists, {n, listed, n, n, listed}, made.ns},
+                                   piece{cost_group::lists, {0, 0, 0, n, listed}, served.ns}};
             }};
 }
 
@@ -239,29 +231,21 @@ std::size_t frames_for(std::size_t objects) {
     return objects < 1000 ? 41 : objects < 10'000 ? 17 : 9;
 }
 
-/// Two meshes, one of which passes through the other.
-observation seen_of(const scene_choice& choice, const std::string& build, aabb::instrumentation counted) {
-    aabb::composition c;
-    c[aabb::strategy_kind::build] = {build, {}};
-    return observe(choice, contender_of(c, true), {.counted = counted});
-}
-
 void add_trial(std::vector<trial>& all, const scene_choice& choice, bool held_out, const std::string& build,
                cost_group group) {
-    all.push_back({choice.kind + " " + settings_text(choice), held_out,
-                   [=] {
-                       const observation seen = seen_of(choice, build, aabb::instrumentation::counters);
-                       const auto triangles = static_cast<double>(outlook_of(scene_play(choice)).triangles);
+    const auto triangles = static_cast<double>(outlook_of(scene_play(choice)).triangles);
+    aabb::composition c;
+    c[aabb::strategy_kind::build] = {build, {}};
+    all.push_back({choice.kind + " " + settings_text(choice), held_out, [=](aabb::instrumentation counted) {
+                       const observation seen = observe(choice, contender_of(c, true), {.counted = counted});
                        const auto visits = static_cast<double>(seen.work[aabb::work::node_visits]);
-                       return std::vector{piece{group, {triangles}}, piece{cost_group::queries, {visits}}};
-                   },
-                   [=] {
-                       const observation seen = seen_of(choice, build, aabb::instrumentation::none);
-                       return std::vector{1e6 * seen.build.cpu_ms,
-                                          1e6 * (seen.first.detect.cpu_ms + seen.rest.detect.cpu_ms)};
+                       const double queries = seen.first.detect.cpu_ms + seen.rest.detect.cpu_ms;
+                       return std::vector{piece{group, {triangles}, 1e6 * seen.build.cpu_ms},
+                                          piece{cost_group::queries, {visits}, 1e6 * queries}};
                    }});
 }
 
+/// Two meshes, one of which passes through the other.
 void add_trials(std::vector<trial>& all, const std::string& standing, const std::string& passing, std::size_t triangles,
                 bool held_out) {
     const std::string of = ":triangles=" + std::to_string(triangles);
@@ -333,42 +317,29 @@ struct group_observations {
     std::vector<timed_work> held_out;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point began) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-}
-
 /// Counts, then times round after round, every trial once in each, until the time is over.
-std::vector<group_observations> observe(std::vector<trial> trials, double seconds) {
+std::vector<group_observations> counted_and_timed(std::vector<trial> trials, double seconds) {
     constexpr std::size_t fewest_repeats = 3;
     constexpr std::size_t most_repeats = 25;
-    const auto began = std::chrono::steady_clock::now();
-    std::vector<std::pair<trial, std::vector<piece>>> counted;
-    for (trial& one : trials) {
-        std::vector<piece> pieces = one.count();
-        counted.emplace_back(std::move(one), std::move(pieces));
-    }
-    std::vector<std::vector<std::vector<double>>> times(counted.size());  // by trial, repeat and piece
+    const auto left = [seconds, began = std::chrono::steady_clock::now()] {
+        return seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    };
+    for (trial& one : trials)
+        for (piece& p : one.play(aabb::instrumentation::counters))
+            one.seen.emplace_back(p.group, timed_work{one.scene, std::move(p.work), {}});
     progress shown("seconds of measuring", static_cast<std::size_t>(seconds));
-    double last = 0;
-    for (std::size_t repeat = 0; repeat < most_repeats; ++repeat) {
-        const double so_far = seconds_since(began);
-        if (repeat >= fewest_repeats && so_far + last > seconds) break;
-        for (std::size_t i = 0; i < counted.size(); ++i) {
-            times[i].push_back(counted[i].first.time());
-            shown.at(static_cast<std::size_t>(std::min(seconds, seconds_since(began))));
-        }
-        last = seconds_since(began) - so_far;
-    }
+    const auto time = [&](trial& one, std::size_t) {
+        const std::vector<piece> timed = one.play(aabb::instrumentation::none);
+        for (std::size_t p = 0; p < timed.size(); ++p) one.seen[p].second.ns.push_back(timed[p].ns);
+        shown.at(static_cast<std::size_t>(seconds - std::max(0.0, left())));
+    };
+    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .left = left}, time, [](std::size_t) {});
     std::vector<group_observations> all(cost_groups.size());
-    for (std::size_t i = 0; i < counted.size(); ++i) {
-        const auto& [what, pieces] = counted[i];
-        for (std::size_t p = 0; p < pieces.size(); ++p) {
-            timed_work seen{what.scene, pieces[p].work, {}};
-            for (const std::vector<double>& repeat : times[i]) seen.ns.push_back(repeat[p]);
-            group_observations& group = all[static_cast<std::size_t>(pieces[p].group)];
-            (what.held_out ? group.held_out : group.fitted).push_back(std::move(seen));
+    for (trial& one : trials)
+        for (auto& [group, seen] : one.seen) {
+            group_observations& of_group = all[static_cast<std::size_t>(group)];
+            (one.held_out ? of_group.held_out : of_group.fitted).push_back(std::move(seen));
         }
-    }
     return all;
 }
 
@@ -377,7 +348,7 @@ std::vector<group_observations> observe(std::vector<trial> trials, double second
 calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));
-    const std::vector<group_observations> seen = observe(std::move(trials), seconds);
+    const std::vector<group_observations> seen = counted_and_timed(std::move(trials), seconds);
     // What seems to be free was lost in noise.
     constexpr double least_share = 0.01;
     calibration all;
