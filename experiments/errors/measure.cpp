@@ -9,13 +9,14 @@ import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.progress;
 import aabblab.stopwatch;
+import aabblab.trials;
 
 namespace aabblab {
 
 namespace {
 
-/// Triangle tests that take turns with batches of pairs. Each batch begins with another test, so that none always finds
-/// the cache as the same one left it.
+/// Triangle tests that take turns with batches of pairs: each batch is a round, so that none always finds the cache as
+/// the same one left it.
 /// @tparam Point what is found of a test
 template <class Point>
 class tests_in_turn {
@@ -34,13 +35,12 @@ public:
     /// @param judge follows it, untimed
     template <class Work, class Judge>
     void play(std::size_t pairs, Work work, Judge judge) {
-        for (std::size_t i = 0; i < all_.size(); ++i) {
-            one& turn = all_[(i + batches_) % all_.size()];
-            if (batches_ % turn.share != 0) continue;
+        run_round(all_, batches_, [&](one& turn) {
+            if (batches_ % turn.share != 0) return;
             const double ms = milliseconds_of([&] { work(*turn.test); });
             turn.ns.push_back(ms * 1e6 / static_cast<double>(pairs));
             judge(turn.point);
-        }
+        });
         ++batches_;
     }
 
