@@ -215,6 +215,7 @@ private:
     /// Whether half of a list would not be worth its cost, by a rough count of it: it may hold each box with every
     /// other, whatever is reckoned.
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
+        // So few of a sample may be in reach by chance.
         constexpr std::size_t by_chance = 8;
         const rough_reach reach = rough_reach_of(boxes, objects_, drawn_, margin);
         const auto overlapping = std::max(outlook_.pairs, static_cast<std::size_t>(reach.overlapping));
