@@ -122,11 +122,7 @@ std::vector<aabb::stage_plan> player::plans() const {
 }
 
 std::vector<aabb::omission> player::left_out() const {
-    std::vector<aabb::omission> all = made_.global ? made_.global->left_out() : std::vector<aabb::omission>{};
-    if (!made_.local) all.push_back({"no local detection", "no meshes, no trees, no triangle test"});
-    for (aabb::omission& one : made_.local ? made_.local->left_out() : std::vector<aabb::omission>{})
-        if (std::ranges::find(all, one) == all.end()) all.push_back(std::move(one));
-    return all;
+    return left_out_by(made_.global.get(), made_.local.get());
 }
 
 std::optional<double> player::box_inflation() const {

@@ -94,7 +94,7 @@ ending ending_of(int status) {
 }
 
 // What is told of a play: a line after each frame, with what it took up to there, then its bytes and what its stages
-// left out. The first letter says which.
+// left out, without reasons. The first letter says which.
 constexpr char frame_line = 'f';
 constexpr char bytes_line = 'b';
 constexpr char omission_line = 'o';
@@ -125,8 +125,9 @@ attempt attempt_from(const work_apart& played) {
         } else if (line[0] == bytes_line) {
             text >> seen.bytes;
         } else {
-            const std::size_t between = line.find('\t');
-            seen.left_out.push_back({line.substr(1, between - 1), line.substr(between + 1)});
+            int what = 0;
+            text >> what;
+            seen.left_out.push_back({static_cast<aabb::absence>(what)});
         }
     }
     return one;
@@ -139,7 +140,8 @@ void tell_play(scene_play& scene, const contender& who, std::size_t frames, cons
     };
     const observation seen = observe(scene, who, {.frames = frames, .each = each});
     tell(fmt::format("{} {}\n", bytes_line, seen.bytes));
-    for (const aabb::omission& one : seen.left_out) tell(omission_line + one.what + "\t" + one.why + "\n");
+    for (const aabb::omission& one : seen.left_out)
+        tell(fmt::format("{} {}\n", omission_line, static_cast<int>(one.what)));
 }
 
 }  // namespace

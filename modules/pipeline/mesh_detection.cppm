@@ -104,8 +104,8 @@ public:
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
         if constexpr (requires { Tree::leaves_out; })
-            for (const std::string_view what : Tree::leaves_out) absent.push_back({std::string(what), {}});
-        if constexpr (!Counters::enabled) absent.push_back({"no work counters", {}});
+            for (const absence what : Tree::leaves_out) absent.push_back({what});
+        if constexpr (!Counters::enabled) absent.push_back({absence::counters});
         return absent;
     }
 

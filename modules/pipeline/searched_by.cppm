@@ -46,14 +46,13 @@ public:
 
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
-        if constexpr (!really_cuts<Partition>) absent.push_back({"no partition", "no cells, no copies of objects"});
+        if constexpr (!really_cuts<Partition>) absent.push_back({absence::partition, "no cells, no copies of objects"});
         if constexpr (SearchingPartition<Partition>) absent = search_.own().left_out();
-        if constexpr (CoherentSweep<Sweep>)
-            absent.push_back({"no projection lists beside those that the sweep keeps for itself", {}});
+        if constexpr (CoherentSweep<Sweep>) absent.push_back({absence::other_lists});
+        constexpr std::array lists{absence::x_list, absence::y_list, absence::z_list};
         for (std::size_t k = 0; k < 3; ++k)
-            if (!has_axis(search_.sorted_axes(), k))
-                absent.push_back({std::string("no projection list of the ") + "xyz"[k] + " axis", {}});
-        if constexpr (!Counters::enabled) absent.push_back({"no work counters", {}});
+            if (!has_axis(search_.sorted_axes(), k)) absent.push_back({lists[k]});
+        if constexpr (!Counters::enabled) absent.push_back({absence::counters});
         return absent;
     }
 

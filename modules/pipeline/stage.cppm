@@ -14,22 +14,11 @@ struct part_bytes {
     std::size_t bytes;
 };
 
-/// What a stage does without.
-struct omission {
-    std::string what;  ///< "no sort"
-    std::string why;   ///< "so few boxes are tested each against each"; empty where it is how the strategy is made
-
-    bool operator==(const omission&) const = default;
-};
-/// "no sort: so few boxes are tested each against each"
-[[nodiscard]] inline std::string to_text(const omission& one) {
-    return one.why.empty() ? one.what : one.what + ": " + one.why;
-}
-
 /// What a stage planned from what it saw.
+enum class plan_kind : std::uint8_t { columns, groups_of_columns, neighbour_list, frame_at_rest };
 struct stage_plan {
-    std::string_view what;  ///< "list of neighbours"
-    statement told;         ///< with its numbers
+    plan_kind what;
+    statement told;  ///< with its numbers
 };
 
 /// Boxes in, overlapping pairs out. Where an exception such as std::bad_alloc leaves a stage half-changed, it refuses
@@ -110,6 +99,15 @@ public:
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
     [[nodiscard]] virtual std::vector<omission> left_out() const = 0;
 };
+
+/// What both stages do without, each once. Either may be null.
+[[nodiscard]] inline std::vector<omission> left_out_by(const global_stage* global, const local_stage* local) {
+    std::vector<omission> absent = global ? global->left_out() : std::vector<omission>{};
+    if (!local) absent.push_back({absence::local_detection, "no meshes, no trees, no triangle test"});
+    for (const omission& one : local ? local->left_out() : std::vector<omission>{})
+        if (std::ranges::find(absent, one) == absent.end()) absent.push_back(one);
+    return absent;
+}
 
 /// A triangle test alone; it throws input_error as `require_ieee_arithmetic`.
 class triangle_test : public kept_in_place {

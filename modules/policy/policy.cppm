@@ -5,6 +5,7 @@ export import aabb.base;
 
 export import :configuration;
 export import :nearest_name;
+export import :omission;
 export import :parameters;
 export import :strategy;
 export import :strategy_choice;

@@ -215,7 +215,7 @@ public:
              "{u} by {v} groups of columns along the z axis"}};
         if (is_few_) return {};
         const column_plan& p = plan();
-        return {{is_in_groups() ? "groups of columns" : "columns",
+        return {{is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
                  {p.columns() == 1 ? "one column, cut nowhere" : along[is_in_groups() ? 1 : 0][p.axis],
                   {{{"u", static_cast<double>(p.across[0])},
                     {"v", static_cast<double>(p.across[1])},
@@ -223,7 +223,7 @@ public:
     }
     [[nodiscard]] std::vector<omission> left_out() const {
         constexpr const char* why = "so few boxes are tested each against each";
-        if (is_few_) return {{"no partition", why}, {"no sort", why}};
+        if (is_few_) return {{absence::partition, why}, {absence::sort, why}};
         return {};
     }
     /// Of the time of the last search: groups are cut and sorted in it, where they are still in a cache.

@@ -132,18 +132,18 @@ public:
     [[nodiscard]] std::vector<stage_plan> plans() const override {
         std::vector<stage_plan> all = search_->plans();
         if (state_ == state::listing)
-            all.push_back({"list of neighbours",
+            all.push_back({plan_kind::neighbour_list,
                            {"a list of {pairs} pairs, of boxes grown by {margin} on every side",
                             {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
         else if (state_ == state::resting)
-            all.push_back({"frame at rest", {"the pairs of a frame since which nothing has moved"}});
+            all.push_back({plan_kind::frame_at_rest, {"the pairs of a frame since which nothing has moved"}});
         return all;
     }
 
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (state_ <= state::watching)
-            absent.push_back({"no list of neighbours", has_few_boxes() ? "so few boxes are searched as soon as watched"
+            absent.push_back({absence::neighbour_list, has_few_boxes() ? "so few boxes are searched as soon as watched"
                                                        : expected_ < fewest_frames_of_first_list
                                                            ? "none has been seen to repay its making in so few frames"
                                                            : "boxes move too far, or come too often, for one to pay"});

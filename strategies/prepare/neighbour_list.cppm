@@ -35,7 +35,7 @@ struct neighbour_list_prepare {
         /// Lists of an earlier frame may lack a pair of this one.
         [[nodiscard]] constexpr bool is_exact() const noexcept { return every <= 1; }
     };
-    static constexpr std::array leaves_out{std::string_view("no division of large objects")};
+    static constexpr std::array leaves_out{absence::division};
     static constexpr std::tuple parameters{
         number_parameter{"margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
                          "by which boxes are grown on every side, in typical extents; auto: as it pays, list by list",

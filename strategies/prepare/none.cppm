@@ -9,8 +9,7 @@ export namespace aabb {
 struct none_prepare {
     static constexpr std::string_view name = "none";
     static constexpr std::string_view summary = "boxes are searched as they are";
-    static constexpr std::array leaves_out{std::string_view("no list of neighbours"),
-                                           std::string_view("no division of large objects")};
+    static constexpr std::array leaves_out{absence::neighbour_list, absence::division};
 
     [[nodiscard]] static std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search, instrumentation) {
         return search;

@@ -12,7 +12,7 @@ export namespace aabb {
 /// What both ways of dividing what is large have in common.
 class dividing_prepare {
 public:
-    static constexpr std::array leaves_out{std::string_view("no list of neighbours")};
+    static constexpr std::array leaves_out{absence::neighbour_list};
 
     struct config {
         double size = 4;

@@ -83,7 +83,7 @@ public:
 
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
-        if (splits_.empty()) absent.push_back({"no division of large objects", "none is large"});
+        if (splits_.empty()) absent.push_back({absence::division, "none is large"});
         return absent;
     }
 

@@ -10,7 +10,7 @@ export namespace aabb::composed {
 
 template <Strategy S>
 [[nodiscard]] strategy_info strategy_info_of() {
-    std::vector<std::string> leaves_out;
+    std::vector<absence> leaves_out;
     if constexpr (requires { S::leaves_out; }) leaves_out.assign(S::leaves_out.begin(), S::leaves_out.end());
     std::string needs_meshes;
     if constexpr (requires { S::needs_meshes; }) needs_meshes = S::needs_meshes;

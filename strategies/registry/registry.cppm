@@ -16,7 +16,7 @@ struct strategy_info {
     std::string summary;
     bool exact;  ///< false for one that approximates, whatever its parameters: its results are compared, not refused
     std::vector<parameter_info> parameters;
-    std::vector<std::string> leaves_out;     ///< what a stage with it does without, as `left_out` of a stage has it
+    std::vector<absence> leaves_out;         ///< what a stage with it does without
     std::string needs_meshes;                ///< why it has no use for boxes alone, a sentence; empty where it has
     std::vector<strategy_choice> contrasts;  ///< with settings by which it has what it or others leave out as it is
     scene_fit (*fit)(const scene_outlook& scene);          ///< whether `auto` is to choose it; null where it never does

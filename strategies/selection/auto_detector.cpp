@@ -118,11 +118,7 @@ std::vector<part_bytes> auto_detector::bytes() const {
 }
 
 std::vector<omission> auto_detector::left_out() const {
-    std::vector<omission> absent = global_->left_out();
-    if (!meshes_) absent.push_back({"no local detection", "no meshes, no trees, no triangle test"});
-    for (omission& one : meshes_ ? meshes_->local->left_out() : std::vector<omission>{})
-        if (std::ranges::find(absent, one) == absent.end()) absent.push_back(std::move(one));
-    return absent;
+    return left_out_by(global_.get(), meshes_ ? meshes_->local.get() : nullptr);
 }
 
 }  // namespace aabb

@@ -20,8 +20,7 @@ public:
     static constexpr std::string_view name = "implicit";
     static constexpr std::string_view summary =
         "eight children a node in 64 bytes, no indices, no leaf boxes, walked in batches: fastest";
-    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles"),
-                                           std::string_view("no indices of nodes")};
+    static constexpr std::array leaves_out{absence::triangle_boxes, absence::node_indices};
     static constexpr bool has_leaf_boxes = true;
 
     /// How the vertices of a leaf are found.

@@ -25,7 +25,7 @@ inline constexpr std::tuple leafless_parameters{
 /// that is to be tested.
 class leafless_layout {
 public:
-    static constexpr std::array leaves_out{std::string_view("no boxes of single triangles")};
+    static constexpr std::array leaves_out{absence::triangle_boxes};
     static constexpr bool has_leaf_boxes = false;
 
     using config = leafless_config;

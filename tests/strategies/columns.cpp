@@ -158,7 +158,7 @@ TEST_CASE("of a few boxes none is cut, whichever come and go") {
         const work_counters after = search->counters();
         CHECK((after[work::subsets] > before[work::subsets]) == (n > 20));
         CHECK((after[work::moves] > before[work::moves]) == (n > 20));
-        for (const char* what : {"no partition", "no sort"}) CHECK(leaves_out(*search, what) == (n <= 20));
+        for (const absence what : {absence::partition, absence::sort}) CHECK(leaves_out(*search, what) == (n <= 20));
     }
 }
 

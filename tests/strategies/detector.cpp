@@ -229,13 +229,13 @@ TEST_CASE("an auto_detector says what it selected and by which rule, and what it
     CHECK(rule_of(boxes, strategy_kind::sort) == "shell:gaps=ciura, as it is named");
     CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than 4 frames"));
     CHECK(rule_of(boxes, strategy_kind::tree).empty());
-    CHECK(leaves_out(boxes, "no local detection"));
-    CHECK(leaves_out(boxes, "no work counters"));
+    CHECK(leaves_out(boxes, absence::local_detection));
+    CHECK(leaves_out(boxes, absence::counters));
     const auto_detector many(meshes, mesh_of);
     CHECK(rule_of(many, strategy_kind::prepare).starts_with("neighbour_list, frames follow each other"));
     CHECK(rule_of(many, strategy_kind::build).starts_with("sah, "));
     CHECK(rule_of(auto_detector(meshes, mesh_of, {}, 1), strategy_kind::build).starts_with("median, "));
-    CHECK(leaves_out(many, "no work counters"));
+    CHECK(leaves_out(many, absence::counters));
 }
 
 TEST_CASE("a detector refuses what it cannot be made of, or asked for, in one sentence") {

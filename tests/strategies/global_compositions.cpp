@@ -161,7 +161,7 @@ TEST_CASE("without a partition there are no cells and no copies") {
         CHECK((stage->counters()[work::subsets] == 0) == whole);
         // A partition that cuts nothing copies nothing.
         CHECK((stage->counters()[work::subset_copies] == 0) == (stage->counters()[work::subsets] <= 1));
-        CHECK(leaves_out(*stage, "no partition") == whole);
+        CHECK(leaves_out(*stage, absence::partition) == whole);
     }
 }
 
@@ -183,7 +183,7 @@ TEST_CASE("a flat scene drops its flat axis") {
     for (box& b : boxes) b.min[2] = 0, b.max[2] = 1;
     stage->update(boxes);
     const std::size_t two_lists = stage->bytes()[0].bytes;
-    CHECK(leaves_out(*stage, "no projection list of the z axis"));
+    CHECK(leaves_out(*stage, absence::z_list));
     boxes[0].min[2] = boxes[0].max[2] = 5;
     stage->update(boxes);
     CHECK(stage->bytes()[0].bytes >= two_lists + 40 * sizeof(projection));
@@ -249,6 +249,6 @@ TEST_CASE("far from the origin the axis to sort along is still the one on which 
         boxes.push_back({at, at});
     }
     stage->update(boxes);
-    CHECK(leaves_out(*stage, "no projection list of the x axis"));
-    CHECK_FALSE(leaves_out(*stage, "no projection list of the z axis"));
+    CHECK(leaves_out(*stage, absence::x_list));
+    CHECK_FALSE(leaves_out(*stage, absence::z_list));
 }

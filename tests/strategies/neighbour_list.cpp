@@ -44,7 +44,7 @@ std::vector<vec3f> scattered(std::size_t n, float edge, std::uint64_t& random) {
 /// What is told of the list that serves a frame; 0 where none does.
 double told_of_list(const global_stage& stage, const char* what) {
     for (const stage_plan& plan : stage.plans())
-        if (plan.what == "list of neighbours") return plan.told[what];
+        if (plan.what == plan_kind::neighbour_list) return plan.told[what];
     return 0;
 }
 
@@ -129,13 +129,8 @@ played played_about_homes(int frames, Displacement displacement) {
     return p;
 }
 
-/// Whether something that begins so is left out.
-bool says(const global_stage& stage, std::string_view beginning) {
-    return std::ranges::any_of(stage.left_out(),
-                               [&](const omission& absent) { return to_text(absent).starts_with(beginning); });
-}
 bool keeps_list(const global_stage& stage) {
-    return !says(stage, "no list of neighbours");
+    return !leaves_out(stage, absence::neighbour_list);
 }
 
 // How far things get, by frame and cube.
@@ -181,7 +176,7 @@ TEST_CASE("what a list planned is told in numbers, and in a sentence that has th
     CHECK(found_by(*stage, std::vector<box>{cube(0), cube(1.75F)}).empty());
     const std::vector<stage_plan> plans = stage->plans();
     REQUIRE(!plans.empty());
-    CHECK(plans.back().what == "list of neighbours");
+    CHECK(plans.back().what == plan_kind::neighbour_list);
     CHECK(plans.back().told["pairs"] == 1);
     CHECK(plans.back().told["margin"] == 0.5);
     CHECK(plans.back().told["cells"] == 0);
@@ -540,8 +535,10 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
                 }
                 RC_ASSERT(found_by(*stage, boxes) == found_by(*exact, boxes));
                 const std::vector<stage_plan> plans = stage->plans();
-                kept += static_cast<std::size_t>(std::ranges::count(plans, "list of neighbours", &stage_plan::what));
-                rested += static_cast<std::size_t>(std::ranges::count(plans, "frame at rest", &stage_plan::what));
+                kept +=
+                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::neighbour_list, &stage_plan::what));
+                rested +=
+                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::frame_at_rest, &stage_plan::what));
             }
         }
     }));
@@ -877,7 +874,8 @@ TEST_CASE("a few boxes are not watched") {
         const auto stage = listing_stage(n);
         std::vector<box> boxes(n, cube(0));
         (void)found_by(*stage, boxes);
-        CHECK(says(*stage, "no list of neighbours: so few") == (n == 2 * simd::width));
+        const omission few{absence::neighbour_list, "so few boxes are searched as soon as watched"};
+        CHECK(std::ranges::count(stage->left_out(), few) == (n == 2 * simd::width ? 1 : 0));
         // A margin that is named is kept to.
         const auto named = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=1"}}), n);
         (void)found_by(*named, boxes);

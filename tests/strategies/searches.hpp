@@ -17,7 +17,7 @@ inline std::unique_ptr<aabb::global_stage> search_of(const aabb::composition& c,
 
 /// Does it say that it does without this?
 template <class Search>
-bool leaves_out(const Search& search, std::string_view what) {
+bool leaves_out(const Search& search, aabb::absence what) {
     const std::vector<aabb::omission> all = search.left_out();
     return std::ranges::find(all, what, &aabb::omission::what) != all.end();
 }

@@ -91,7 +91,7 @@ TEST_CASE("two_axis tests boxes that can meet on two axes only, and a long one m
     // Beside these, those that have ended, once each, and of the words at the ends of what it can reach.
     CHECK(two.box_tests < 2 * (on_both + boxes.size()));
     CHECK(8 * two.box_tests < one.box_tests);
-    CHECK(leaves_out(two_axis.stage(), "no projection list of the z axis"));
+    CHECK(leaves_out(two_axis.stage(), absence::z_list));
     // One that is long on the second axis is tested against all.
     boxes.push_back({{20, 0, 0}, {40, 50, 40}});
     counted_search with_long(sweeping("two_axis"), 5001);
@@ -192,11 +192,11 @@ TEST_CASE("incremental holds no list of an axis on which all boxes overlap, unti
     for (box& b : boxes) b.min[1] = 0, b.max[1] = 50;
     counted_search search(keeping("incremental"), 300);
     search.play(boxes);
-    CHECK(leaves_out(search.stage(), "no projection list of the y axis"));
+    CHECK(leaves_out(search.stage(), absence::y_list));
     boxes[0].min[1] = 60;
     boxes[0].max[1] = 70;
     search.play(boxes);
-    CHECK_FALSE(leaves_out(search.stage(), "no projection list of the y axis"));
+    CHECK_FALSE(leaves_out(search.stage(), absence::y_list));
 }
 
 TEST_CASE("sweeps that keep their pairs are refused with what they cannot follow, and say why") {
