@@ -48,8 +48,7 @@ inline std::vector<aabb::strategy_choice> all_choices(aabb::strategy_kind kind) 
 /// Every combination of a stage's strategies that makes sense, exact or not.
 inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     std::vector<aabb::composition> all(1);
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        if (info_of(kind).stage != stage) continue;
+    for (const aabb::strategy_kind kind : kinds_of(stage)) {
         std::vector<aabb::composition> longer;
         for (const aabb::composition& c : all)
             for (const aabb::strategy_choice& choice : all_choices(kind)) longer.emplace_back(c)[kind] = choice;

@@ -9,13 +9,6 @@ namespace aabblab {
 
 namespace {
 
-std::vector<aabb::strategy_kind> kinds_of(aabb::stage stage) {
-    std::vector<aabb::strategy_kind> all;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (info_of(kind).stage == stage) all.push_back(kind);
-    return all;
-}
-
 /// "bucket, or what goes with what is named", "as it serves the scene"
 std::string usual_of(aabb::strategy_kind kind) {
     if (aabb::depends_on_scene(kind)) return "as it serves the scene";

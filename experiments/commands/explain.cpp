@@ -42,10 +42,7 @@ std::string reason_of(const work_apart& work) {
 }
 
 std::string text_of(const contender_name& name, aabb::stage stage) {
-    std::string text;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (const std::string one = info_of(kind).stage == stage ? text_in_line(kind, name[kind]) : ""; !one.empty())
-            text += (text.empty() ? "" : " + ") + one;
+    const std::string text = text_in_line(name.choices, kinds_of(stage));
     return text.empty() ? name.engine : text;
 }
 

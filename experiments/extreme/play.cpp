@@ -31,8 +31,7 @@ std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, c
 
 std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
     std::vector<aabb::composition> all{c};
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        if (info_of(kind).stage != stage) continue;
+    for (const aabb::strategy_kind kind : kinds_of(stage)) {
         std::vector<aabb::composition> longer;
         for (const aabb::composition& shorter : all)
             for (const aabb::strategy_choice& choice : with_named_values(kind, c[kind].name))

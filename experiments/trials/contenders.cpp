@@ -16,8 +16,7 @@ namespace {
 
 /// Takes a stage of the composition.
 void use(contender& who, const aabb::composition& c, aabb::stage stage) {
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (info_of(kind).stage == stage) who.name[kind] = to_text(c[kind]);
+    for (const aabb::strategy_kind kind : kinds_of(stage)) who.name[kind] = to_text(c[kind]);
     who.exact = who.exact && is_exact(c, stage);
     if (stage == aabb::stage::global_search) {
         who.exact_boxes = is_exact(c, stage);
@@ -363,11 +362,8 @@ std::vector<contender> contenders_for(const experiment& e, const scene_choice& s
 }
 
 std::string text_of(const contender_name& name) {
-    std::string text = name.engine;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (const std::string one = text_in_line(kind, name[kind]); !one.empty())
-            text += (text.empty() ? "" : " + ") + one;
-    return text;
+    const std::string made_of = text_in_line(name.choices);
+    return name.engine + (name.engine.empty() || made_of.empty() ? "" : " + ") + made_of;
 }
 
 }  // namespace aabblab

@@ -33,15 +33,13 @@ const composed::local_detection_rows& local_rows() {
 
 /// The kinds of a stage that are compiled together, or that are not.
 std::vector<strategy_kind> kinds_of(stage of, bool apart) {
-    std::vector<strategy_kind> kinds;
-    for (const strategy_kind kind : strategy_kinds)
-        if (info_of(kind).stage == of && info_of(kind).apart == apart) kinds.push_back(kind);
+    std::vector<strategy_kind> kinds = kinds_of(of);
+    std::erase_if(kinds, [&](strategy_kind kind) { return info_of(kind).apart != apart; });
     return kinds;
 }
 
 void require_known(const composition& c, stage of) {
-    for (const strategy_kind kind : strategy_kinds)
-        if (info_of(kind).stage == of) require_known(kind, c[kind]);
+    for (const strategy_kind kind : kinds_of(of)) require_known(kind, c[kind]);
 }
 
 /// Of the kinds that are compiled together, in their order.
@@ -105,6 +103,12 @@ std::string_view name_of(strategy_kind kind) {
     return info_of(kind).name;
 }
 
+std::vector<strategy_kind> kinds_of(stage of) {
+    std::vector<strategy_kind> kinds(strategy_kinds.begin(), strategy_kinds.end());
+    std::erase_if(kinds, [&](strategy_kind kind) { return info_of(kind).stage != of; });
+    return kinds;
+}
+
 std::span<const strategy_info> strategies(strategy_kind kind) {
     static const by_kind<std::vector<strategy_info>> all = [] {
         by_kind<std::vector<strategy_info>> made;
@@ -143,9 +147,8 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
 
 composition::composition(const named_strategies& named) {
     const auto complete = [&](stage of, std::string_view strategy_kind_info::* usual) {
-        for (const strategy_kind kind : strategy_kinds)
-            if (info_of(kind).stage == of)
-                choices_[kind] = named[kind].value_or(strategy_choice{std::string(info_of(kind).*usual), {}});
+        for (const strategy_kind kind : kinds_of(of))
+            choices_[kind] = named[kind].value_or(strategy_choice{std::string(info_of(kind).*usual), {}});
     };
     for (const stage of : {stage::global_search, stage::local_detection}) {
         complete(of, &strategy_kind_info::beside);
@@ -158,18 +161,19 @@ composition::composition(const named_strategies& named) {
     }
 }
 
-std::string text_in_line(strategy_kind kind, const std::string& choice) {
-    return info_of(kind).apart && choice == info_of(kind).fallback ? "" : choice;
+std::string text_in_line(const by_kind<std::string>& choices, std::span<const strategy_kind> kinds) {
+    std::string text;
+    for (const strategy_kind kind : kinds) {
+        const bool is_usual = info_of(kind).apart && choices[kind] == info_of(kind).fallback;
+        if (!is_usual && !choices[kind].empty()) text += (text.empty() ? "" : " + ") + choices[kind];
+    }
+    return text;
 }
 
 std::string to_text(const composition& c, stage of) {
-    std::string text;
-    for (const strategy_kind kind : strategy_kinds) {
-        if (info_of(kind).stage != of) continue;
-        const std::string one = text_in_line(kind, to_text(c[kind]));
-        if (!one.empty()) text += (text.empty() ? "" : " + ") + one;
-    }
-    return text;
+    by_kind<std::string> choices;
+    for (const strategy_kind kind : kinds_of(of)) choices[kind] = to_text(c[kind]);
+    return text_in_line(choices);
 }
 
 std::string_view refusal_of(const composition& c, stage of) {
@@ -178,17 +182,14 @@ std::string_view refusal_of(const composition& c, stage of) {
 
 bool is_exact(const composition& c, stage of) {
     require_known(c, of);
-    return std::ranges::all_of(strategy_kinds, [&](strategy_kind kind) {
-        return info_of(kind).stage != of || strategy_of(kind, c[kind]).is_exact_with(c[kind]);
-    });
+    return std::ranges::all_of(kinds_of(of),
+                               [&](strategy_kind kind) { return strategy_of(kind, c[kind]).is_exact_with(c[kind]); });
 }
 
 std::string needs_meshes(const composition& c) {
     require_known(c, stage::global_search);
-    for (const strategy_kind kind : strategy_kinds)
-        if (info_of(kind).stage == stage::global_search)
-            if (const std::string& sentence = strategy_of(kind, c[kind]).needs_meshes; !sentence.empty())
-                return sentence;
+    for (const strategy_kind kind : kinds_of(stage::global_search))
+        if (const std::string& sentence = strategy_of(kind, c[kind]).needs_meshes; !sentence.empty()) return sentence;
     return {};
 }
 

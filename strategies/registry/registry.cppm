@@ -11,6 +11,9 @@ export namespace aabb {
 /// "sort", "partition", … as in configs, options, CSV columns and folders.
 [[nodiscard]] std::string_view name_of(strategy_kind kind);
 
+/// In the order in which they are declared.
+[[nodiscard]] std::vector<strategy_kind> kinds_of(stage of);
+
 struct strategy_info {
     std::string name;
     std::string summary;
@@ -54,10 +57,12 @@ private:
     by_kind<strategy_choice> choices_;
 };
 
-/// What is said of a strategy of this kind in one line: nothing of one that stands apart and is the usual one.
-[[nodiscard]] std::string text_in_line(strategy_kind kind, const std::string& choice);
+/// Strategies of these kinds, each as the command line takes it: "shell + axial_cut + one_axis". Nothing is said of one
+/// that stands apart and is the usual one.
+[[nodiscard]] std::string text_in_line(const by_kind<std::string>& choices,
+                                       std::span<const strategy_kind> kinds = strategy_kinds);
 
-/// "sort + partition + sweep", "tree + triangle", each as the command line takes it.
+/// "sort + partition + sweep", "tree + triangle".
 [[nodiscard]] std::string to_text(const composition& c, stage of);
 
 /// Why the stage makes no sense, in the words of the policy that refuses it; empty where it makes sense.

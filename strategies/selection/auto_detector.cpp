@@ -28,9 +28,8 @@ named_strategies named_in(const std::vector<std::string>& texts) {
 
 named_strategies named_for_boxes(const std::vector<std::string>& texts) {
     named_strategies named = named_in(texts);
-    for (const strategy_kind kind : strategy_kinds)
-        if (named[kind] && info_of(kind).stage == stage::local_detection)
-            throw input_error(std::string(name_of(kind)) + " is named, but objects are boxes");
+    for (const strategy_kind kind : kinds_of(stage::local_detection))
+        if (named[kind]) throw input_error(std::string(name_of(kind)) + " is named, but objects are boxes");
     return named;
 }
 

@@ -35,9 +35,8 @@ composition completed(const named_strategies& named) {
         fastest[strategy_kind::partition] = {std::string(info_of(strategy_kind::partition).beside), {}};
     for (const stage of : {stage::global_search, stage::local_detection}) {
         const auto take = [&](const composition& others) {
-            for (const strategy_kind kind : strategy_kinds)
-                if (info_of(kind).stage == of && (named[kind] || !info_of(kind).apart))
-                    whole[kind] = named[kind].value_or(others[kind]);
+            for (const strategy_kind kind : kinds_of(of))
+                if (named[kind] || !info_of(kind).apart) whole[kind] = named[kind].value_or(others[kind]);
             return refusal_of(whole, of).empty();
         };
         if (take(fastest) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;

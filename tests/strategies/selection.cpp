@@ -12,13 +12,6 @@ std::string selected(strategy_kind kind, const named_strategies& named, const sc
     return to_text(select_composition(named, scene)[kind]);
 }
 
-std::vector<strategy_kind> kinds_of(enum stage of) {
-    std::vector<strategy_kind> kinds;
-    for (const strategy_kind kind : strategy_kinds)
-        if (info_of(kind).stage == of) kinds.push_back(kind);
-    return kinds;
-}
-
 /// Every combination of names that is not refused.
 std::vector<composition> accepted_by_name(enum stage of) {
     std::vector<composition> all(1);

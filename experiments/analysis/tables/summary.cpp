@@ -103,15 +103,12 @@ void set_labels(scene_summary& scene) {
     const auto composition = std::ranges::find(names, "", &contender_name::engine);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (composition == names.end() || std::ranges::find(scene.differing, kind) != scene.differing.end()) continue;
-        if (const std::string value = text_in_line(kind, (*composition)[kind]); !value.empty())
+        if (const std::string value = text_in_line(composition->choices, {&kind, 1}); !value.empty())
             scene.common += (scene.common.empty() ? "" : ", ") + std::string(name_of(kind)) + " " + value;
     }
     for (summary_line& line : scene.lines) {
-        line.label = line.name.engine;
-        if (!line.label.empty()) continue;
-        for (const aabb::strategy_kind kind : scene.differing)
-            if (const std::string value = text_in_line(kind, line.name[kind]); !value.empty())
-                line.label += (line.label.empty() ? "" : " + ") + value;
+        const std::string& engine = line.name.engine;
+        line.label = engine.empty() ? text_in_line(line.name.choices, scene.differing) : engine;
         if (line.label.empty()) line.label = only_name_of(line.name);
     }
 }
@@ -204,10 +201,7 @@ std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> diff
 
 std::string only_name_of(const contender_name& name) {
     constexpr std::size_t most = 32;  // beside all columns of numbers, in a line of 80
-    std::string text;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (const std::string one = text_in_line(kind, name[kind]); !one.empty())
-            text += (text.empty() ? "" : " + ") + one;
+    const std::string text = text_in_line(name.choices);
     return text.empty() || characters(text) > most ? "this composition" : text;
 }
 
