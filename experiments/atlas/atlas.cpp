@@ -8,19 +8,14 @@ namespace aabblab {
 
 namespace {
 
-std::string label_of(const contender_name& name) {
-    if (!name.engine.empty()) return name.engine;
-    std::string label;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (const std::string& choice = name[kind]; !choice.empty() && choice != "none")
-            label += (label.empty() ? "" : " + ") + choice;
-    return label;
+std::string label_of(contender_name name) {
+    std::ranges::replace(name.choices.all, "none", "");
+    return name.engine.empty() ? text_in_line(name.choices) : name.engine;
 }
 
 double number_in(const std::string& text) {
     double value = 0;
-    const char* end = text.data() + text.size();
-    return std::from_chars(text.data(), end, value).ptr == end ? value : std::numeric_limits<double>::quiet_NaN();
+    return taken(value, text) ? value : std::nan("");
 }
 
 }  // namespace

@@ -117,14 +117,6 @@ std::size_t player::held_bytes() const {
     return all;
 }
 
-std::vector<aabb::stage_plan> player::plans() const {
-    return made_.global ? made_.global->plans() : std::vector<aabb::stage_plan>{};
-}
-
-std::vector<aabb::omission> player::left_out() const {
-    return left_out_by(made_.global.get(), made_.local.get());
-}
-
 std::optional<double> player::box_inflation() const {
     if (!made_.local) return std::nullopt;
     double sum = 0;

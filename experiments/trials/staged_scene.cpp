@@ -93,11 +93,10 @@ ending ending_of(int status) {
     }
 }
 
-// What is told of a play: a line after each frame, with what it took up to there, then its bytes and what its stages
-// left out, without reasons. The first letter says which.
+// What is told of a play: a line after each frame, with what it took up to there, then one of its bytes and of what its
+// stages left out, without reasons. The first letter says which.
 constexpr char frame_line = 'f';
-constexpr char bytes_line = 'b';
-constexpr char omission_line = 'o';
+constexpr char last_line = 'l';
 
 /// @param seconds since the play began
 std::string line_of(const observation& seen, double seconds) {
@@ -122,12 +121,9 @@ attempt attempt_from(const work_apart& played) {
             for (phases* const took : {&seen.first, &seen.rest})
                 text >> took->update.wall_ms >> took->search.wall_ms >> took->detect.wall_ms;
             seen.digests.push_back(seen.digest);
-        } else if (line[0] == bytes_line) {
-            text >> seen.bytes;
         } else {
-            int what = 0;
-            text >> what;
-            seen.left_out.push_back({static_cast<aabb::absence>(what)});
+            text >> seen.bytes;
+            for (int what = 0; text >> what;) seen.left_out.push_back({static_cast<aabb::absence>(what)});
         }
     }
     return one;
@@ -139,9 +135,9 @@ void tell_play(scene_play& scene, const contender& who, std::size_t frames, cons
         tell(line_of(so_far, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     };
     const observation seen = observe(scene, who, {.frames = frames, .each = each});
-    tell(fmt::format("{} {}\n", bytes_line, seen.bytes));
-    for (const aabb::omission& one : seen.left_out)
-        tell(fmt::format("{} {}\n", omission_line, static_cast<int>(one.what)));
+    std::string last = fmt::format("{} {}", last_line, seen.bytes);
+    for (const aabb::omission& one : seen.left_out) last += fmt::format(" {}", static_cast<int>(one.what));
+    tell(last + "\n");
 }
 
 }  // namespace

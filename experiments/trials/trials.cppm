@@ -136,8 +136,12 @@ public:
     /// Of all parts but the meshes, which every composition reads.
     [[nodiscard]] std::size_t held_bytes() const;
     /// What the global search planned from what it saw.
-    [[nodiscard]] std::vector<aabb::stage_plan> plans() const;
-    [[nodiscard]] std::vector<aabb::omission> left_out() const;
+    [[nodiscard]] std::vector<aabb::stage_plan> plans() const {
+        return made_.global ? made_.global->plans() : std::vector<aabb::stage_plan>{};
+    }
+    [[nodiscard]] std::vector<aabb::omission> left_out() const {
+        return left_out_by(made_.global.get(), made_.local.get());
+    }
     /// The mean over the models of the tree's; empty where there is no tree to be seen.
     [[nodiscard]] std::optional<double> box_inflation() const;
 

@@ -20,19 +20,11 @@ enum class absence : std::uint8_t {
     counters
 };
 
-inline constexpr std::array<std::string_view, 12> absence_texts = {
-    "no partition",
-    "no sort",
-    "no projection list of the x axis",
-    "no projection list of the y axis",
-    "no projection list of the z axis",
-    "no projection lists beside those that the sweep keeps for itself",
-    "no list of neighbours",
-    "no division of large objects",
-    "no local detection",
-    "no boxes of single triangles",
-    "no indices of nodes",
-    "no work counters"};
+inline constexpr std::array absence_texts = std::to_array<std::string_view>(
+    {"no partition", "no sort", "no projection list of the x axis", "no projection list of the y axis",
+     "no projection list of the z axis", "no projection lists beside those that the sweep keeps for itself",
+     "no list of neighbours", "no division of large objects", "no local detection", "no boxes of single triangles",
+     "no indices of nodes", "no work counters"});
 
 [[nodiscard]] inline std::string to_text(absence what) {
     return std::string(absence_texts[static_cast<std::size_t>(what)]);

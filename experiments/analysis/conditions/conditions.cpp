@@ -25,10 +25,8 @@ std::string value_of(const factors& all, std::string_view name) {
 }
 
 double number_of(const factors& all, std::string_view name) {
-    const std::string text = value_of(all, name);
     double value = 0;
-    const char* end = text.data() + text.size();
-    return std::from_chars(text.data(), end, value) == std::from_chars_result{end, std::errc{}} ? value : std::nan("");
+    return taken(value, value_of(all, name)) ? value : std::nan("");
 }
 
 selection selection::with(aabb::strategy_kind kind, std::string choice) const {
