@@ -21,6 +21,7 @@ struct extreme_row {
     bool must_be_exact = true;
     bool as_expected = true;  ///< otherwise the suite fails
     aabb::judgement made;     ///< of a case: how many orders say no, or yes, where the other is true
+    std::string precision{};  ///< "float" or "double", in which a triangle test alone decides a case
 };
 
 /// The scenes of `aabb::extreme_scenes`; every class of generated pairs as two meshes; real meshes with zero-area

@@ -16,15 +16,10 @@ std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, c
     for (const aabb::parameter_info& parameter : info->parameters) {
         const auto* const named = std::get_if<aabb::name_values>(&parameter.values);
         if (!named) continue;
-        std::vector<aabb::strategy_choice> more;
-        for (const std::string& value : named->names) {
-            if (value == parameter.fallback) continue;
-            for (aabb::strategy_choice choice : all) {
-                choice.settings.push_back({parameter.name, value});
-                more.push_back(std::move(choice));
-            }
-        }
-        all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+        const std::size_t shorter = all.size();
+        for (const std::string& value : named->names)
+            for (std::size_t i = 0; i < shorter && value != parameter.fallback; ++i)
+                all.emplace_back(aabb::strategy_choice(all[i])).settings.push_back({parameter.name, value});
     }
     return all;
 }
@@ -104,7 +99,8 @@ void hold(bool answer, bool truth, extreme_row& row) {
 
 template <class Real>
 extreme_row played(const aabb::triangle_case& one, const named_test& test, bool truth, const char* precision) {
-    extreme_row row = row_of(one, test.name + " in " + precision, contender_role::triangle_test, test.exact);
+    extreme_row row = row_of(one, test.name, contender_role::triangle_test, test.exact);
+    row.precision = precision;
     for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(one))
         hold(test.test->intersects(pair.a, pair.b), truth, row);
     return row;

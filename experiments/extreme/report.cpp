@@ -1,6 +1,8 @@
 module aabblab.extreme;
 
+import aabb.policy;
 import aabb.validation;
+import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.results;
 
@@ -100,16 +102,15 @@ table wrong_table(const std::string& title, std::span<const extreme_row> rows, s
     return t;
 }
 
-/// Rows of cases; a test in float and in double is one.
+/// A test in float and in double is one.
 std::vector<extreme_row> case_rows(std::span<const extreme_row> rows) {
-    std::vector<extreme_row> all;
-    for (const extreme_row& row : rows) {
-        if (row.group != row_group::cases) continue;
-        all.push_back(row);
-        if (row.role == contender_role::triangle_test)
-            all.back().contender = row.contender.substr(0, row.contender.find(" in "));
-    }
+    std::vector<extreme_row> all(rows.begin(), rows.end());
+    std::erase_if(all, [](const extreme_row& row) { return row.group != row_group::cases; });
     return all;
+}
+
+std::string full_name_of(const extreme_row& row) {
+    return row.contender + (row.precision.empty() ? "" : " in " + row.precision);
 }
 
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
@@ -121,7 +122,7 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
     field("group", one_of_words(r.group, group_names));
     field("scene", r.scene);
     field("class", r.kind);
-    field("contender", r.contender);
+    field("contender", full_name_of(r));
     field("role", one_of_words(r.role, role_names));
     field("must_be_exact", one_of_words(r.must_be_exact, answers));
     field("answer", one_of_words(r.made.said, aabb::verdict_names));
@@ -162,7 +163,7 @@ table inexact_case_table(std::span<const extreme_row> rows) {
     // Those with settings are in the file.
     std::erase_if(shown, [](const extreme_row& row) {
         return row.must_be_exact || row.role != contender_role::triangle_test ||
-               row.contender.find(':') != std::string::npos;
+               !aabb::parse_strategy(row.contender).settings.empty();
     });
     return wrong_table("class", shown, &extreme_row::kind);
 }
@@ -235,11 +236,8 @@ std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {
         if (std::ranges::find(found->second, row.scene) == found->second.end()) found->second.push_back(row.scene);
     }
     std::vector<std::string> all;
-    for (const auto& [sentence, scenes] : scenes_of) {
-        std::string text;
-        for (const std::string& scene : scenes) text += (text.empty() ? "" : ", ") + scene;
-        all.push_back(text + ": " + sentence);
-    }
+    for (const auto& [sentence, scenes] : scenes_of)
+        all.push_back(fmt::format("{}: {}", fmt::join(scenes, ", "), sentence));
     return all;
 }
 
@@ -247,7 +245,7 @@ std::vector<std::string> failures_in(std::span<const extreme_row> rows) {
     std::vector<std::string> all;
     for (const extreme_row& row : rows)
         if (!row.as_expected)
-            all.push_back(row.contender + " on " + row.scene + ": " +
+            all.push_back(full_name_of(row) + " on " + row.scene + ": " +
                           (row.made.said == aabb::verdict::refused ? "refuses: " : "") + row.made.reason);
     return all;
 }
