@@ -84,6 +84,11 @@ inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy
     return aabb::composition(named);
 }
 
+/// Whether pairs of leaves are kept from query to query.
+inline bool keeps_front(const aabb::composition& c) {
+    return std::ranges::count(c[aabb::strategy_kind::tree].settings, aabb::setting{"front", "kept"}) > 0;
+}
+
 inline std::string text_of_global(const aabb::composition& c) {
     return to_text(c, aabb::stage::global_search);
 }

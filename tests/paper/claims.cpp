@@ -264,14 +264,14 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
         if (e.name != "c4" && e.name != "c5") continue;
         for (const aabblab::contender& who : aabblab::contenders_for(e, e.scenes.front())) {
             const std::string& partition = who.name[aabb::strategy_kind::partition];
-            const std::string parameter = e.name == "c4" ? "segments=" : "cell_size=";
-            const std::size_t at = partition.find(parameter);
-            if (at == std::string::npos || partition.ends_with("auto")) continue;
-            const std::string number = partition.substr(at + parameter.size());
+            const std::vector<aabb::setting> settings = aabb::parse_strategy(partition).settings;
+            const auto wanted =
+                std::ranges::find(settings, e.name == "c4" ? "segments" : "cell_size", &aabb::setting::name);
+            if (wanted == settings.end() || wanted->value == "auto") continue;
             CAPTURE(partition);
             const aabblab::figure& f = named(all, e.name == "c4" ? "C4" : "C5").figures.front();
             const aabblab::series& line = f.panels.empty() ? f.lines.front() : f.panels.front().lines.front();
-            CHECK(std::ranges::any_of(line.points, [&](const auto& p) { return p.x == std::stod(number); }));
+            CHECK(std::ranges::any_of(line.points, [&](const auto& p) { return p.x == std::stod(wanted->value); }));
         }
     }
 }
