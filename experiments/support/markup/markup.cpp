@@ -4,17 +4,6 @@ import aabblab.fmt;
 
 namespace aabblab {
 
-namespace {
-
-[[nodiscard]] std::string opened(std::string_view tag, attributes all) {
-    std::string text = "<" + std::string(tag);
-    for (const attribute& one : all)
-        if (!one.value.empty()) text += fmt::format(" {}=\"{}\"", one.name, one.value);
-    return text;
-}
-
-}  // namespace
-
 std::string markup_text(std::string_view text) {
     std::string safe;
     for (const char c : text) switch (c) {
@@ -38,12 +27,11 @@ std::string percent(double value) {
     return short_number(value) + "%";
 }
 
-std::string element(std::string_view tag, attributes all, std::string_view content) {
-    return fmt::format("{}>{}</{}>", opened(tag, all), content, tag);
-}
-
-std::string element(std::string_view tag, attributes all) {
-    return opened(tag, all) + "/>";
+std::string element(std::string_view tag, const attributes& all, std::optional<std::string_view> content) {
+    std::string text = "<" + std::string(tag);
+    for (const attribute& one : all)
+        if (!one.value.empty()) text += fmt::format(" {}=\"{}\"", one.name, one.value);
+    return text + (content ? fmt::format(">{}</{}>", *content, tag) : "/>");
 }
 
 }  // namespace aabblab

@@ -23,11 +23,10 @@ struct attribute {
         requires std::integral<Number> || std::floating_point<Number>
     attribute(std::string_view of, Number number) : name(of), value(short_number(static_cast<double>(number))) {}
 };
-using attributes = std::initializer_list<attribute>;
+using attributes = std::vector<attribute>;
 
 /// @param content markup, in which text is `markup_text`
-[[nodiscard]] std::string element(std::string_view tag, attributes all, std::string_view content);
-/// One that has no content.
-[[nodiscard]] std::string element(std::string_view tag, attributes all);
+[[nodiscard]] std::string element(std::string_view tag, const attributes& all,
+                                  std::optional<std::string_view> content = {});
 
 }  // namespace aabblab
