@@ -1,20 +1,16 @@
-/// A figure as lines, areas and texts with their places, as any format of pictures has them.
+/// A figure as lines, areas and texts, as any format of pictures has them. Their places are in ems of the font, from
+/// the left and the lower edge.
 module aabblab.figures:sheet;
 
 import aabb.std;
 import aabblab.figures;
+import aabblab.svg;
 
 namespace aabblab {
 
-/// In ems of the font, from the left and the lower edge.
-struct place {
-    double x;
-    double y;
-};
-
 /// Lines, or the areas within them, that look alike.
 struct strokes {
-    std::vector<std::vector<place>> lines;
+    polylines lines;
     std::string_view colour;       ///< "#0072B2"
     double width = 0;              ///< in ems; 0 for an area
     std::vector<double> dashes{};  ///< of dash, gap, dash, gap, …, in ems; none where it is solid
