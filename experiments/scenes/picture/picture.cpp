@@ -3,9 +3,9 @@ module aabblab.picture;
 import aabb.pipeline;
 import aabb.validation;
 import aabblab.fmt;
-import aabblab.markup;
 import aabblab.numbers;
 import aabblab.scale;
+import aabblab.svg;
 import aabblab.text;
 
 namespace aabblab {
@@ -66,27 +66,6 @@ struct view_plane {
     aabb::vec3d scale{};   // pixels a unit of length
 };
 
-struct pixel {
-    double x;
-    double y;
-};
-
-/// In pixels, from the corner of a panel.
-struct box_on_plane {
-    double left, top, width, height;
-};
-
-std::string words_at(double x, double y, std::string_view text, std::string_view kind = "",
-                     std::string_view anchor = "") {
-    return element("text", {{"class", kind}, {"x", x}, {"y", y}, {"text-anchor", anchor}}, markup_text(text)) + "\n";
-}
-
-/// @param kind a class of the style
-std::string rectangle(std::string_view kind, const box_on_plane& r) {
-    return element("rect", {{"class", kind}, {"x", r.left}, {"y", r.top}, {"width", r.width}, {"height", r.height}}) +
-           "\n";
-}
-
 /// "x", "y" or "z"
 std::string_view name_of_axis(int axis) {
     return std::string_view("xyz").substr(static_cast<std::size_t>(axis), 1);
@@ -106,80 +85,80 @@ std::vector<double> ticks(const view_plane& view, int axis, double pixels, doubl
                         round_step(length, std::max(2.0, pixels / pixels_each)));
 }
 
-std::string axes_of(const view_plane& view) {
+void add_axes(svg_picture& to, const view_plane& view) {
     const double below = view.height;
-    std::string svg;
-    for (const double value : ticks(view, view.across, view.width, 80))
-        svg += element("path", {{"class", "tick"},
-                                {"d", "M" + short_number(view.x(value)) + " " + short_number(below) + "v5"}}) +
-               words_at(view.x(value), below + 19, fmt::format("{:g}", value), "", "middle");
-    for (const double value : ticks(view, view.up, view.height, 40))
-        svg += element("path", {{"class", "tick"}, {"d", "M0 " + short_number(view.y(value)) + "h-5"}}) +
-               words_at(-9, view.y(value) + 4, fmt::format("{:g}", value), "", "end");
-    return svg + words_at(view.width / 2, below + 36, name_of_axis(view.across), "axis", "middle") +
-           words_at(8 - left_margin, below / 2 + 4, name_of_axis(view.up), "axis");
+    for (const double value : ticks(view, view.across, view.width, 80)) {
+        to.line("tick", {view.x(value), below}, {view.x(value), below + 5});
+        to.text("", {view.x(value), below + 19}, fmt::format("{:g}", value), {{"text-anchor", "middle"}});
+    }
+    for (const double value : ticks(view, view.up, view.height, 40)) {
+        to.line("tick", {0, view.y(value)}, {-5, view.y(value)});
+        to.text("", {-9, view.y(value) + 4}, fmt::format("{:g}", value), {{"text-anchor", "end"}});
+    }
+    to.text("axis", {view.width / 2, below + 36}, name_of_axis(view.across), {{"text-anchor", "middle"}});
+    to.text("axis", {8 - left_margin, below / 2 + 4}, name_of_axis(view.up));
 }
 
 /// What is smaller than a pixel is still to be seen.
-box_on_plane shown(const view_plane& view, const aabb::box& b) {
+svg_box shown(const view_plane& view, const aabb::box& b) {
     const double left = view.x(b.min[view.across]);
     const double top = view.y(b.max[view.up]);
     return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
 }
 
-std::string boxes_of(const view_plane& view, const survey::frame& frame, const frame_drawing& drawing) {
+void add_boxes(svg_picture& to, const view_plane& view, const survey::frame& frame, const frame_drawing& drawing) {
     double area = 0;
-    std::string boxes;
-    std::string outlines;
-    for (std::size_t i = 0; i < drawing.drawn.size(); ++i) {
-        const std::size_t object = drawing.drawn[i];
-        const box_on_plane r = shown(view, frame.boxes[object]);
+    svg_picture boxes;
+    for (const std::size_t object : drawing.drawn) {
+        const svg_box r = shown(view, frame.boxes[object]);
         area += r.width * r.height;
-        boxes += rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
-        if (i < drawing.huge) outlines += rectangle("huge", r);
+        boxes.rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
     }
     // The more boxes lie behind one another, the more is seen through each.
     const double depth = area / (view.width * view.height);
-    return element("g",
-                   {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
-                    {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}},
-                   boxes) +
-           outlines;
+    to.group(boxes, {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
+                     {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}});
+    for (std::size_t i = 0; i < drawing.huge; ++i) to.rectangle("huge", shown(view, frame.boxes[drawing.drawn[i]]));
 }
 
-std::string path_of(const view_plane& view, const survey::path& path) {
-    std::string d;
-    bool pen_down = false;
+svg_picture panel_of(const view_plane& view, std::string_view title, const survey::frame& frame,
+                     const frame_drawing& drawing, const std::vector<polylines>& paths) {
+    svg_picture panel;
+    panel.text("title", {0, -10},
+               fmt::format("{}: boxes {}, overlapping pairs {}", title, drawing.present, drawing.pairs));
+    panel.rectangle("world", {0, 0, view.width, view.height});
+    add_axes(panel, view);
+    add_boxes(panel, view, frame, drawing);
+    for (const polylines& path : paths)
+        if (!path.empty()) panel.path("way", path);
+    return panel;
+}
+
+/// A path on the plane, which ends wherever the object is absent and begins anew behind it.
+polylines drawn_path(const view_plane& view, const survey::path& path) {
+    polylines lines;
+    bool is_new = true;
     for (const auto& place : path) {
-        if (place)
-            d += (pen_down ? "L" : "M") + short_number(view.x((*place)[view.across])) + " " +
-                 short_number(view.y((*place)[view.up]));
-        pen_down = place.has_value();
+        if (place && is_new) lines.emplace_back();
+        if (place) lines.back().push_back({view.x((*place)[view.across]), view.y((*place)[view.up])});
+        is_new = !place;
     }
-    return d.empty() ? "" : element("path", {{"class", "way"}, {"d", d}}) + "\n";
+    return lines;
 }
 
-std::string panel_of(const view_plane& view, pixel corner, std::string_view title, const survey::frame& frame,
-                     const frame_drawing& drawing, std::span<const survey::path> paths) {
-    std::string svg = "\n" + words_at(0, -10, title, "title") + rectangle("world", {0, 0, view.width, view.height}) +
-                      axes_of(view) + boxes_of(view, frame, drawing);
-    for (const survey::path& path : paths) svg += path_of(view, path);
-    return element("g", {{"transform", fmt::format("translate({:.1f} {:.1f})", corner.x, corner.y)}}, svg) + "\n";
-}
-
-/// How many of the paths can be drawn before they hide everything: at least one, where there is one.
-std::size_t clear_paths(const view_plane& view, std::span<const survey::path> paths) {
+/// As many of the paths as can be drawn before they hide everything: at least one, where there is one.
+std::vector<polylines> clear_paths(const view_plane& view, std::span<const survey::path> paths) {
     const double most = 8 * (view.width + view.height);
     double length = 0;
-    std::size_t count = 0;
-    while (count < paths.size() && length < most) {
-        const survey::path& path = paths[count++];
-        for (std::size_t i = 1; i < path.size(); ++i)
-            if (path[i - 1] && path[i])
-                length += std::hypot(view.x((*path[i])[view.across]) - view.x((*path[i - 1])[view.across]),
-                                     view.y((*path[i])[view.up]) - view.y((*path[i - 1])[view.up]));
+    std::vector<polylines> clear;
+    for (const survey::path& path : paths) {
+        if (length >= most) break;
+        clear.push_back(drawn_path(view, path));
+        for (const std::vector<place>& line : clear.back())
+            for (std::size_t i = 1; i < line.size(); ++i)
+                length += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
     }
-    return count;
+    return clear;
 }
 
 constexpr std::size_t most_boxes = 4000;
@@ -190,7 +169,7 @@ constexpr std::size_t most_outlined = 10;  // where more are huge, none stands o
 
 // Blue and vermilion of Okabe and Ito (2008), which people with any colour vision tell apart.
 constexpr std::string_view style =
-    "text{fill:#222}.paper{fill:#fff}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
+    "text{fill:#222}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
     ".world{fill:none;stroke:#999}.tick{stroke:#999}"
     ".apart{fill:#0072b2;stroke:#0072b2;stroke-width:.6}.overlapping{fill:#d55e00;stroke:#d55e00;stroke-width:.6}"
     ".huge{fill:none;stroke:#000;stroke-width:2.5;stroke-dasharray:8 4}"
@@ -245,10 +224,6 @@ frame_drawing drawing_of(const survey::frame& frame) {
     return drawing;
 }
 
-std::string title_of(std::string_view which, std::size_t number, const frame_drawing& drawing) {
-    return fmt::format("{} frame ({}): boxes {}, overlapping pairs {}", which, number, drawing.present, drawing.pairs);
-}
-
 std::vector<std::string> caption_lines(const survey& seen, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
@@ -263,15 +238,18 @@ std::vector<std::string> caption_lines(const survey& seen, const picture_caption
     return lines;
 }
 
-std::string legend(double y, std::size_t paths, bool has_huge) {
-    std::string svg = rectangle("apart", {0, -11, 13, 13}) + words_at(20, 0, "overlaps no other") +
-                      rectangle("overlapping", {170, -11, 13, 13}) + words_at(190, 0, "overlaps another") +
-                      element("path", {{"class", "way"}, {"d", "M340 -4h30"}}) +
-                      words_at(378, 0, fmt::format("paths of {} objects through all frames", paths));
-    if (has_huge)
-        svg += element("path", {{"class", "huge"}, {"d", "M680 -4h34"}}) +
-               words_at(722, 0, fmt::format("longer than {} mean extents", huge_extents));
-    return element("g", {{"transform", fmt::format("translate({} {:.1f})", left_margin, y)}}, svg) + "\n";
+svg_picture legend(std::size_t paths, bool has_huge) {
+    svg_picture keys;
+    keys.rectangle("apart", {0, -11, 13, 13});
+    keys.text("", {20, 0}, "overlaps no other");
+    keys.rectangle("overlapping", {170, -11, 13, 13});
+    keys.text("", {190, 0}, "overlaps another");
+    keys.line("way", {340, -4}, {370, -4});
+    keys.text("", {378, 0}, fmt::format("paths of {} objects through all frames", paths));
+    if (!has_huge) return keys;
+    keys.line("huge", {680, -4}, {714, -4});
+    keys.text("", {722, 0}, fmt::format("longer than {} mean extents", huge_extents));
+    return keys;
 }
 
 }  // namespace
@@ -282,31 +260,23 @@ std::string picture_of(const survey& seen, const picture_caption& caption) {
     const frame_drawing last = drawing_of(seen.last());
     const bool is_sampled = std::max(first.present, last.present) > most_boxes;
 
-    std::string body = words_at(left_margin, 32, caption.name, "name");
+    svg_picture whole;
+    whole.style(style);
+    whole.text("name", {left_margin, 32}, caption.name);
     double y = 58;
     for (const std::string& line : caption_lines(seen, caption, view, is_sampled)) {
-        body += words_at(left_margin, y, line);
+        whole.text("", {left_margin, y}, line);
         y += line_height;
     }
-    const auto paths = seen.paths().first(clear_paths(view, seen.paths()));
-    body += legend(y + 6, paths.size(), first.huge + last.huge > 0);
-    const pixel left = {left_margin, y + 46};
+    const std::vector<polylines> paths = clear_paths(view, seen.paths());
+    whole.put({left_margin, y + 6}, legend(paths.size(), first.huge + last.huge > 0));
+    const place left = {left_margin, y + 46};
     const double panel_height = view.height + bottom_margin;
-    const pixel right = view.is_wide() ? pixel{left.x, left.y + panel_height + gap}
-                                       : pixel{left.x + panel_side + left_margin + gap, left.y};
-    body += panel_of(view, left, title_of("first", 0, first), seen.first(), first, {});
-    body += panel_of(view, right, title_of("last", seen.frames() - 1, last), seen.last(), last, paths);
-    const double width = 2 * (panel_side + left_margin + gap);
-    const double height = std::round(right.y + panel_height + 16);
-    return element("svg",
-                   {{"xmlns", "http://www.w3.org/2000/svg"},
-                    {"viewBox", fmt::format("0 0 {} {}", width, height)},
-                    {"width", width},
-                    {"height", height},
-                    {"font-family", "sans-serif"},
-                    {"font-size", 13}},
-                   "\n" + rectangle("paper", {0, 0, width, height}) + element("style", {}, style) + "\n" + body) +
-           "\n";
+    const place right = view.is_wide() ? place{left.x, left.y + panel_height + gap}
+                                       : place{left.x + panel_side + left_margin + gap, left.y};
+    whole.put(left, panel_of(view, "first frame (0)", seen.first(), first, {}));
+    whole.put(right, panel_of(view, fmt::format("last frame ({})", seen.frames() - 1), seen.last(), last, paths));
+    return whole.file(2 * (panel_side + left_margin + gap), std::round(right.y + panel_height + 16), 13);
 }
 
 }  // namespace aabblab
