@@ -23,10 +23,6 @@ std::string short_number(double value) {
     return text == "-0" ? "0" : text;
 }
 
-std::string percent(double value) {
-    return short_number(value) + "%";
-}
-
 std::string element(std::string_view tag, const attributes& all, std::optional<std::string_view> content) {
     std::string text = "<" + std::string(tag);
     for (const attribute& one : all)

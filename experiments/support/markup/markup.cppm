@@ -1,4 +1,4 @@
-/// HTML and SVG, element by element.
+/// HTML, element by element, and what `aabblab.svg` draws with.
 export module aabblab.markup;
 
 import aabb.std;
@@ -10,8 +10,6 @@ export namespace aabblab {
 
 /// With at most two decimals: a picture shows no more.
 [[nodiscard]] std::string short_number(double value);
-/// "12.5%": a place in a picture that is as wide as there is room.
-[[nodiscard]] std::string percent(double value);
 
 /// A name and a value; one whose value is empty is left out.
 struct attribute {
