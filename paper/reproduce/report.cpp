@@ -111,17 +111,22 @@ std::string rule_picture() {
 }
 
 struct verdict_word {
-    verdict_kind kind;
+    std::string_view kind;  ///< a class of the style
     std::string_view word;
     std::string_view meaning;
 };
 
+/// In the order of `verdict_kind`.
 constexpr verdict_word verdict_words[] = {
-    {verdict_kind::holds, "Holds", "every primary ratio favours the claim"},
-    {verdict_kind::in_part, "Holds in part", "some primary ratios favour it and some do not; the sentence says where"},
-    {verdict_kind::no_difference, "No difference", "every primary ratio lies within the band"},
-    {verdict_kind::does_not_hold, "Does not hold", "no primary ratio favours it, and one speaks against it"},
-    {verdict_kind::undecided, "Undecided", "the direction of a primary ratio is open, and the verdict hangs on it"}};
+    {"holds", "Holds", "every primary ratio favours the claim"},
+    {"part", "Holds in part", "some primary ratios favour it and some do not; the sentence says where"},
+    {"same", "No difference", "every primary ratio lies within the band"},
+    {"not", "Does not hold", "no primary ratio favours it, and one speaks against it"},
+    {"open", "Undecided", "the direction of a primary ratio is open, and the verdict hangs on it"}};
+
+const verdict_word& word_of(verdict_kind verdict) {
+    return verdict_words[static_cast<std::size_t>(verdict)];
+}
 
 /// How a verdict comes about, from rule.md: a paragraph each, without line breaks.
 std::vector<std::string> rule_paragraphs() {
@@ -139,23 +144,13 @@ std::vector<std::string> rule_paragraphs() {
     return all;
 }
 
-std::string_view class_of(verdict_kind verdict) {
-    constexpr std::array names{"holds", "part", "same", "not", "open"};
-    return names[static_cast<std::size_t>(verdict)];
-}
-
-std::string capitalised(std::string text) {
-    if (!text.empty() && 'a' <= text.front() && text.front() <= 'z') text.front() += 'A' - 'a';
-    return text;
-}
-
 std::string paragraph(std::string_view kind, const std::string& markup) {
     return element("p", {{"class", kind}}, markup);
 }
 
 /// A verdict, and a sentence that says more.
 std::string verdict_markup(const claim_result& c, const std::string& sentence) {
-    return element("span", {{"class", "word"}}, markup_text(capitalised(text_of(c))) + ":") + " " +
+    return element("span", {{"class", "word"}}, std::string(word_of(c.verdict).word) + ":") + " " +
            markup_text(sentence);
 }
 
@@ -165,7 +160,7 @@ void add_claim_rows(page& out, const reproduction& all) {
         const std::string told = paragraph("said", markup_text(c.claim)) + paragraph("", verdict_markup(c, c.brief));
         const std::string measured = paragraph("ratio", c.has_primary ? ratio_text(c.primary) : "not measured") +
                                      (c.has_primary ? interval_picture(primaries_of(c)) : "");
-        rows += element("a", {{"class", "claim " + std::string(class_of(c.verdict))}, {"href", "#" + c.id}},
+        rows += element("a", {{"class", "claim " + std::string(word_of(c.verdict).kind)}, {"href", "#" + c.id}},
                         element("b", {}, c.id) + element("div", {}, told) + element("div", {}, measured)) +
                 "\n";
     }
@@ -188,7 +183,7 @@ void add_rule(page& out, const reproduction& all) {
     out.add_html(rule_picture() + "\n");
     std::string words;
     for (const auto& [kind, word, meaning] : verdict_words)
-        words += element("dt", {{"class", class_of(kind)}}, element("span", {{"class", "word"}}, word)) +
+        words += element("dt", {{"class", kind}}, element("span", {{"class", "word"}}, word)) +
                  element("dd", {}, meaning) + "\n";
     out.add_html(element("dl", {{"class", "words"}}, words) + "\n");
     out.add_markdown(to_markdown(rule_table()) + "\n");
@@ -221,10 +216,6 @@ void add_choices(page& out, const reproduction& all) {
     }
     out.add_html(element("dl", {}, list) + "\n");
     out.add_markdown(to_markdown(choice_table(all)) + "\n");
-}
-
-std::string preformatted(const std::string& text) {
-    return element("pre", {}, markup_text(text));
 }
 
 }  // namespace
@@ -265,7 +256,8 @@ page report_of(const reproduction& all, std::span<const report_section> sections
     out.add(all.bands);
     for (const claim_result& c : all.claims) {
         out.heading(c.id + ": " + c.claim, c.id);
-        out.add_html(paragraph("verdict " + std::string(class_of(c.verdict)), verdict_markup(c, c.sentence)) + "\n");
+        out.add_html(paragraph("verdict " + std::string(word_of(c.verdict).kind), verdict_markup(c, c.sentence)) +
+                     "\n");
         out.add_markdown("**" + text_of(c) + ":** " + c.sentence + "\n\n");
         if (c.because != c.sentence) out.paragraph(c.because);
         out.paragraph("The ratio is that of " + c.measured + ".", "soft");
@@ -276,7 +268,8 @@ page report_of(const reproduction& all, std::span<const report_section> sections
         for (const std::string& experiment : c.experiments)
             for (const provenance::config& config : made.configs)
                 if (config.experiment == experiment)
-                    out.folded("The config that made it: " + experiment + ".toml", preformatted(config.text));
+                    out.folded("The config that made it: " + experiment + ".toml",
+                               element("pre", {}, markup_text(config.text)));
     }
     out.heading("Table 1: what nodes take", "table1");
     for (const named_table& t : all.tables) out.add(t);
@@ -289,7 +282,7 @@ page report_of(const reproduction& all, std::span<const report_section> sections
     }
     out.add_html(element("h2", {{"id", "manifest"}}, "What made it") + "\n");
     for (const provenance::config& config : made.configs)
-        out.folded(config.experiment + "/manifest.json", preformatted(config.manifest));
+        out.folded(config.experiment + "/manifest.json", element("pre", {}, markup_text(config.manifest)));
     return out;
 }
 
