@@ -7,7 +7,6 @@ import aabb.pipeline;
 import aabb.registry;
 import aabb.std;
 import aabblab.metrics;
-import aabblab.results;
 import aabblab.scenes;
 
 export namespace aabblab {
@@ -159,7 +158,5 @@ struct kept_costs {
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
 /// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
-
-[[nodiscard]] experiment_record record_of(const experiment& e);
 
 }  // namespace aabblab

@@ -3,6 +3,7 @@ module aabblab.configs;
 import :document;
 import aabb.simd;
 import aabblab.files;
+import aabblab.stopwatch;
 
 namespace aabblab {
 

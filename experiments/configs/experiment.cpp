@@ -1,6 +1,7 @@
 module aabblab.configs;
 
 import :document;
+import aabb.digest;
 import aabb.selection;
 import aabb.validation;
 
@@ -52,8 +53,7 @@ external_engine external_of(const document& doc, const node& table) {
     const node& name = doc.needed(table, "name", "this [[external]] has no name; expected name = \"…\"");
     engine.name = doc.text_of("name", name);
     require_plain_name(doc, name);
-    if (engine.name == contender_name::automatic ||
-        std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
+    if (engine.name == "auto" || std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
         std::ranges::count(aabb::left_out_engines(), engine.name, &aabb::left_out_engine::name) > 0)
         doc.fail(name.line, "there is an engine '" + engine.name + "' already; give this one another name");
     const node& command =
@@ -253,11 +253,7 @@ std::string hash_of(const experiment& e) {
     if (e.how != asking{})
         all +=
             "\n" + std::string(question_names[static_cast<std::size_t>(e.how.ask)]) + (e.how.cold ? " cold" : " warm");
-    return hash_of_text(all + "\n" + e.content_digest);
-}
-
-experiment_record record_of(const experiment& e) {
-    return {e.name, e.file, e.text, hash_of(e), e.quick, e.scenes, e.notes};
+    return aabb::hash_of_text(all + "\n" + e.content_digest);
 }
 
 }  // namespace aabblab

@@ -9,6 +9,7 @@ module aabblab.results;
 
 import aabb.base;
 import aabblab.files;
+import aabblab.stopwatch;
 
 namespace aabblab {
 

@@ -1,7 +1,4 @@
 module;
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <nlohmann/json.hpp>
 
 #include "commit.hpp"
@@ -9,6 +6,7 @@ module;
 module aabblab.results;
 
 import aabb.costs;
+import aabb.digest;
 import aabb.policy;
 import aabblab.files;
 import aabblab.json;
@@ -29,7 +27,7 @@ const machine& here() {
 /// What made the results. Times of different builds or machines must not meet in one table.
 json build() {
     // Of the program that runs: what was changed and not committed makes another build too.
-    static const std::string digest = hash_of_text(bytes_of_file("/proc/self/exe"));
+    static const std::string digest = aabb::hash_of_text(bytes_of_file("/proc/self/exe"));
     return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
             {"dirty", AABBLAB_DIRTY},     {"compiler", AABBLAB_COMPILER},
             {"flags", AABBLAB_FLAGS},     {"build_type", AABBLAB_BUILD_TYPE},
@@ -156,22 +154,6 @@ bool set_parameters(scene_choice& scene, const std::string& text) {
         }
     }
     return true;
-}
-
-std::string hash_of_text(std::string_view text) {
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx",
-                  static_cast<unsigned long long>(XXH3_64bits(text.data(), text.size())));
-    return digits.data();
-}
-
-std::string date_now() {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    std::array<char, 32> text{};
-    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text.data();
 }
 
 std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests,

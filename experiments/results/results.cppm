@@ -187,12 +187,6 @@ struct manifest_summary {
 /// @throws aabb::input_error where it is not a manifest.
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 
-/// XXH3-64 in 16 hexadecimal digits.
-[[nodiscard]] std::string hash_of_text(std::string_view text);
-
-/// "2026-01-31T12:00:00Z"
-[[nodiscard]] std::string date_now();
-
 /// What made results of this program, as a manifest says it: times of different builds or machines must not meet.
 [[nodiscard]] std::string build_description();
 

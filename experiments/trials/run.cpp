@@ -160,6 +160,10 @@ std::vector<contender> shuffled(std::span<const contender> contenders, const sce
 
 }  // namespace
 
+experiment_record record_of(const experiment& e) {
+    return {e.name, e.file, e.text, hash_of(e), e.quick, e.scenes, e.notes};
+}
+
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                    std::span<const contender> contenders, results_folder& results,
                                    std::size_t process) {

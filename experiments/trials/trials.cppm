@@ -373,6 +373,9 @@ struct scene_validation {
 [[nodiscard]] scene_validation validate_scene(const scene_choice& choice, scene_play& scene,
                                               std::span<const contender> contenders);
 
+/// The experiment as its results keep it.
+[[nodiscard]] experiment_record record_of(const experiment& e);
+
 /// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
 /// adds a row for each. What the folder has already is not played again; later processes take what the first one
 /// validated as known, and compare the digest of every repeat with it.

@@ -10,6 +10,16 @@ namespace aabb {
 
 static_assert(std::endian::native == std::endian::little, "digests hash the bytes of little-endian u32s");
 
+namespace {
+
+std::string in_hexadecimal(std::uint64_t value) {
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value));
+    return digits.data();
+}
+
+}  // namespace
+
 struct digest::state {
     XXH3_state_t hash;
 };
@@ -45,9 +55,11 @@ std::uint64_t digest::value() const {
 }
 
 std::string digest::text() const {
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value()));
-    return digits.data();
+    return in_hexadecimal(value());
+}
+
+std::string hash_of_text(std::string_view text) {
+    return in_hexadecimal(XXH3_64bits(text.data(), text.size()));
 }
 
 }  // namespace aabb

@@ -30,4 +30,7 @@ private:
     std::unique_ptr<state> state_;
 };
 
+/// XXH3-64 of the bytes, in 16 hexadecimal digits.
+[[nodiscard]] std::string hash_of_text(std::string_view text);
+
 }  // namespace aabb

@@ -92,10 +92,11 @@ bool is_forbidden(const arrow& one) {
     const bool knows_paper = one.file == "experiments/commands/reproduce.cpp" ||
                              (one.from == "experiments/commands" && one.to == "paper/record");
     const bool judges = one.from.starts_with("paper") && one.from != "paper/measuring";
-    // Strategies of different kinds know nothing of each other; one command knows the paper, which measures in one room
-    // and reads results through their analysis in all others.
+    // Strategies of different kinds know nothing of each other, and configs nothing of results; one command knows the
+    // paper, which measures in one room and reads results through their analysis in all others.
     return (is_kind(one.from) && is_kind(one.to)) || is_hidden(one) ||
            (one.from.starts_with("experiments") && to_paper && !knows_paper) ||
+           (one.from == "experiments/configs" && one.to == "experiments/results") ||
            (judges &&
             (one.to == "experiments/trials" || one.to == "experiments/configs" || one.to == "experiments/results"));
 }
@@ -262,6 +263,10 @@ TEST_CASE("An import that runs back is found") {
     write("paper/measuring/measure.cpp", "import aabblab.configs;\nimport aabblab.claims;\n");
     write("experiments/commands/compare.cpp", "import aabblab.record;\n");
     CHECK(back().empty());
+    write("experiments/results/results.cppm", "export module aabblab.results;\n");
+    write("experiments/configs/costs.cpp", "import aabblab.results;\n");
+    CHECK(back().starts_with("experiments/configs -> experiments/results: "));
+    write("experiments/configs/costs.cpp", "");
     write("paper/claims/c1.cpp", "import aabblab.configs;\n");
     CHECK(back().starts_with("paper/claims -> experiments/configs: "));
     write("paper/claims/c1.cpp", "");

@@ -6,6 +6,7 @@
 import aabb.registry;
 import aabblab.comparison;
 import aabblab.statistics;
+import aabblab.trials;
 
 using aabblab::outcome;
 using aabblab::row;

@@ -59,4 +59,13 @@ double empty_cpu_ms() {
     return least;
 }
 
+std::string date_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text.data();
+}
+
 }  // namespace aabblab

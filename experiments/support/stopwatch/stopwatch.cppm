@@ -41,4 +41,7 @@ struct elapsed {
     return {wall, cpu > 0 ? cpu : 0};
 }
 
+/// "2026-01-31T12:00:00Z"
+[[nodiscard]] std::string date_now();
+
 }  // namespace aabblab
