@@ -5,10 +5,10 @@
 #include <csignal>
 
 #include "commands/command_parser.hpp"
-#include "commands/kept_costs.hpp"
 
 import aabb.base;
 import aabb.std;
+import aabblab.configs;
 import aabblab.output;
 import aabblab.pair_output;
 

@@ -1,5 +1,4 @@
 #include "command_parser.hpp"
-#include "kept_costs.hpp"
 
 import aabb.costs;
 import aabblab.calibrate;

@@ -1,6 +1,5 @@
 #include "command_parser.hpp"
 #include "explain_savings.hpp"
-#include "kept_costs.hpp"
 #include "scene_texts.hpp"
 
 import aabb.policy;

@@ -155,6 +155,16 @@ struct kept_costs {
 /// The same from text. `file` is for messages.
 [[nodiscard]] kept_costs parse_costs(const std::string& text, const std::string& file);
 
+/// Where `calibrate` keeps the user's: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.
+/// @returns an empty path where the environment names neither folder.
+[[nodiscard]] std::filesystem::path kept_costs_file();
+/// Takes them, where there are any, for the whole process in place of those that the program was shipped with; a note
+/// says so of those that are of another machine.
+/// @throws aabb::input_error as `read_costs`.
+void use_kept_costs();
+/// "costs as shipped", or "costs calibrated 2026-01-31T12:00:00Z (FILE)".
+[[nodiscard]] std::string costs_in_force();
+
 /// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
 /// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
