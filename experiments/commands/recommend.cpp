@@ -1,5 +1,4 @@
 #include "command_parser.hpp"
-#include "scene_texts.hpp"
 
 import aabb.costs;
 import aabblab.configs;
@@ -7,12 +6,14 @@ import aabblab.files;
 import aabblab.fmt;
 import aabblab.inputs;
 import aabblab.machine;
+import aabblab.measures;
 import aabblab.numbers;
 import aabblab.page;
 import aabblab.trials;
 import aabblab.race;
 import aabblab.results;
 import aabblab.stopwatch;
+import aabblab.tables;
 
 namespace aabblab {
 

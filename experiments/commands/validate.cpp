@@ -1,12 +1,14 @@
 #include "command_parser.hpp"
-#include "scene_texts.hpp"
 
 import aabb.registry;
 import aabb.validation;
 import aabblab.configs;
+import aabblab.measures;
 import aabblab.trials;
 import aabblab.results;
+import aabblab.scenes;
 import aabblab.suites;
+import aabblab.tables;
 
 namespace aabblab {
 

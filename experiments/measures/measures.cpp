@@ -5,6 +5,7 @@ import aabb.prepare.mean_extent;
 import aabb.registry;
 import aabblab.fmt;
 import aabblab.numbers;
+import aabblab.output;
 
 namespace aabblab {
 
@@ -206,6 +207,16 @@ std::vector<told_measure> told(const scene_measures& m) {
     if (m.turnover > 0)
         all.push_back({"turnover", fmt::format("{:.3g} % of the objects come or go in a frame", 100 * m.turnover)});
     return all;
+}
+
+table table_of(const std::vector<told_measure>& measures) {
+    table t{{{"measured", false}, {"", false}}, {}};
+    for (const told_measure& one : measures) t.rows.push_back({one.name, one.value});
+    return t;
+}
+
+std::string heading_of(const scene_choice& scene) {
+    return scene.kind + " (" + visible(parameters_text(scene)) + ")";
 }
 
 }  // namespace aabblab

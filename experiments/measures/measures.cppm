@@ -5,6 +5,7 @@ import aabb.geometry;
 import aabb.std;
 import aabblab.trials;
 import aabblab.scenes;
+import aabblab.tables;
 
 export namespace aabblab {
 
@@ -54,5 +55,9 @@ struct told_measure {
     std::string value;
 };
 [[nodiscard]] std::vector<told_measure> told(const scene_measures& m);
+[[nodiscard]] table table_of(const std::vector<told_measure>& measures);
+
+/// "brownian (objects=1000, …)"
+[[nodiscard]] std::string heading_of(const scene_choice& scene);
 
 }  // namespace aabblab

@@ -58,6 +58,7 @@ const std::vector<std::string> rooms = {
     "experiments/stiff",
     "experiments/extreme",
     "experiments/suites",
+    "experiments/explain",
     "experiments/benchmarks",
     "paper/claims",
     "paper/record",

@@ -1,12 +1,23 @@
-#pragma once
+/// What a scene is like, which composition serves it and why, its bytes, what is left out, and what each choice saves.
+export module aabblab.explain;
 
 import aabb.pipeline;
 import aabb.registry;
 import aabb.std;
-import aabblab.race;
 import aabblab.results;
+import aabblab.tables;
 import aabblab.trials;
 
+export namespace aabblab {
+
+/// Prints it: of each scene of a config, for what that composes, or of the scene that other arguments name, for `auto`.
+/// @param seconds for which each scene is played
+/// @returns whether all that was played in a scene finds the same
+[[nodiscard]] bool explain(const std::vector<std::string>& what, double seconds);
+
+}  // namespace aabblab
+
+// What the parts of the module share.
 namespace aabblab {
 
 /// What a contender does without, by its stages and by its strategies.
@@ -18,5 +29,8 @@ namespace aabblab {
 /// others, of which one kind or its settings differ, and beside itself with its work counted. Says who had no time.
 /// @returns whether all of them find the same
 [[nodiscard]] bool print_savings(staged_scene& scene, const aabb::composition& selected, const time_limits& limits);
+
+/// Prints a table that fits the output, since the cells of one column are broken into lines.
+void print_broken(const table& t, std::size_t column);
 
 }  // namespace aabblab

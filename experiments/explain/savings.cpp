@@ -1,12 +1,12 @@
+module;
 #include <cassert>
 
-// Imports, so they come last.
-#include "explain_savings.hpp"
-#include "scene_texts.hpp"
+module aabblab.explain;
 
 import aabb.policy;
 import aabblab.fmt;
 import aabblab.numbers;
+import aabblab.output;
 import aabblab.statistics;
 
 namespace aabblab {
@@ -23,9 +23,9 @@ struct other_way {
     std::string kind;  ///< in which it differs from what is selected; empty where it does not
     std::string name;  ///< of what stands in its place
     contender who;
-    std::vector<observation> times;     ///< none where no play came to its end
-    std::optional<attempt> broken_off;  ///< its first play, where that did not
-    bool is_hopeless;                   ///< it takes far longer than what is selected
+    std::vector<observation> times{};     ///< none where no play came to its end
+    std::optional<attempt> broken_off{};  ///< its first play, where that did not
+    bool is_hopeless = false;             ///< it takes far longer than what is selected
 };
 
 /// What it is called where its kind does not stand beside it.
@@ -42,7 +42,7 @@ std::vector<other_way> others(const aabb::composition& selected, aabb::strategy_
         c[kind] = {info.name, {}};
         if (refusal_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
             (meshes || needs_meshes(c).empty()))
-            all.push_back({std::string(name_of(kind)), info.name, contender_of(c, meshes), {}, {}, false});
+            all.push_back({std::string(name_of(kind)), info.name, contender_of(c, meshes)});
     }
     return all;
 }
@@ -55,7 +55,7 @@ std::vector<other_way> ways_by_settings(const aabb::composition& selected, aabb:
             aabb::composition c = selected;
             c[kind] = choice;
             if (c != selected && refusal_of(c, info_of(kind).stage).empty())
-                all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes), {}, {}, false});
+                all.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes)});
         }
     return all;
 }
@@ -65,15 +65,15 @@ double median_ms(std::span<const observation> times) {
 }
 
 /// What is left out, without reasons.
-std::vector<aabb::absence> omitted_by(const other_way& one) {
-    std::vector<aabb::absence> all;
+std::vector<std::string> omitted_by(const other_way& one) {
+    std::vector<std::string> all;
     for (const aabb::omission& absent : omissions_of(one.who.name, one.times.back().left_out))
         if (std::ranges::find(all, absent.what) == all.end()) all.push_back(absent.what);
     return all;
 }
 
 /// Of those that leave it out not, the one that takes least time a frame; null where all do.
-const other_way* fastest_with(aabb::absence what, std::span<const other_way> all) {
+const other_way* fastest_with(const std::string& what, std::span<const other_way> all) {
     const other_way* fastest = nullptr;
     for (const other_way& one : all)
         if (!one.times.empty() && std::ranges::count(omitted_by(one), what) == 0 &&
@@ -89,28 +89,18 @@ std::string more(std::uint64_t bytes, std::uint64_t than) {
 /// Prints for all that the first one leaves out which of the others has it and takes the least time, and how much more.
 void print_omissions(std::span<const other_way> all) {
     const std::vector<observation>& times = all[0].times;
-    const std::vector<std::string> heads{"left out", "is had with", "ms/frame", "bytes"};
-    std::vector<std::vector<std::string>> rows;
-    for (const aabb::absence what : omitted_by(all[0])) {
-        rows.push_back({to_text(what), "-", "-", "-"});
+    table t{{{"left out", false}, {"is had with", false}, {"ms/frame"}, {"bytes"}}, {}};
+    for (const std::string& what : omitted_by(all[0])) {
+        t.rows.push_back({what, "-", "-", "-"});
         const other_way* with = fastest_with(what, all.subspan(1));
         if (!with) continue;
         const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
-        rows.back() = {to_text(what), called(*with),
-                       fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
-                       more(with->times.back().bytes, times.back().bytes)};
+        t.rows.back() = {what, called(*with),
+                         fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
+                         more(with->times.back().bytes, times.back().bytes)};
     }
-    std::size_t beside = 0;
-    for (std::size_t column = 1; column < heads.size(); ++column) {
-        std::size_t widest = heads[column].size();
-        for (const std::vector<std::string>& row : rows) widest = std::max(widest, row[column].size());
-        beside += 2 + widest;
-    }
-    const std::size_t room = std::max(output_width(), beside + 20) - beside;
-    table t{{{heads[0], false}, {heads[1], false}, {heads[2]}, {heads[3]}}, {}};
-    for (const std::vector<std::string>& cells : rows) add_wrapped_row(t, cells, 0, room);
     print("what is left out saves, against the fastest way of having it\n");
-    print(to_text(t) + "\n");
+    print_broken(t, 0);
     print(wrapped("-: none that was played has it. Below 0: having it takes less. ?: as above.") + "\n");
 }
 
@@ -173,7 +163,7 @@ std::vector<aabb::omission> omissions_of(const contender_name& who, std::vector<
         const std::span<const aabb::strategy_info> all = aabb::strategies(kind);
         const auto found = std::ranges::find(all, aabb::parse_strategy(who[kind]).name, &aabb::strategy_info::name);
         assert(found != all.end());
-        for (const aabb::absence what : found->leaves_out) by_stages.push_back({what});
+        for (const std::string& what : found->leaves_out) by_stages.push_back({what, {}});
     }
     return by_stages;
 }
@@ -182,7 +172,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     const scene_play& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
     const bool any = scene.objects() <= most_objects_of_any;
-    std::vector<other_way> all{{"", "as selected", contender_of(selected, meshes), {}, {}, false}};
+    std::vector<other_way> all{{"", "as selected", contender_of(selected, meshes)}};
     std::vector<other_way> by_settings;
     std::string alone;  // kinds of which nothing else goes with the rest
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -193,7 +183,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         std::ranges::move(ways_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
         if (some.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    all.push_back({"", "counters of all work", with_counters(all.front().who), {}, {}, false});
+    all.push_back({"", "counters of all work", with_counters(all.front().who)});
     const std::size_t in_one_kind = all.size();
     std::ranges::move(by_settings, std::back_inserter(all));
     std::vector<contender> playing;

@@ -1,0 +1,207 @@
+module aabblab.explain;
+
+import aabb.policy;
+import aabb.selection;
+import aabblab.configs;
+import aabblab.fmt;
+import aabblab.inputs;
+import aabblab.measures;
+import aabblab.numbers;
+import aabblab.output;
+import aabblab.scenes;
+import aabblab.stopwatch;
+import aabblab.suites;
+
+namespace aabblab {
+
+namespace {
+
+std::string text_of(std::string_view stage, const std::string& made_of, const std::vector<aabb::part_bytes>& parts) {
+    std::string text = fmt::format("    {}{}{}\n", stage, made_of.empty() ? "" : ": ", made_of);
+    for (const aabb::part_bytes& part : parts)
+        text += fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes));
+    return text;
+}
+
+std::string indented(std::string_view before, const std::string& paragraph) {
+    return hanging(before, paragraph) + "\n";
+}
+
+std::string indented_all(std::string_view of, const std::vector<std::string>& sentences) {
+    std::string text = sentences.empty() ? "" : fmt::format("    {}\n", of);
+    for (const std::string& sentence : sentences) text += indented("      ", sentence);
+    return text;
+}
+
+/// Of the time that is left, what one part of the explanation may take of it.
+constexpr double share_of_part = 0.25;
+
+/// Why there is nothing to be said, where work did not come to its end.
+std::string reason_of(const work_apart& work) {
+    return text_of(attempt{work.end, {}, work.reason, work.seconds});
+}
+
+std::string text_of(const contender_name& name, aabb::stage stage) {
+    std::string text;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (const std::string one = info_of(kind).stage == stage ? text_in_line(kind, name[kind]) : ""; !one.empty())
+            text += (text.empty() ? "" : " + ") + one;
+    return text.empty() ? name.engine : text;
+}
+
+/// So that buffers have grown and what is kept between frames is there.
+constexpr std::size_t explained_frames = 2;
+
+std::string explained(scene_play& scene, const contender& who) {
+    player p(who, scene, aabb::instrumentation::none);
+    play(scene, p, [](const played_frame&) {}, explained_frames);
+    const contender_name& name = who.name;
+    std::string text = text_of("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
+    text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
+    if (scene.meshes())
+        text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
+    std::vector<std::string> planned;
+    for (const aabb::stage_plan& one : p.plans()) planned.push_back(to_text(one.told));
+    text += indented_all("planned from what was seen", planned);
+    std::vector<std::string> left_out;
+    for (const aabb::omission& one : omissions_of(name, p.left_out())) left_out.push_back(to_text(one));
+    return text + indented_all("left out", left_out);
+}
+
+void explain_contender(staged_scene& scene, const contender& who, const time_limits& limits) {
+    const work_apart work = scene.apart([&](scene_play& play, const telling& tell) { tell(explained(play, who)); },
+                                        share_of_part * limits.to_play());
+    // What cannot be played is bad input.
+    if (work.end == ending::refused) throw aabb::input_error(work.reason);
+    print(indented("  ", text_of(who.name)));
+    print(work.end == ending::done ? work.told : indented("    ", "its bytes and plans: " + reason_of(work)));
+}
+
+/// Parts of the config that a scene has no use for.
+void explain_unused(const experiment& e, const scene_choice& scene) {
+    for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
+    if (has_meshes(scene)) return;
+    std::string kinds;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
+        if (info_of(kind).stage == aabb::stage::local_detection)
+            kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
+    print("  " + kinds + " have no part in this scene: it has no meshes\n");
+}
+
+/// What the scene is and what it is like; nothing is said of one that cannot be played.
+void explain_measures(staged_scene& scene, const time_limits& limits) {
+    const auto text_of_measures = [](const std::vector<told_measure>& measures) {
+        return to_text(table_of(measures), output_width());
+    };
+    const work_apart work =
+        scene.apart([&](scene_play& play, const telling& tell) { tell(text_of_measures(told(measure_scene(play)))); },
+                    share_of_part * limits.to_play());
+    if (work.end == ending::refused) throw aabb::input_error(work.reason);
+    print_paragraph(heading_of(scene.choice()));
+    if (work.end == ending::done)
+        print(work.told);
+    else
+        print(text_of_measures({{"objects", grouped(scene.scene().objects())},
+                                {"frames", grouped(scene.scene().frames())},
+                                {"all else", reason_of(work)}}));
+    print("\n");
+}
+
+void print_selected(const std::vector<aabb::selected_strategy>& selected) {
+    table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
+    for (const aabb::selected_strategy& one : selected)
+        t.rows.push_back({std::string(name_of(one.kind)), to_text(one.choice), one.rule});
+    print_broken(t, 2);
+}
+
+/// What is selected and why, what comes of it, and what it saves.
+/// @returns whether all that was played finds the same
+bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named, const time_limits& limits) {
+    const bool meshes = scene.scene().meshes() != nullptr;
+    std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene.scene()));
+    const aabb::composition c = composed_of(selected);
+    if (!meshes)
+        std::erase_if(selected, [](const aabb::selected_strategy& one) {
+            return info_of(one.kind).stage == aabb::stage::local_detection;
+        });
+    print_selected(selected);
+    explain_contender(scene, contender_of(c, meshes), limits);
+    print("\n");
+    flush_output();
+    return print_savings(scene, c, limits);
+}
+
+bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
+    explain_measures(scene, limits);
+    if (const std::size_t frames = scene.scene().frames(); frames > explained_frames)
+        print(fmt::format("  bytes are those after {} of {} frames; run tells those after the last\n", explained_frames,
+                          grouped(frames)));
+    explain_unused(e, scene.choice());
+    flush_output();
+    bool same = true;
+    for (const aabb::named_strategies& named : e.automatic) {
+        same &= explain_automatic(scene, named, limits);
+        print("\n");
+    }
+    const std::vector<contender> all = contenders_for(e, scene.choice());
+    for (const contender& who : all) {
+        if (who.name.is_automatic()) continue;
+        explain_contender(scene, who, limits);
+        flush_output();
+    }
+    if (all.size() > e.automatic.size()) print("\n");
+    return same;
+}
+
+void explain_costs() {
+    print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
+}
+
+}  // namespace
+
+bool explain(const std::vector<std::string>& what, double seconds) {
+    if (what.size() == 1 && names_config(what.front())) {
+        const experiment e = open_experiment(what.front(), false);
+        if (!e.automatic.empty()) require_fine_clock();
+        explain_costs();
+        bool same = true;
+        for (const scene_choice& choice : e.scenes) {
+            time_limits limits(seconds);
+            staged_scene scene(choice);
+            limits.scene_is_read();
+            same &= explain_scene(e, scene, limits);
+        }
+        return same;
+    }
+    require_fine_clock();
+    experiment e;
+    e.automatic.emplace_back();
+    time_limits limits(seconds);
+    // What cannot be made is said before anything else.
+    staged_scene scene(scene_of_arguments(what));
+    limits.scene_is_read();
+    explain_costs();
+    return explain_scene(e, scene, limits);
+}
+
+void print_broken(const table& t, std::size_t column) {
+    std::size_t beside = 0;
+    for (std::size_t other = 0; other < t.columns.size(); ++other) {
+        if (other == column) continue;
+        std::size_t widest = t.columns[other].name.size();
+        for (const std::vector<std::string>& row : t.rows) widest = std::max(widest, row[other].size());
+        beside += 2 + widest;
+    }
+    const std::size_t room = std::max(output_width(), beside + 20) - beside;
+    table broken{t.columns, {}};
+    for (std::vector<std::string> cells : t.rows) {
+        std::istringstream lines(wrapped(cells[column], room));
+        while (std::getline(lines, cells[column])) {
+            broken.rows.push_back(cells);
+            std::ranges::fill(cells, "");
+        }
+    }
+    print(to_text(broken) + "\n");
+}
+
+}  // namespace aabblab
