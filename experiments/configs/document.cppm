@@ -38,6 +38,7 @@ public:
              std::string_view what = "a config");
 
     [[nodiscard]] const node& root() const { return root_; }
+    [[nodiscard]] const std::string& file() const { return file_; }
     [[nodiscard]] std::filesystem::path folder() const { return std::filesystem::path(file_).parent_path(); }
 
     /// "FILE:LINE"

@@ -132,10 +132,11 @@ std::vector<metric_plot> plots_of(const document& doc) {
 }
 
 /// Compositions that play scenes, as `run` would.
-experiment whole_of(const document& doc, const error_study& study, const std::string& file, experiment_size size) {
+experiment whole_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
+    if (study.whole) e.scenes = study.whole->scenes;
     e.name = study.name;
-    e.file = file;
+    e.file = doc.file();
     e.text = study.text;
     e.quick = size == experiment_size::quick;
     read_measure(doc, size, e);
@@ -169,12 +170,30 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
     for (const node& one : doc.tables_of("scene")) require_meshes(doc, one);
     if (doc.root().find("scene")) {
         experiment played;
+        played.scenes = study.scenes;
         read_scenes(doc, size, played);
         study.scenes = played.scenes;
         study.notes.insert(study.notes.end(), played.notes.begin(), played.notes.end());
     }
     if (study.pairs.empty() && study.scenes.empty())
         doc.fail(1, "this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
+}
+
+/// What another size may change.
+void read_sized(const document& doc, experiment_size size, error_study& study) {
+    study.hits = pairs_of(doc, "hits", size);
+    if (study.curves.empty()) {
+        if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]], or [[hits]]");
+        refuse_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
+    } else if (study.curves[0].triangles.empty()) {
+        refuse_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
+        study.plots = plots_of(doc);
+        study.whole = whole_of(doc, study, size);
+        study.notes = study.whole->notes;
+    } else {
+        refuse_keys(doc, {"plot", "measure"}, "is for compositions; triangle tests alone are plotted over their time");
+        read_triangles(doc, size, study);
+    }
 }
 
 }  // namespace
@@ -188,20 +207,9 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     study.name = name_of(doc);
     study.text = text;
     study.curves = curves_of(doc);
-    study.hits = pairs_of(doc, "hits", size);
-    if (study.curves.empty()) {
-        if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]], or [[hits]]");
-        refuse_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
-    } else if (study.curves[0].triangles.empty()) {
-        refuse_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
-        study.plots = plots_of(doc);
-        study.whole = whole_of(doc, study, file, size);
-        study.notes = study.whole->notes;
-    } else {
-        refuse_keys(doc, {"plot", "measure"}, "is for compositions; triangle tests alone are plotted over their time");
-        read_triangles(doc, size, study);
-    }
-    if (size == experiment_size::full) static_cast<void>(parse_error_study(text, file, experiment_size::quick));
+    read_sized(doc, size, study);
+    error_study in_quick = study;
+    if (size == experiment_size::full) read_sized(doc, experiment_size::quick, in_quick);
     return study;
 }
 

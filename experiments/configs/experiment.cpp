@@ -184,6 +184,19 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
 
+namespace {
+
+/// What another size may change.
+void read_sized(const document& doc, experiment_size size, experiment& e) {
+    e.quick = size == experiment_size::quick;
+    read_measure(doc, size, e);
+    read_processes(doc, e);
+    read_scenes(doc, size, e);
+    read_asking(doc, e);
+}
+
+}  // namespace
+
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
     if (const node* curve = doc.root().find("curve"))
@@ -192,17 +205,14 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     experiment e;
     e.file = file;
     e.text = text;
-    e.quick = size == experiment_size::quick;
     e.name = name_of(doc);
     e.engines = engines_of(doc);
     e.externals = externals_of(doc);
     read_compositions(doc, doc.root().find("compose"), e);
-    read_measure(doc, size, e);
-    read_processes(doc, e);
-    read_scenes(doc, size, e);
-    read_asking(doc, e);
+    read_sized(doc, size, e);
     // What stands under quick is checked now, not when somebody first asks for it.
-    if (size == experiment_size::full) (void)parse_experiment(text, file, experiment_size::quick);
+    experiment in_quick = e;
+    if (size == experiment_size::full) read_sized(doc, experiment_size::quick, in_quick);
     return e;
 }
 

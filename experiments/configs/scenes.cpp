@@ -241,6 +241,7 @@ const node* seed_of(const document& doc, experiment_size size) {
     return doc.root().find("seed");
 }
 
+/// Of another size, the experiment has scenes already: they are good, and are not made again.
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node& scenes = doc.needed(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
     const std::span<const node> tables = doc.tables_of("scene");
@@ -250,10 +251,12 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     if (written.all().empty())
         doc.fail(scenes.line, tables.empty() ? "this config has no scene; expected at least one [[scene]]"
                                              : "every scene of this config is left out by quick = false");
+    const std::set<scene_choice> made(e.scenes.begin(), e.scenes.end());
+    e.scenes.clear();
     aabb::digest content;
     for (const written_scene& scene : written.all()) {
         require_playable(doc, scene, e);
-        add_content(doc, scene, content);
+        if (!made.contains(scene.choice)) add_content(doc, scene, content);
         e.scenes.push_back(scene.choice);
     }
     e.content_digest = content.text();
