@@ -41,9 +41,9 @@ double atlas_scene::least_ms(span_of_time of) const {
 double atlas_scene::number(std::string_view parameter) const {
     const auto set = std::ranges::find(scene.settings, parameter, &aabb::setting::name);
     if (set != scene.settings.end()) return number_in(set->value);
-    const auto kind = std::ranges::find(scene_kinds(), scene.kind, &scene_info::name);
-    const auto info = std::ranges::find(kind->parameters, parameter, &aabb::parameter_info::name);
-    return info != kind->parameters.end() ? number_in(info->fallback) : std::numeric_limits<double>::quiet_NaN();
+    const std::vector<aabb::parameter_info>& parameters = scene_named(scene.kind).parameters;
+    const auto info = std::ranges::find(parameters, parameter, &aabb::parameter_info::name);
+    return info != parameters.end() ? number_in(info->fallback) : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {

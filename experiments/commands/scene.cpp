@@ -2,9 +2,7 @@
 
 import aabb.pipeline;
 import aabb.registry;
-import aabblab.configs;
 import aabblab.files;
-import aabblab.fmt;
 import aabblab.inputs;
 import aabblab.numbers;
 import aabblab.picture;
@@ -87,14 +85,6 @@ std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_i
                        "--seed must be a whole number from 0 to 18446744073709551615");
 }
 
-const scene_info& kind_named(const std::string& name) {
-    const auto kinds = scene_kinds();
-    const auto kind = std::ranges::find(kinds, name, &scene_info::name);
-    if (kind == kinds.end())
-        throw aabb::input_error(aabb::unknown_name("scene", name, scene_names(), "aabblab list scenes"));
-    return *kind;
-}
-
 /// What a motion file cannot tell.
 void require_poses_suffice(const scene_info& kind, const scene_choice& choice, const aabb::mesh_scene& scene) {
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
@@ -164,7 +154,7 @@ void require_outputs(const scene_request& request) {
 
 void write_scene(const scene_request& request) {
     require_outputs(request);
-    const scene_info& kind = kind_named(request.kind);
+    const scene_info& kind = scene_named(request.kind);
     scene_choice choice{request.kind, {}, request.meshes, seed_of(request, kind)};
     for (const auto& [name, value] : request.settings)
         if (value) choice.settings.push_back({name, *value});

@@ -31,10 +31,7 @@ node sized(const document& doc, const node& scene, experiment_size size) {
 }
 
 const scene_info& info_of(const document& doc, const located_text& kind) {
-    const auto found = std::ranges::find(scene_kinds(), kind.text, &scene_info::name);
-    if (found == scene_kinds().end())
-        doc.fail(kind.line, aabb::unknown_name("scene", kind.text, scene_names(), "aabblab list scenes"));
-    return *found;
+    return doc.at(kind.line, [&]() -> const scene_info& { return scene_named(kind.text); });
 }
 
 /// { others_but = […] } stands for every generated scene of boxes that is named neither there nor in the list.

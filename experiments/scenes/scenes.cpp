@@ -9,7 +9,8 @@ namespace {
 
 const scene_kind& kind_named(const std::string& name) {
     const auto found = std::ranges::find(kinds(), name, [](const scene_kind& k) { return k.info.name; });
-    if (found == kinds().end()) throw aabb::input_error(aabb::unknown_name("scene", name, scene_names()));
+    if (found == kinds().end())
+        throw aabb::input_error(aabb::unknown_name("scene", name, scene_names(), "aabblab list scenes"));
     return *found;
 }
 
@@ -27,6 +28,10 @@ std::span<const scene_info> scene_kinds() {
         return all;
     }();
     return infos;
+}
+
+const scene_info& scene_named(const std::string& kind) {
+    return kind_named(kind).info;
 }
 
 bool has_meshes(const scene_choice& scene) {

@@ -12,6 +12,8 @@ export import :spacing;
 export namespace aabblab {
 
 [[nodiscard]] std::span<const scene_info> scene_kinds();
+/// @throws aabb::input_error on an unknown kind, with the nearest one.
+[[nodiscard]] const scene_info& scene_named(const std::string& kind);
 [[nodiscard]] bool has_meshes(const scene_choice& scene);
 [[nodiscard]] std::vector<std::string> scene_names();
 

@@ -5,13 +5,13 @@ import aabblab.pair_output;
 namespace aabblab {
 
 scene_play::scene_play(const scene_choice& choice) {
-    const auto info = std::ranges::find(scene_kinds(), choice.kind, &scene_info::name);
-    if (info == scene_kinds().end() || !info->has_meshes) {
+    const scene_info& info = scene_named(choice.kind);
+    if (!info.has_meshes) {
         box_scene_ = make_box_scene(choice);
         return;
     }
     meshes_ = make_mesh_scene(choice);
-    if (info->plays_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
+    if (info.plays_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
 }
 
 bool scene_play::next() {
