@@ -100,7 +100,7 @@ std::string page_of(const std::string& scene, const race_result& race, const std
 /// As a page has it: what the scene is like, or that there was no time to find out.
 std::string measures_page(staged_scene& scene, double seconds) {
     const work_apart measured = scene.apart(
-        [](scene_play& play, const telling& tell) { tell(to_html(table_of(told(measure_scene(play))))); }, seconds);
+        [](scene_play& play, const telling& tell) { tell(to_html(told(measure_scene(play)))); }, seconds);
     return measured.end == ending::done ? measured.told
                                         : "<p>There was no time to measure what the scene is like.</p>\n";
 }

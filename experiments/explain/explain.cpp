@@ -90,21 +90,16 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 
 /// What the scene is and what it is like; nothing is said of one that cannot be played.
 void explain_measures(staged_scene& scene, const time_limits& limits) {
-    const auto text_of_measures = [](const std::vector<told_measure>& measures) {
-        return to_text(table_of(measures), output_width());
-    };
-    const work_apart work =
-        scene.apart([&](scene_play& play, const telling& tell) { tell(text_of_measures(told(measure_scene(play)))); },
-                    share_of_part * limits.to_play());
+    const work_apart work = scene.apart(
+        [](scene_play& play, const telling& tell) { tell(to_text(told(measure_scene(play)), output_width())); },
+        share_of_part * limits.to_play());
     if (work.end == ending::refused) throw aabb::input_error(work.reason);
     print_paragraph(heading_of(scene.choice()));
-    if (work.end == ending::done)
-        print(work.told);
-    else
-        print(text_of_measures({{"objects", grouped(scene.scene().objects())},
-                                {"frames", grouped(scene.scene().frames())},
-                                {"all else", reason_of(work)}}));
-    print("\n");
+    table unmeasured = empty_table({"measured", ""});
+    unmeasured.rows = {{"objects", grouped(scene.scene().objects())},
+                       {"frames", grouped(scene.scene().frames())},
+                       {"all else", reason_of(work)}};
+    print((work.end == ending::done ? work.told : to_text(unmeasured, output_width())) + "\n");
 }
 
 void print_selected(const std::vector<aabb::selected_strategy>& selected) {
@@ -159,29 +154,29 @@ void explain_costs() {
 
 }  // namespace
 
-bool explain(const std::vector<std::string>& what, double seconds) {
-    if (what.size() == 1 && names_config(what.front())) {
-        const experiment e = open_experiment(what.front(), false);
+int explain(const explain_request& request) {
+    if (request.what.size() == 1 && names_config(request.what.front())) {
+        const experiment e = open_experiment(request.what.front(), false);
         if (!e.automatic.empty()) require_fine_clock();
         explain_costs();
         bool same = true;
         for (const scene_choice& choice : e.scenes) {
-            time_limits limits(seconds);
+            time_limits limits(request.seconds);
             staged_scene scene(choice);
             limits.scene_is_read();
             same &= explain_scene(e, scene, limits);
         }
-        return same;
+        return same ? 0 : 1;
     }
     require_fine_clock();
     experiment e;
     e.automatic.emplace_back();
-    time_limits limits(seconds);
+    time_limits limits(request.seconds);
     // What cannot be made is said before anything else.
-    staged_scene scene(scene_of_arguments(what));
+    staged_scene scene(scene_of_arguments(request.what));
     limits.scene_is_read();
     explain_costs();
-    return explain_scene(e, scene, limits);
+    return explain_scene(e, scene, limits) ? 0 : 1;
 }
 
 void print_broken(const table& t, std::size_t column) {

@@ -10,10 +10,14 @@ import aabblab.trials;
 
 export namespace aabblab {
 
-/// Prints it: of each scene of a config, for what that composes, or of the scene that other arguments name, for `auto`.
-/// @param seconds for which each scene is played
-/// @returns whether all that was played in a scene finds the same
-[[nodiscard]] bool explain(const std::vector<std::string>& what, double seconds);
+struct explain_request {
+    std::vector<std::string> what;  ///< a config, for what it composes, or what names a scene, for `auto`
+    double seconds = 60;            ///< for which each scene is played
+};
+
+/// Prints it.
+/// @returns the exit status: 1 where not all that was played in a scene finds the same
+[[nodiscard]] int explain(const explain_request& request);
 
 }  // namespace aabblab
 

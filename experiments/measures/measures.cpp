@@ -179,40 +179,33 @@ scene_measures measure_scene(scene_play& scene) {
     return m;
 }
 
-std::vector<told_measure> told(const scene_measures& m) {
-    std::vector<told_measure> all{
-        {"objects", grouped(m.objects)},
-        {"frames", m.frames > frames_measured
-                       ? fmt::format("{}, of which the first {} are measured", grouped(m.frames), frames_measured)
-                       : grouped(m.frames)}};
-    if (m.present != m.objects) all.push_back({"present", grouped(m.present) + " of them in the first frame"});
-    if (m.triangles) all.push_back({"triangles", grouped(*m.triangles) + " in the meshes"});
+table told(const scene_measures& m) {
+    table all = empty_table({"measured", ""});
+    const auto add = [&](const char* name, const std::string& value) { all.rows.push_back({name, value}); };
+    add("objects", grouped(m.objects));
+    add("frames", m.frames > frames_measured
+                      ? fmt::format("{}, of which the first {} are measured", grouped(m.frames), frames_measured)
+                      : grouped(m.frames));
+    if (m.present != m.objects) add("present", grouped(m.present) + " of them in the first frame");
+    if (m.triangles) add("triangles", grouped(*m.triangles) + " in the meshes");
     const auto& o = m.boxes.overlaps;
-    all.push_back({"spread", fmt::format("on x, y, z a box overlaps {:.3g}, {:.3g}, {:.3g} others", o[0], o[1], o[2])});
+    add("spread", fmt::format("on x, y, z a box overlaps {:.3g}, {:.3g}, {:.3g} others", o[0], o[1], o[2]));
     for (std::size_t k = 0; k < 3; ++k)
         if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))
-            all.push_back({"flat axis", std::string(1, "xyz"[k])});
-    all.push_back({"size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
-                                     ", longest edge over the median one"});
-    all.push_back({"density", fmt::format("{:.3g} overlapping pairs an object", m.pairs_an_object)});
-    all.push_back({"clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering)});
+            add("flat axis", std::string(1, "xyz"[k]));
+    add("size ratio",
+        (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") + ", longest edge over the median one");
+    add("density", fmt::format("{:.3g} overlapping pairs an object", m.pairs_an_object));
+    add("clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering));
     if (!m.motion) return all;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
     const char* of = m.boxes.typical_extent > 0 ? "typical extents" : "units";
-    all.push_back({"displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, of)});
-    all.push_back(
-        {"relative", fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, of)});
-    all.push_back({"inversions", fmt::format("{:.3g} an object and frame", m.motion->inversions)});
-    all.push_back({"at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest)});
-    if (m.turnover > 0)
-        all.push_back({"turnover", fmt::format("{:.3g} % of the objects come or go in a frame", 100 * m.turnover)});
+    add("displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, of));
+    add("relative", fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, of));
+    add("inversions", fmt::format("{:.3g} an object and frame", m.motion->inversions));
+    add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));
+    if (m.turnover > 0) add("turnover", fmt::format("{:.3g} % of the objects come or go in a frame", 100 * m.turnover));
     return all;
-}
-
-table table_of(const std::vector<told_measure>& measures) {
-    table t{{{"measured", false}, {"", false}}, {}};
-    for (const told_measure& one : measures) t.rows.push_back({one.name, one.value});
-    return t;
 }
 
 std::string heading_of(const scene_choice& scene) {

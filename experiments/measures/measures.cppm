@@ -49,13 +49,8 @@ struct scene_measures {
 /// The same of a scene that is made already, from its first frame on.
 [[nodiscard]] scene_measures measure_scene(scene_play& scene);
 
-/// A measure as it is told: "displacement", "0.031 of a mean extent a frame".
-struct told_measure {
-    std::string name;
-    std::string value;
-};
-[[nodiscard]] std::vector<told_measure> told(const scene_measures& m);
-[[nodiscard]] table table_of(const std::vector<told_measure>& measures);
+/// As it is told: "displacement", "0.031 of a mean extent a frame".
+[[nodiscard]] table told(const scene_measures& m);
 
 /// "brownian (objects=1000, …)"
 [[nodiscard]] std::string heading_of(const scene_choice& scene);

@@ -104,7 +104,7 @@ TEST_CASE("Measures are told with their digits grouped, and what cannot be told 
     m.objects = 1200;
     m.triangles = 12'345;
     std::string text;
-    for (const aabblab::told_measure& one : aabblab::told(m)) text += one.name + " " + one.value + "\n";
+    for (const auto& row : aabblab::told(m).rows) text += row[0] + " " + row[1] + "\n";
     for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, longest edge"})
         CHECK(holds(text, line));
 }
@@ -115,7 +115,7 @@ TEST_CASE("A flat axis is one on which those overlap that are there") {
     aabblab::scene_measures flat = m;
     flat.boxes.overlaps[2] = static_cast<double>(flat.present - 1);
     const auto tells_flat_axis = [](const aabblab::scene_measures& of) {
-        return std::ranges::any_of(aabblab::told(of), [](const auto& one) { return one.name == "flat axis"; });
+        return std::ranges::any_of(aabblab::told(of).rows, [](const auto& row) { return row[0] == "flat axis"; });
     };
     CHECK(tells_flat_axis(flat));
     CHECK_FALSE(tells_flat_axis(m));
