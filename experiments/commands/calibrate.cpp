@@ -4,9 +4,7 @@ import aabb.costs;
 import aabblab.calibrate;
 import aabblab.configs;
 import aabblab.files;
-import aabblab.machine;
 import aabblab.processor;
-import aabblab.statistics;
 import aabblab.stopwatch;
 import aabblab.tables;
 
@@ -62,7 +60,7 @@ void calibrate(const calibrate_request& request) {
     const idlest_processor here;
     const calibration found =
         request.quick ? calibrate(calibration_size::quick, 12) : calibrate(calibration_size::full, 95);
-    const kept_costs kept = costs_of(this_machine().processor, found.costs);
+    const kept_costs kept = costs_here(found.costs);
     out.write(text_of(kept));
     out.commit();
     print(kept.processor + ", " + kept.instructions + "; times as processor time\n\n");

@@ -3,7 +3,6 @@
 #include "composing.hpp"
 
 import aabb.selection;
-import aabblab.fmt;
 
 namespace aabblab {
 

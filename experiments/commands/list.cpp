@@ -5,7 +5,6 @@
 import aabb.policy;
 import aabb.registry;
 import aabb.validation;
-import aabblab.fmt;
 import aabblab.metrics;
 import aabblab.scenes;
 import aabblab.stepping;

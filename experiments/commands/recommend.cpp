@@ -3,9 +3,7 @@
 import aabb.costs;
 import aabblab.configs;
 import aabblab.files;
-import aabblab.fmt;
 import aabblab.inputs;
-import aabblab.machine;
 import aabblab.measures;
 import aabblab.numbers;
 import aabblab.page;
@@ -77,7 +75,7 @@ std::vector<std::string> legend() {
 }
 
 std::string origin() {
-    const kept_costs here = costs_of(this_machine().processor, aabb::machine_costs());
+    const kept_costs here = costs_here(aabb::machine_costs());
     return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
 }
 
@@ -99,8 +97,8 @@ std::string page_of(const std::string& scene, const race_result& race, const std
 
 /// As a page has it: what the scene is like, or that there was no time to find out.
 std::string measures_page(staged_scene& scene, double seconds) {
-    const work_apart measured = scene.apart(
-        [](scene_play& play, const telling& tell) { tell(to_html(told(measure_scene(play)))); }, seconds);
+    const work_apart measured =
+        scene.apart([](scene_play& play, const telling& tell) { tell(to_html(told(measure_scene(play)))); }, seconds);
     return measured.end == ending::done ? measured.told
                                         : "<p>There was no time to measure what the scene is like.</p>\n";
 }

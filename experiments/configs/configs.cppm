@@ -145,8 +145,8 @@ struct kept_costs {
     }
 };
 
-/// Those of this program on a processor, dated now, with the costs that are given.
-[[nodiscard]] kept_costs costs_of(const std::string& processor, const aabb::cost_model& costs);
+/// Those of this program on this machine, dated now, with the costs that are given.
+[[nodiscard]] kept_costs costs_here(const aabb::cost_model& costs);
 /// As a TOML file.
 [[nodiscard]] std::string text_of(const kept_costs& kept);
 /// @throws aabb::input_error with file and line on malformed TOML, an unknown key (with the nearest one), a cost that

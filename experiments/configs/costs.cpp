@@ -69,8 +69,8 @@ std::string& date_taken() {
 
 }  // namespace
 
-kept_costs costs_of(const std::string& processor, const aabb::cost_model& costs) {
-    return {AABBLAB_VERSION, date_now(), processor, std::string(instructions()), costs};
+kept_costs costs_here(const aabb::cost_model& costs) {
+    return {AABBLAB_VERSION, date_now(), this_machine().processor, std::string(instructions()), costs};
 }
 
 std::string text_of(const kept_costs& kept) {
@@ -121,8 +121,7 @@ void use_kept_costs() {
             throw aabb::input_error(std::string(e.what()) + "; aabblab calibrate --reset removes it");
         }
     }();
-    const kept_costs here = costs_of(this_machine().processor, {});
-    if (!kept.serve(here)) {
+    if (!kept.serve(costs_here({}))) {
         note(file.string() + " is of aabblab " + kept.version + " with " + kept.instructions + " on " + kept.processor +
              ", not of this; costs are as shipped until aabblab calibrate measures them here");
         return;

@@ -47,7 +47,7 @@ aabb::cost_model odd_costs() {
 }
 
 std::string text_here() {
-    return text_of(aabblab::costs_of(aabblab::this_machine().processor, odd_costs()));
+    return text_of(aabblab::costs_here(odd_costs()));
 }
 
 std::string refusal_of(const std::string& text) {
@@ -125,7 +125,8 @@ TEST_CASE("Every cost is measured, and checked in scenes that it was not fitted 
 }
 
 TEST_CASE("A file of costs reads back as it was written") {
-    aabblab::kept_costs kept = aabblab::costs_of("a \"processor\" \\ of old", odd_costs());
+    aabblab::kept_costs kept = aabblab::costs_here(odd_costs());
+    kept.processor = "a \"processor\" \\ of old";
     const aabblab::kept_costs read = aabblab::parse_costs(text_of(kept), "costs.toml");
     CHECK(read.costs == kept.costs);
     CHECK(read.date == kept.date);

@@ -127,7 +127,7 @@ std::vector<text_format> formats() {
          },
          5, "objects = 20", "objects = x"},
         {"cases.toml", cases, text_of_cases, 4, "about = \"a\"", "about = a"},
-        {"costs.toml", aabblab::text_of(aabblab::costs_of("any", {})), text_of_costs, 1, "version =", "versjon ="},
+        {"costs.toml", aabblab::text_of(aabblab::costs_here({})), text_of_costs, 1, "version =", "versjon ="},
         {"results.csv", rows(), text_of_rows, 2, "exact", "right"},
         {"errors.csv", error_rows(), text_of_error_rows, 2, "float", "half"},
     };
