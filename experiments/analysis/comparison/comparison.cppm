@@ -80,4 +80,14 @@ enum class compared { ratios, ratios_and_times };
 /// @throws aabb::input_error where A and B have no scene in common.
 [[nodiscard]] comparison compare(const run_results& a, const run_results& b, compared what);
 
+struct compare_request {
+    std::string a, b;    ///< folders
+    bool times = false;  ///< milliseconds too
+    bool all = false;    ///< also what is unchanged or undecided is listed
+};
+
+/// Prints what changed.
+/// @returns the exit status: 1 where answers did
+[[nodiscard]] int print_comparison(const compare_request& request);
+
 }  // namespace aabblab

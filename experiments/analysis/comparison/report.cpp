@@ -1,0 +1,114 @@
+module aabblab.comparison;
+
+import aabblab.fmt;
+import aabblab.output;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+/// By the number of each `outcome`.
+constexpr std::array<std::string_view, 4> outcome_names{"less", "same", "more", "undecided"};
+
+std::string heading_of(const compared_scene& s) {
+    return fmt::format("{}: {}, {}", s.experiment, s.scene.kind, settings_text(s.scene));
+}
+
+void print_block(const std::string& heading, const table& t) {
+    if (!t.rows.empty()) print("\n" + heading + "\n" + to_text(t, output_width()));
+}
+
+void print_answers(const comparison& found) {
+    table t{{{"experiment", false}, {"scene", false}, {"parameters", false}, {"digest in A", false}, {"in B", false}},
+            {}};
+    for (const different_answer& d : found.answers)
+        t.rows.push_back({d.experiment, d.scene.kind, parameters_text(d.scene), d.in_a, d.in_b});
+    print_block(fmt::format("the answers differ in {} of {} scenes", t.rows.size(), found.answers_compared), t);
+}
+
+/// Those beyond noise, or all.
+table table_of(std::span<const compared_time> times, const std::string& unit, bool all) {
+    table t{{{"composition", false}, {unit + " in A"}, {"in B"}, {"B/A"}, {"95 %"}, {"B is", false}}, {}};
+    for (const compared_time& time : times)
+        if (all || time.found == outcome::less || time.found == outcome::more)
+            t.rows.push_back({time.label, fmt::format("{:.3f}", time.in_a), fmt::format("{:.3f}", time.in_b),
+                              fmt::format("{:.3f}", time.change),
+                              time.too_few ? "-" : fmt::format("{:.3f}-{:.3f}", time.around.low, time.around.high),
+                              std::string(outcome_names[static_cast<std::size_t>(time.found)])});
+    return t;
+}
+
+/// Prints those of each scene, and in a line how many there are: "24 ratios compared: 2 changed beyond noise, …".
+/// @param heading what is said of them behind the scene
+/// @param all are listed
+void print_compared(const comparison& found, std::vector<compared_time> compared_scene::* times, std::string_view what,
+                    const std::string& unit, auto heading, bool all) {
+    std::size_t count = 0, changed = 0, same = 0, undecided = 0, too_few = 0;
+    for (const compared_scene& s : found.scenes) {
+        for (const compared_time& time : s.*times) {
+            ++count;
+            changed += time.found == outcome::less || time.found == outcome::more;
+            same += time.found == outcome::same;
+            undecided += time.found == outcome::undecided;
+            too_few += time.found == outcome::undecided && time.too_few;
+        }
+        print_block(heading_of(s) + heading(s), table_of(s.*times, unit, all));
+    }
+    print(fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided", count,
+                      what, changed, same, 100 * equivalence_band, undecided));
+    if (too_few > 0) print(fmt::format(", {} of them for too few repeats", too_few));
+    print("\n");
+    if (undecided > 0)
+        print(
+            fmt::format("undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's "
+                        "correction for all {}{}\n",
+                        100 * equivalence_band, what, all ? "" : "; --all lists them"));
+}
+
+std::string percents(std::uint64_t before, std::uint64_t after) {
+    if (before == 0) return "-";
+    return fmt::format("{:+.2f}", 100 * (static_cast<double>(after) / static_cast<double>(before) - 1));
+}
+
+void print_numbers(const comparison& found) {
+    std::size_t changed = 0;
+    for (const compared_scene& s : found.scenes) {
+        table t{{{"composition", false}, {"what", false}, {"in A"}, {"in B"}, {"%"}}, {}};
+        for (const changed_number& n : s.changed)
+            t.rows.push_back(
+                {n.label, n.what, std::to_string(n.in_a), std::to_string(n.in_b), percents(n.in_a, n.in_b)});
+        changed += t.rows.size();
+        print_block(heading_of(s) + "; sums over seeds", t);
+    }
+    print(fmt::format("{}{} counts and sizes compared: {} changed\n", changed > 0 ? "\n" : "", found.numbers_compared,
+                      changed));
+}
+
+}  // namespace
+
+int print_comparison(const compare_request& request) {
+    const run_results a = read_results(request.a);
+    const run_results b = read_results(request.b);
+    if (request.times) {
+        require_one_machine(a, b);
+        note("times of runs at different hours differ by more than the noise within each; ratios tell more");
+    }
+    const comparison found = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
+    print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
+    print_answers(found);
+    print_compared(
+        found, &compared_scene::ratios, "ratios", "ratio",
+        [](const compared_scene& s) { return "; time over that of '" + s.base + "'"; }, request.all);
+    if (request.times)
+        print_compared(
+            found, &compared_scene::times, "times", "ms",
+            [](const compared_scene&) { return "; milliseconds a frame"; }, request.all);
+    print_numbers(found);
+    if (found.only_in_a + found.only_in_b > 0)
+        print(fmt::format("left out is what only one of them has: {} compositions in a scene of A, {} of B\n",
+                          found.only_in_a, found.only_in_b));
+    return found.answers.empty() ? 0 : 1;
+}
+
+}  // namespace aabblab
