@@ -61,4 +61,14 @@ void rank(std::vector<racer>& finalists);
 /// frames it would be another, and whose answer is wrong.
 [[nodiscard]] std::vector<std::string> advice_of(const race_result& race);
 
+struct recommend_request {
+    std::vector<std::string> what;      ///< names a scene
+    std::optional<std::string> report;  ///< a page to be written of all that is printed, and more
+    double seconds = 60;
+};
+
+/// Runs a race and prints who is how fast, and what to use.
+/// @returns the exit status: 1 where somebody does not find what others find
+[[nodiscard]] int recommend(const recommend_request& request);
+
 }  // namespace aabblab

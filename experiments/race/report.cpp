@@ -1,0 +1,135 @@
+module aabblab.race;
+
+import aabb.base;
+import aabb.costs;
+import aabblab.configs;
+import aabblab.files;
+import aabblab.fmt;
+import aabblab.inputs;
+import aabblab.measures;
+import aabblab.numbers;
+import aabblab.output;
+import aabblab.page;
+import aabblab.stopwatch;
+import aabblab.tables;
+
+namespace aabblab {
+
+namespace {
+
+table table_of(const race_result& race) {
+    table t{{{row_number},
+             {"finalist", false},
+             {"all ms"},
+             {"ratio"},
+             {"95 %"},
+             {"ms/frame"},
+             {"first ms", true, 1},
+             {"build ms", true, 2},
+             {"KiB"}},
+            {}};
+    for (const racer& r : race.finalists) {
+        const observation& time = *r.last;
+        const auto [low, high] = r.ratio_range();
+        t.rows.push_back(
+            {std::to_string(t.rows.size() + 1), r.name, fmt::format("{:.4g}", time.whole_ms()),
+             fmt::format("{:.2f}", r.ratio()),
+             &r == &race.finalists.front() || !r.has_range() ? "-" : fmt::format("{:.2f}-{:.2f}", low, high),
+             fmt::format("{:.4g}", time.frame_ms()), fmt::format("{:.3g}", time.first.wall_ms()),
+             fmt::format("{:.3g}", time.build.wall_ms), time.bytes > 0 ? grouped(time.bytes / 1024) : "-"});
+    }
+    return t;
+}
+
+/// Of a dropped racer: how far behind it was, or how its play ended.
+std::string fate_of(const racer& r) {
+    return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.behind);
+}
+
+table dropped_table_of(const race_result& race) {
+    table t{{{"dropped", false}, {"after frames"}, {"times"}}, {}};
+    for (const racer& r : race.dropped)
+        t.rows.push_back({r.name, r.last ? std::to_string(r.last->frames) : "-", fate_of(r)});
+    return t;
+}
+
+/// Those whose play did not end; none of those that were not played at all.
+table unfinished_table_of(const race_result& race) {
+    table t{{{"not finished", false}, {"", false}}, {}};
+    for (const racer& r : race.dropped)
+        if (r.broken_off && r.broken_off->seconds > 0) t.rows.push_back({r.name, fate_of(r)});
+    return t;
+}
+
+std::vector<std::string> legend() {
+    return {"all ms: build ms, first ms, which is frame 0, and all further frames; of the plays the median.",
+            "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %; -: of "
+            "itself, or of too few plays to say.",
+            ms_a_frame_text, build_ms_text};
+}
+
+std::string origin() {
+    const kept_costs here = costs_here(aabb::machine_costs());
+    return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
+}
+
+std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
+    page out(scene);
+    out.title(scene);
+    out.paragraph(fmt::format("{}", fmt::join(advice_of(race), " ")));
+    out.add(table_of(race));
+    out.paragraph(fmt::format("{}", fmt::join(legend(), " ")));
+    out.add_html(measured);
+    out.add(dropped_table_of(race));
+    out.paragraph(
+        "Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in those "
+        "after the first; or how a play ended that did not come to its end. Strategies play with their default "
+        "parameters.");
+    out.paragraph(origin());
+    return out.html();
+}
+
+/// As a page has it: what the scene is like, or that there was no time to find out.
+std::string measures_page(staged_scene& scene, double seconds) {
+    const work_apart measured =
+        scene.apart([](scene_play& play, const telling& tell) { tell(to_html(told(measure_scene(play)))); }, seconds);
+    return measured.end == ending::done ? measured.told
+                                        : "<p>There was no time to measure what the scene is like.</p>\n";
+}
+
+}  // namespace
+
+int recommend(const recommend_request& request) {
+    require_fine_clock();
+    time_limits limits(request.seconds);
+    staged_scene scene(scene_of_arguments(request.what));
+    limits.scene_is_read();
+    std::optional<output_file> page;
+    if (request.report) {
+        require_no_mesh(*request.report, request.what);
+        page.emplace(*request.report);
+    }
+    if (scene.scene().objects() < 2)
+        throw aabb::input_error("nothing to search: the scene has " + counted(scene.scene().objects(), "object"));
+    const race_result race = run_race(scene, starters(scene.scene()), limits);
+    const std::string name = heading_of(scene.choice());
+    print_paragraph(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame"));
+    print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
+                      race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
+                      100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
+    print(to_text(table_of(race), output_width()) + "\n");
+    for (const std::string& line : legend()) print_paragraph(line);
+    print("\n");
+    if (const table unfinished = unfinished_table_of(race); !unfinished.rows.empty())
+        print(to_text(unfinished, output_width()) + "\n");
+    for (const std::string& sentence : advice_of(race)) print_paragraph(sentence);
+    if (page) {
+        page->write(page_of(name, race, measures_page(scene, limits.to_end())));
+        page->commit();
+    }
+    const std::string& answer = race.finalists.front().last->digest;
+    const bool agree = std::ranges::all_of(race.finalists, [&](const racer& r) { return r.last->digest == answer; });
+    return race.wrong.empty() && agree ? 0 : 1;
+}
+
+}  // namespace aabblab
