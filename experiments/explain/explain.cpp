@@ -148,35 +148,27 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
     return same;
 }
 
-void explain_costs() {
-    print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
-}
-
 }  // namespace
 
 int explain(const explain_request& request) {
-    if (request.what.size() == 1 && names_config(request.what.front())) {
-        const experiment e = open_experiment(request.what.front(), false);
-        if (!e.automatic.empty()) require_fine_clock();
-        explain_costs();
-        bool same = true;
-        for (const scene_choice& choice : e.scenes) {
-            time_limits limits(request.seconds);
-            staged_scene scene(choice);
-            limits.scene_is_read();
-            same &= explain_scene(e, scene, limits);
-        }
-        return same ? 0 : 1;
-    }
-    require_fine_clock();
     experiment e;
-    e.automatic.emplace_back();
-    time_limits limits(request.seconds);
-    // What cannot be made is said before anything else.
-    staged_scene scene(scene_of_arguments(request.what));
-    limits.scene_is_read();
-    explain_costs();
-    return explain_scene(e, scene, limits) ? 0 : 1;
+    if (request.what.size() == 1 && names_config(request.what.front())) {
+        e = open_experiment(request.what.front(), false);
+    } else {
+        e.automatic.emplace_back();
+        e.scenes.push_back(scene_of_arguments(request.what));
+    }
+    if (!e.automatic.empty()) require_fine_clock();
+    bool same = true;
+    for (const scene_choice& choice : e.scenes) {
+        time_limits limits(request.seconds);
+        // What cannot be made is said before anything else.
+        staged_scene scene(choice);
+        limits.scene_is_read();
+        if (&choice == e.scenes.data()) print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
+        same &= explain_scene(e, scene, limits);
+    }
+    return same ? 0 : 1;
 }
 
 void print_broken(const table& t, std::size_t column) {

@@ -106,11 +106,11 @@ void print_omissions(std::span<const other_way> all) {
 
 /// The same with counters in its stages.
 contender with_counters(contender who) {
-    who.make_global = [make = who.make_global](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
-    if (who.make_local)
-        who.make_local = [make = who.make_local](aabb::instrumentation) {
-            return make(aabb::instrumentation::counters);
-        };
+    const auto counting = [](auto make) {
+        return [make](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
+    };
+    who.make_global = counting(who.make_global);
+    if (who.make_local) who.make_local = counting(who.make_local);
     return who;
 }
 
@@ -202,14 +202,9 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         all[i].is_hopeless = played.hopeless[i];
     }
 
-    table t{{{"kind", false},
-             {"in its place", false},
-             {"ms/frame"},
-             {"ratio"},
-             {"range"},
-             {"build ms", true, 2},
-             {"bytes", true, 1}},
-            {}};
+    table t = empty_table({"kind", "in its place"}, {"ms/frame", "ratio", "range"});
+    t.columns.push_back({"build ms", true, 2});
+    t.columns.push_back({"bytes", true, 1});
     for (std::size_t i = 0; i < in_one_kind; ++i) add_row(t, all[i], all[0]);
     print_paragraph(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} of {}",
                                 counted(played.rounds, "round"), counted(played.frames, "frame")));
