@@ -1,11 +1,7 @@
 #include "command_parser.hpp"
 
 import aabblab.configs;
-import aabblab.errors;
-import aabblab.figures;
-import aabblab.results;
 import aabblab.suites;
-import aabblab.tables;
 
 namespace aabblab {
 
@@ -27,14 +23,10 @@ int run(const errors_request& request) {
     const std::vector<std::string> failures = measure_study(study, folder, printed::tables);
     const auto say = [&](const char* file) { print("Every number is in " + visible((folder / file).string()) + "\n"); };
     if (!study.hits.empty()) say("intersections.csv");
-    if (study.whole) {
-        draw(folder / "figures", metric_figures(study, summarise(read_rows(folder / "results.csv"))));
-        say("results.csv");
-    } else if (!study.curves.empty()) {
-        draw(folder / "figures", error_figures(read_error_rows(folder / "errors.csv")));
-        say("errors.csv");
+    if (!study.curves.empty()) {
+        say(study.whole ? "results.csv" : "errors.csv");
+        print("A plot for each set is in " + visible((folder / "figures").string()) + "\n");
     }
-    if (!study.curves.empty()) print("A plot for each set is in " + visible((folder / "figures").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 

@@ -77,14 +77,19 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
     write_file(folder / "config.toml", study.text);
     if (study.whole) {
         failures = play_experiment(*study.whole, folder, existing_results::replace, "the same command", shown);
-        if (shown != printed::nothing)
-            for (const std::string& text : metric_statements(study, summarise(read_rows(folder / "results.csv"))))
-                print(text + "\n\n");
+        if (shown != printed::nothing) {
+            const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
+            for (const std::string& text : metric_statements(study, scenes)) print(text + "\n\n");
+            draw(folder / "figures", metric_figures(study, scenes));
+        }
     } else if (!study.curves.empty()) {
         const std::vector<error_point> points = measure_errors(study, [&](std::span<const error_point> so_far) {
             write_file(folder / "errors.csv", to_csv(error_rows(so_far)));
         });
-        if (shown != printed::nothing) print_tables(points);
+        if (shown != printed::nothing) {
+            print_tables(points);
+            draw(folder / "figures", error_figures(points));
+        }
     }
     if (!study.hits.empty())
         std::ranges::move(measure_hits_into(folder, study.hits, shown), std::back_inserter(failures));

@@ -45,8 +45,8 @@ enum class printed { tables, tables_and_counts, nothing };
 /// Of the project's own studies of error against run time.
 [[nodiscard]] std::vector<std::filesystem::path> error_configs();
 
-/// Measures a study into a folder: its config, errors.csv or results.csv and intersections.csv, and what is printed,
-/// tables and statements.
+/// Measures a study into a folder: its config, errors.csv or results.csv and intersections.csv; and what is printed,
+/// tables and statements, with plots in a folder below.
 /// @returns a sentence for each composition, and for each test's hits, that are wrong
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown);
 
