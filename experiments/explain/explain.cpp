@@ -42,10 +42,7 @@ std::string reason_of(const work_apart& work) {
 }
 
 std::string text_of(const contender_name& name, aabb::stage stage) {
-    std::string text;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (const std::string one = info_of(kind).stage == stage ? text_in_line(kind, name[kind]) : ""; !one.empty())
-            text += (text.empty() ? "" : " + ") + one;
+    const std::string text = text_in_line(name.choices, kinds_of(stage));
     return text.empty() ? name.engine : text;
 }
 
@@ -82,9 +79,8 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
     for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
     if (has_meshes(scene)) return;
     std::string kinds;
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (info_of(kind).stage == aabb::stage::local_detection)
-            kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
+    for (const aabb::strategy_kind kind : kinds_of(aabb::stage::local_detection))
+        kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
     print("  " + kinds + " have no part in this scene: it has no meshes\n");
 }
 

@@ -65,15 +65,15 @@ double median_ms(std::span<const observation> times) {
 }
 
 /// What is left out, without reasons.
-std::vector<std::string> omitted_by(const other_way& one) {
-    std::vector<std::string> all;
+std::vector<aabb::absence> omitted_by(const other_way& one) {
+    std::vector<aabb::absence> all;
     for (const aabb::omission& absent : omissions_of(one.who.name, one.times.back().left_out))
         if (std::ranges::find(all, absent.what) == all.end()) all.push_back(absent.what);
     return all;
 }
 
 /// Of those that leave it out not, the one that takes least time a frame; null where all do.
-const other_way* fastest_with(const std::string& what, std::span<const other_way> all) {
+const other_way* fastest_with(aabb::absence what, std::span<const other_way> all) {
     const other_way* fastest = nullptr;
     for (const other_way& one : all)
         if (!one.times.empty() && std::ranges::count(omitted_by(one), what) == 0 &&
@@ -90,12 +90,12 @@ std::string more(std::uint64_t bytes, std::uint64_t than) {
 void print_omissions(std::span<const other_way> all) {
     const std::vector<observation>& times = all[0].times;
     table t{{{"left out", false}, {"is had with", false}, {"ms/frame"}, {"bytes"}}, {}};
-    for (const std::string& what : omitted_by(all[0])) {
-        t.rows.push_back({what, "-", "-", "-"});
+    for (const aabb::absence what : omitted_by(all[0])) {
+        t.rows.push_back({to_text(what), "-", "-", "-"});
         const other_way* with = fastest_with(what, all.subspan(1));
         if (!with) continue;
         const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
-        t.rows.back() = {what, called(*with),
+        t.rows.back() = {to_text(what), called(*with),
                          fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
                          more(with->times.back().bytes, times.back().bytes)};
     }
@@ -163,7 +163,7 @@ std::vector<aabb::omission> omissions_of(const contender_name& who, std::vector<
         const std::span<const aabb::strategy_info> all = aabb::strategies(kind);
         const auto found = std::ranges::find(all, aabb::parse_strategy(who[kind]).name, &aabb::strategy_info::name);
         assert(found != all.end());
-        for (const std::string& what : found->leaves_out) by_stages.push_back({what, {}});
+        for (const aabb::absence what : found->leaves_out) by_stages.push_back({what});
     }
     return by_stages;
 }
