@@ -34,8 +34,8 @@ struct error_point {
 std::vector<error_point> measure_errors(const error_study& study,
                                         const std::function<void(std::span<const error_point>)>& finished = {});
 
-/// The table of an errors.csv: a row for each method and set of pairs, every number in full.
-[[nodiscard]] table error_rows(std::span<const error_point> points);
+/// The text of an errors.csv: a row for each method and set of pairs, every number in full.
+[[nodiscard]] std::string csv_of(std::span<const error_point> points);
 /// The inverse.
 /// @throws aabb::input_error with file and line where it is not an errors.csv.
 [[nodiscard]] std::vector<error_point> read_error_rows(const std::filesystem::path& file);
@@ -95,8 +95,8 @@ struct hit_point {
 std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
                                     const std::function<void(std::span<const hit_point>)>& finished = {});
 
-/// A row for each test and set, every number in full.
-[[nodiscard]] table hit_rows(std::span<const hit_point> points);
+/// The text of an intersections.csv: a row for each test and set, every number in full.
+[[nodiscard]] std::string csv_of(std::span<const hit_point> points);
 
 /// The same of one precision, for the screen.
 [[nodiscard]] table hit_summary(std::span<const hit_point> points, bool in_double);

@@ -1,6 +1,5 @@
 module aabblab.errors;
 
-import aabblab.files;
 import aabblab.results;
 
 namespace aabblab {
@@ -57,29 +56,18 @@ constexpr auto columns_of_hit = [](auto& p, auto field) {
     field("ns_high", all_digits(p.ns_a_hit.high));
 };
 
-/// @param words columns at the beginning that are no numbers
-template <class Row, class Columns>
-table table_of(std::span<const Row> rows, Columns columns, std::size_t words) {
-    table t;
-    for (const std::string& name : names_of<Row>(columns)) t.columns.push_back({name, t.columns.size() >= words});
-    for (const Row& r : rows) t.rows.push_back(fields_of(r, columns));
-    return t;
-}
-
 }  // namespace
 
-table error_rows(std::span<const error_point> points) {
-    return table_of(points, columns_of_point, 4);
+std::string csv_of(std::span<const error_point> points) {
+    return csv_of(points, columns_of_point);
 }
 
-table hit_rows(std::span<const hit_point> points) {
-    return table_of(points, columns_of_hit, 3);
+std::string csv_of(std::span<const hit_point> points) {
+    return csv_of(points, columns_of_hit);
 }
 
 std::vector<error_point> read_error_rows(const std::filesystem::path& file) {
-    const std::vector<csv_record> records = whole_records_of(text_of_file(file), file.string());
-    if (records.empty()) require_header(file.string(), {}, names_of<error_point>(columns_of_point));
-    return rows_in<error_point>(records, file.string(), columns_of_point, {}, [](const error_point&, std::size_t) {});
+    return rows_of_file<error_point>(file, columns_of_point);
 }
 
 }  // namespace aabblab

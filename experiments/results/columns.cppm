@@ -133,6 +133,14 @@ template <class Row, class Columns>
     return fields;
 }
 
+/// The text of a table.
+template <class Row, class Columns>
+[[nodiscard]] std::string csv_of(std::span<const Row> rows, Columns columns) {
+    std::string text = csv_line(names_of<Row>(columns));
+    for (const Row& r : rows) text += csv_line(fields_of(r, columns));
+    return text;
+}
+
 /// Refuses records that do not begin with the names of the columns.
 void require_header(const std::string& file, const csv_record& found, const std::vector<std::string>& expected);
 
@@ -165,6 +173,14 @@ template <class Row, class Columns, class Seen>
         seen(rows.back(), line);
     }
     return rows;
+}
+
+/// Of a file that is complete, as `csv_of` writes it.
+template <class Row, class Columns>
+[[nodiscard]] std::vector<Row> rows_of_file(const std::filesystem::path& file, Columns columns) {
+    const std::vector<csv_record> records = whole_records_of(text_of_file(file), file.string());
+    if (records.empty()) require_header(file.string(), {}, names_of<Row>(columns));
+    return rows_in<Row>(records, file.string(), columns, {}, [](const Row&, std::size_t) {});
 }
 
 }  // namespace aabblab

@@ -112,9 +112,7 @@ std::string csv_of(const row& r) {
     return csv_line(fields_of(r, columns_of_row));
 }
 std::string csv_of(std::span<const difference> differences) {
-    std::string text = csv_line(names_of<difference>(columns_of_difference));
-    for (const difference& d : differences) text += csv_line(fields_of(d, columns_of_difference));
-    return text;
+    return csv_of(differences, columns_of_difference);
 }
 
 std::vector<row> read_rows(const std::filesystem::path& file,

@@ -38,9 +38,8 @@ void print_tables(std::span<const hit_point> points) {
 std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, std::span<const pair_set> sets,
                                            printed shown) {
     // What is finished stays, whatever happens afterwards.
-    const std::vector<hit_point> points = measure_hits(sets, [&](std::span<const hit_point> so_far) {
-        write_file(folder / "intersections.csv", to_csv(hit_rows(so_far)));
-    });
+    const std::vector<hit_point> points = measure_hits(
+        sets, [&](std::span<const hit_point> so_far) { write_file(folder / "intersections.csv", csv_of(so_far)); });
     if (shown != printed::nothing) print_tables(points);
     std::vector<std::string> failures;
     for (const hit_point& p : points)
@@ -83,9 +82,8 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
             draw(folder / "figures", metric_figures(study, scenes));
         }
     } else if (!study.curves.empty()) {
-        const std::vector<error_point> points = measure_errors(study, [&](std::span<const error_point> so_far) {
-            write_file(folder / "errors.csv", to_csv(error_rows(so_far)));
-        });
+        const std::vector<error_point> points = measure_errors(
+            study, [&](std::span<const error_point> so_far) { write_file(folder / "errors.csv", csv_of(so_far)); });
         if (shown != printed::nothing) {
             print_tables(points);
             draw(folder / "figures", error_figures(points));
