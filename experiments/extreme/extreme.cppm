@@ -15,13 +15,17 @@ struct extreme_row {
     row_group group = row_group::boxes;
     std::string scene;  ///< or the case
     std::string about;
-    std::string kind;  ///< of a case
+    std::string kind{};  ///< of a case
     std::string contender;
+    std::string precision{};  ///< that a triangle test played a case in
     contender_role role = contender_role::composition;
     bool must_be_exact = true;
-    bool as_expected = true;  ///< otherwise the suite fails
-    aabb::judgement made;     ///< of a case: how many orders say no, or yes, where the other is true
-    std::string precision{};  ///< "float" or "double", in which a triangle test alone decides a case
+    bool as_expected = true;       ///< otherwise the suite fails
+    std::size_t stated_bytes = 0;  ///< that a composition may hold; 0 where none are stated
+    aabb::judgement made{};        ///< of a case: how many orders say no, or yes, where the other is true
+
+    /// "moller", "moller in float"
+    [[nodiscard]] std::string full_name() const { return contender + (precision.empty() ? "" : " in " + precision); }
 };
 
 /// The scenes of `aabb::extreme_scenes`; every class of generated pairs as two meshes; real meshes with zero-area
@@ -53,15 +57,14 @@ struct extreme_list {
 /// What those that may be inexact get wrong in scenes of meshes, by class, over all of them.
 [[nodiscard]] table class_table(std::span<const extreme_row> rows);
 
-/// Every row, every number in full.
-[[nodiscard]] table extreme_rows(std::span<const extreme_row> rows);
+/// The text of an extreme.csv: every row, every number in full.
+[[nodiscard]] std::string csv_of(std::span<const extreme_row> rows);
 
 /// The sentences of refusals, each once, with the scenes that they came in.
 [[nodiscard]] std::vector<std::string> refusals_in(std::span<const extreme_row> rows);
 /// A sentence for each row that is not as expected.
 [[nodiscard]] std::vector<std::string> failures_in(std::span<const extreme_row> rows);
 /// How much compositions held in the scenes that state it, a sentence each.
-[[nodiscard]] std::vector<std::string> memory_in(std::span<const extreme_row> rows,
-                                                 std::span<const aabb::extreme_scene> scenes);
+[[nodiscard]] std::vector<std::string> memory_in(std::span<const extreme_row> rows);
 
 }  // namespace aabblab

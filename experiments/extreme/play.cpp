@@ -4,6 +4,7 @@ import aabb.pipeline;
 import aabb.registry;
 import aabb.validation;
 import aabblab.progress;
+import aabblab.trials;
 
 namespace aabblab {
 
@@ -16,17 +17,23 @@ std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, c
     for (const aabb::parameter_info& parameter : info->parameters) {
         const auto* const named = std::get_if<aabb::name_values>(&parameter.values);
         if (!named) continue;
-        const std::size_t shorter = all.size();
-        for (const std::string& value : named->names)
-            for (std::size_t i = 0; i < shorter && value != parameter.fallback; ++i)
-                all.emplace_back(aabb::strategy_choice(all[i])).settings.push_back({parameter.name, value});
+        std::vector<aabb::strategy_choice> more;
+        for (const std::string& value : named->names) {
+            if (value == parameter.fallback) continue;
+            for (aabb::strategy_choice choice : all) {
+                choice.settings.push_back({parameter.name, value});
+                more.push_back(std::move(choice));
+            }
+        }
+        all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
     }
     return all;
 }
 
 std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
     std::vector<aabb::composition> all{c};
-    for (const aabb::strategy_kind kind : kinds_of(stage)) {
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        if (info_of(kind).stage != stage) continue;
         std::vector<aabb::composition> longer;
         for (const aabb::composition& shorter : all)
             for (const aabb::strategy_choice& choice : with_named_values(kind, c[kind].name))
@@ -84,8 +91,14 @@ std::vector<named_test> all_triangle_tests() {
     return all;
 }
 
-extreme_row row_of(const aabb::triangle_case& one, std::string contender, contender_role role, bool must_be_exact) {
-    return {row_group::cases, one.name, one.about, one.kind, std::move(contender), role, must_be_exact, true, {}};
+extreme_row row_of(const aabb::triangle_case& one, const std::string& name, contender_role role, bool must_be_exact) {
+    return {.group = row_group::cases,
+            .scene = one.name,
+            .about = one.about,
+            .kind = one.kind,
+            .contender = name,
+            .role = role,
+            .must_be_exact = must_be_exact};
 }
 
 /// Counts an answer that is not the true one.
@@ -125,76 +138,76 @@ std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
     return all;
 }
 
+constexpr auto uncounted = aabb::instrumentation::none;
+
+/// Who plays, under the name that reports have.
+struct candidate {
+    std::string name;
+    contender_role role;
+    contender who;
+};
+
+std::vector<candidate> box_candidates(bool named_values) {
+    std::vector<candidate> all;
+    for (const aabb::composition& c : exact_compositions(aabb::stage::global_search, named_values))
+        all.push_back({to_text(c, aabb::stage::global_search), contender_role::composition, contender_of(c, false)});
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (std::optional<contender> who = contender_of(engine, false))
+            all.push_back({engine.name, contender_role::engine, *std::move(who)});
+    return all;
+}
+
+std::vector<candidate> mesh_candidates(bool named_values) {
+    std::vector<candidate> all;
+    for (const aabb::composition& c : exact_compositions(aabb::stage::local_detection, named_values))
+        all.push_back({to_text(c, aabb::stage::local_detection), contender_role::composition, contender_of(c, true)});
+    for (const aabb::engine_info& engine : aabb::engines())
+        if (engine.collides_meshes)
+            all.push_back({engine.name, contender_role::engine, contender_of(engine, true).value()});
+    for (const aabb::composition& c : inexact_compositions())
+        all.push_back(
+            {to_text(c[aabb::strategy_kind::triangle]), contender_role::triangle_test, contender_of(c, true)});
+    return all;
+}
+
 /// Either triangle against the other, by every query.
-void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
-                aabb::local_stage& stage, const extreme_row& form, std::vector<extreme_row>& rows) {
-    for (const aabb::mesh& m : meshes) stage.add_model(m);
+void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes, const candidate& of,
+                std::vector<extreme_row>& rows) {
+    const std::unique_ptr<aabb::local_stage> stage = of.who.make_local(uncounted);
+    for (const aabb::mesh& m : meshes) stage->add_model(m);
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        extreme_row row = row_of(cases[i], form.contender, form.role, form.must_be_exact);
+        extreme_row row = row_of(cases[i], of.name, of.role, of.who.exact);
         const auto first = static_cast<std::uint32_t>(2 * i);
         for (const auto [a, b] : {std::array{first, first + 1}, std::array{first + 1, first}}) {
             std::vector<aabb::index_pair> pairs;
-            stage.all_pairs(a, {}, b, {}, pairs);
+            stage->all_pairs(a, {}, b, {}, pairs);
             hold(!pairs.empty(), cases[i].intersect, row);
-            hold(stage.first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
-            hold(stage.count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
+            hold(stage->first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
+            hold(stage->count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
         }
         rows.push_back(std::move(row));
     }
 }
 
-constexpr auto uncounted = aabb::instrumentation::none;
-
-/// Those who play scenes of boxes, or of meshes.
-template <class Stage>
-struct contender {
-    std::string name;
-    contender_role role;
-    bool must_be_exact;
-    bool lists_candidates;  ///< all of them before it decides on the first
-    std::function<std::unique_ptr<Stage>()> make;
-};
-
-std::vector<contender<aabb::global_stage>> box_contenders(bool named_values) {
-    std::vector<contender<aabb::global_stage>> all;
-    for (const aabb::composition& c : exact_compositions(aabb::stage::global_search, named_values))
-        all.push_back({to_text(c, aabb::stage::global_search), contender_role::composition, true, false,
-                       [c] { return aabb::compose_global_search(c, uncounted); }});
-    // Boxes are compared, not computed with: every engine must be exact.
-    for (const aabb::engine_info& engine : aabb::engines())
-        if (engine.searches_boxes)
-            all.push_back({engine.name, contender_role::engine, true, false,
-                           [name = engine.name] { return aabb::make_box_engine(name); }});
-    return all;
-}
-
-std::vector<contender<aabb::local_stage>> mesh_contenders(bool named_values) {
-    std::vector<contender<aabb::local_stage>> all;
-    const auto add = [&](const aabb::composition& c, contender_role role, std::string name) {
-        all.push_back({std::move(name), role, role == contender_role::composition, false,
-                       [c] { return aabb::compose_local_detection(c, uncounted); }});
-    };
-    for (const aabb::composition& c : exact_compositions(aabb::stage::local_detection, named_values))
-        add(c, contender_role::composition, to_text(c, aabb::stage::local_detection));
-    for (const aabb::engine_info& engine : aabb::engines())
-        if (engine.collides_meshes)
-            all.push_back({engine.name, contender_role::engine, engine.exact, true,
-                           [name = engine.name] { return aabb::make_mesh_engine(name); }});
-    for (const aabb::composition& c : inexact_compositions())
-        add(c, contender_role::triangle_test, to_text(c[aabb::strategy_kind::triangle]));
-    return all;
-}
-
-template <class Stage>
-void play_scene(const aabb::extreme_judge& judge, row_group group, const std::vector<contender<Stage>>& contenders,
+void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> candidates,
                 std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
-    for (const contender<Stage>& who : contenders) {
-        if (who.lists_candidates && scene.asked == aabb::extreme_query::first_pair) continue;
-        extreme_row row{group, scene.name, scene.summary, "", who.name, who.role, who.must_be_exact, true, {}};
-        row.made = judge.judge(who.make);
-        if (who.role == contender_role::composition) require_stated_memory(scene, row.made);
-        row.as_expected = is_as_expected(scene, row.made, who.must_be_exact);
+    const bool boxes = static_cast<bool>(scene.make_boxes);
+    for (const candidate& one : candidates) {
+        // Engines list all candidates before they decide on the first.
+        if (one.role == contender_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
+        // Boxes are compared, not computed with: every engine must be exact.
+        extreme_row row{.group = boxes ? row_group::boxes : row_group::meshes,
+                        .scene = scene.name,
+                        .about = scene.summary,
+                        .contender = one.name,
+                        .role = one.role,
+                        .must_be_exact = boxes ? one.who.exact_boxes : one.who.exact,
+                        .stated_bytes = scene.most_bytes};
+        row.made = boxes ? judge.judge([&] { return one.who.make_global(uncounted); })
+                         : judge.judge([&] { return one.who.make_local(uncounted); });
+        if (one.role == contender_role::composition) require_stated_memory(scene, row.made);
+        row.as_expected = is_as_expected(scene, row.made, row.must_be_exact);
         rows.push_back(std::move(row));
     }
 }
@@ -205,35 +218,22 @@ std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases) 
     std::vector<extreme_row> rows;
     play_tests(cases, rows);
     const std::vector<aabb::mesh> meshes = meshes_of(cases);
-    extreme_row form;
-    for (const aabb::composition& c : exact_compositions(aabb::stage::local_detection, true)) {
-        form.contender = to_text(c, aabb::stage::local_detection);
-        play_stage(cases, meshes, *aabb::compose_local_detection(c, aabb::instrumentation::none), form, rows);
-    }
-    form.role = contender_role::engine;
-    for (const aabb::engine_info& engine : aabb::engines()) {
-        if (!engine.collides_meshes) continue;
-        form.contender = engine.name;
-        form.must_be_exact = engine.exact;
-        play_stage(cases, meshes, *aabb::make_mesh_engine(engine.name), form, rows);
-    }
+    for (const candidate& one : mesh_candidates(true))
+        if (one.role != contender_role::triangle_test) play_stage(cases, meshes, one, rows);
     return rows;
 }
 
 std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
-    const auto of_boxes = box_contenders(named_values);
-    const auto of_meshes = mesh_contenders(named_values);
+    const std::vector<candidate> of_boxes = box_candidates(named_values);
+    const std::vector<candidate> of_meshes = mesh_candidates(named_values);
     // Of as many triangles, parameters would show nothing new and take minutes.
-    const auto of_many = mesh_contenders(false);
+    const std::vector<candidate> of_many = mesh_candidates(false);
     std::vector<extreme_row> rows;
     progress shown("extreme scenes", scenes.size());
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const aabb::extreme_judge judge(scenes[i]);
-        if (scenes[i].make_boxes)
-            play_scene(judge, row_group::boxes, of_boxes, rows);
-        else
-            play_scene(judge, row_group::meshes, scenes[i].most_bytes > 0 ? of_many : of_meshes, rows);
+        play_scene(judge, scenes[i].make_boxes ? of_boxes : scenes[i].most_bytes > 0 ? of_many : of_meshes, rows);
         shown.at(i + 1);
     }
     return rows;

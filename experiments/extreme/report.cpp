@@ -1,8 +1,6 @@
 module aabblab.extreme;
 
-import aabb.policy;
 import aabb.validation;
-import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.results;
 
@@ -102,21 +100,29 @@ table wrong_table(const std::string& title, std::span<const extreme_row> rows, s
     return t;
 }
 
-/// A test in float and in double is one.
-std::vector<extreme_row> case_rows(std::span<const extreme_row> rows) {
-    std::vector<extreme_row> all(rows.begin(), rows.end());
-    std::erase_if(all, [](const extreme_row& row) { return row.group != row_group::cases; });
+template <class Wanted>
+std::vector<extreme_row> those(std::span<const extreme_row> rows, Wanted wanted) {
+    std::vector<extreme_row> all;
+    std::ranges::copy_if(rows, std::back_inserter(all), wanted);
     return all;
-}
-
-std::string full_name_of(const extreme_row& row) {
-    return row.contender + (row.precision.empty() ? "" : " in " + row.precision);
 }
 
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
 constexpr std::array<std::string_view, 3> role_names = {"composition", "engine", "triangle_test"};
 
 constexpr std::array<std::string_view, 2> answers = {"no", "yes"};
+
+/// A contender with its precision.
+template <class Row>
+struct full_name_of {
+    Row& row;
+};
+template <class Row>
+full_name_of(Row&) -> full_name_of<Row>;
+template <class Row>
+std::string written(const full_name_of<Row>& name) {
+    return name.row.full_name();
+}
 
 constexpr auto columns_of_row = [](auto& r, auto field) {
     field("group", one_of_words(r.group, group_names));
@@ -134,6 +140,7 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
     for (std::size_t i = 0; i < aabb::difference_class_names.size(); ++i)
         field("invented_" + std::string(aabb::difference_class_names[i]), r.made.classes.invented[i]);
     field("bytes", r.made.bytes);
+    field("stated_bytes", r.stated_bytes);
     field("reason", r.made.reason);
     field("about", r.about);
 };
@@ -141,7 +148,7 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 }  // namespace
 
 table case_table(std::span<const extreme_row> rows) {
-    const std::vector<extreme_row> shown = case_rows(rows);
+    const auto shown = those(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
     table t{{{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, {}};
     const std::vector<std::string> engines = contenders_in(shown, contender_role::engine);
     for (const std::string& engine : engines) t.columns.push_back({engine});
@@ -159,19 +166,17 @@ table case_table(std::span<const extreme_row> rows) {
 }
 
 table inexact_case_table(std::span<const extreme_row> rows) {
-    std::vector<extreme_row> shown = case_rows(rows);
     // Those with settings are in the file.
-    std::erase_if(shown, [](const extreme_row& row) {
-        return row.must_be_exact || row.role != contender_role::triangle_test ||
-               !aabb::parse_strategy(row.contender).settings.empty();
+    const auto shown = those(rows, [](const extreme_row& row) {
+        return row.group == row_group::cases && row.role == contender_role::triangle_test && !row.must_be_exact &&
+               row.contender.find(':') == std::string::npos;
     });
     return wrong_table("class", shown, &extreme_row::kind);
 }
 
 table scene_table(std::span<const extreme_row> rows, row_group group) {
-    std::vector<extreme_row> shown;
-    for (const extreme_row& row : rows)
-        if (row.group == group && row.role != contender_role::triangle_test) shown.push_back(row);
+    const auto shown = those(
+        rows, [&](const extreme_row& row) { return row.group == group && row.role != contender_role::triangle_test; });
     table t{{{"scene", false}, {"compositions"}}, {}};
     const std::vector<std::string> engines = contenders_in(shown, contender_role::engine);
     for (const std::string& engine : engines) t.columns.push_back({engine});
@@ -184,18 +189,17 @@ table scene_table(std::span<const extreme_row> rows, row_group group) {
 }
 
 table inexact_scene_table(std::span<const extreme_row> rows) {
-    std::vector<extreme_row> shown;
-    for (const extreme_row& row : rows)
-        if (row.group == row_group::meshes && row.role == contender_role::triangle_test) shown.push_back(row);
+    const auto shown = those(rows, [](const extreme_row& row) {
+        return row.group == row_group::meshes && row.role == contender_role::triangle_test;
+    });
     return wrong_table("scene", shown, &extreme_row::scene);
 }
 
 table class_table(std::span<const extreme_row> rows) {
     table t{{{"may be inexact", false}}, {}};
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
-    std::vector<extreme_row> shown;
-    for (const extreme_row& row : rows)
-        if (row.group == row_group::meshes && !row.must_be_exact) shown.push_back(row);
+    const auto shown =
+        those(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });
     for (const auto& [name, of_contender] : by(shown, &extreme_row::contender)) {
         aabb::differences sum;
         for (const extreme_row* row : of_contender) sum += row->made.classes;
@@ -206,25 +210,21 @@ table class_table(std::span<const extreme_row> rows) {
     return t;
 }
 
-std::vector<std::string> memory_in(std::span<const extreme_row> rows, std::span<const aabb::extreme_scene> scenes) {
+std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> all;
-    for (const aabb::extreme_scene& scene : scenes) {
-        if (scene.most_bytes == 0) continue;
+    const auto limited = those(
+        rows, [](const extreme_row& row) { return row.stated_bytes > 0 && row.role == contender_role::composition; });
+    for (const auto& [scene, of_scene] : by(limited, &extreme_row::scene)) {
         std::size_t most = 0;
-        for (const extreme_row& row : rows)
-            if (row.scene == scene.name && row.role == contender_role::composition)
-                most = std::max(most, row.made.bytes);
-        all.push_back(scene.name + ", " + scene.summary + ":\n  compositions hold at most " + grouped(most) +
-                      " bytes, of " + grouped(scene.most_bytes) + " stated");
+        for (const extreme_row* row : of_scene) most = std::max(most, row->made.bytes);
+        all.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
+                      " bytes, of " + grouped(of_scene.front()->stated_bytes) + " stated");
     }
     return all;
 }
 
-table extreme_rows(std::span<const extreme_row> rows) {
-    table t;
-    for (const std::string& name : names_of<extreme_row>(columns_of_row)) t.columns.push_back({name});
-    for (const extreme_row& row : rows) t.rows.push_back(fields_of(row, columns_of_row));
-    return t;
+std::string csv_of(std::span<const extreme_row> rows) {
+    return csv_of(rows, columns_of_row);
 }
 
 std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {
@@ -236,8 +236,11 @@ std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {
         if (std::ranges::find(found->second, row.scene) == found->second.end()) found->second.push_back(row.scene);
     }
     std::vector<std::string> all;
-    for (const auto& [sentence, scenes] : scenes_of)
-        all.push_back(fmt::format("{}: {}", fmt::join(scenes, ", "), sentence));
+    for (const auto& [sentence, scenes] : scenes_of) {
+        std::string text;
+        for (const std::string& scene : scenes) text += (text.empty() ? "" : ", ") + scene;
+        all.push_back(text + ": " + sentence);
+    }
     return all;
 }
 
@@ -245,7 +248,7 @@ std::vector<std::string> failures_in(std::span<const extreme_row> rows) {
     std::vector<std::string> all;
     for (const extreme_row& row : rows)
         if (!row.as_expected)
-            all.push_back(full_name_of(row) + " on " + row.scene + ": " +
+            all.push_back(row.full_name() + " on " + row.scene + ": " +
                           (row.made.said == aabb::verdict::refused ? "refuses: " : "") + row.made.reason);
     return all;
 }

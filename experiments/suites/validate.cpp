@@ -184,13 +184,13 @@ suite_report play_extreme_suite(const std::filesystem::path& folder, const std::
     for (const std::string& sentence : list.notes) note(sentence);
     std::vector<extreme_row> rows = play_scenes(list.scenes, size);
     // What is finished stays, whatever happens afterwards.
-    write_file(folder / "extreme.csv", to_csv(extreme_rows(rows)));
+    write_file(folder / "extreme.csv", csv_of(rows));
     for (extreme_row& row : play_cases(hard)) rows.push_back(std::move(row));
     suite_report report;
     report.tables = tables_of(rows);
-    report.paragraphs = memory_in(rows, list.scenes);
+    report.paragraphs = memory_in(rows);
     report.failures = failures_in(rows);
-    write_file(folder / "extreme.csv", to_csv(extreme_rows(rows)));
+    write_file(folder / "extreme.csv", csv_of(rows));
     if (shown) {
         for (const named_table& t : report.tables)
             print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");

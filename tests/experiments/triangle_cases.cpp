@@ -82,7 +82,7 @@ TEST_CASE("The project's own cases are answered rightly by all that must be exac
     std::set<std::string> exact_tests;
     for (const aabblab::extreme_row& row : rows)
         if (row.role == aabblab::contender_role::triangle_test && row.must_be_exact)
-            exact_tests.insert(row.contender + " in " + row.precision);
+            exact_tests.insert(row.full_name());
     CHECK(exact_tests == std::set<std::string>{"epeck in double", "epeck in float", "epick in double", "epick in float",
                                                "exact in double", "exact in float", "interval_arithmetic in double",
                                                "interval_arithmetic in float"});
