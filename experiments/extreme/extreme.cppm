@@ -59,6 +59,9 @@ struct extreme_list {
 
 /// The text of an extreme.csv: every row, every number in full.
 [[nodiscard]] std::string csv_of(std::span<const extreme_row> rows);
+/// The inverse.
+/// @throws aabb::input_error with file and line where it is not an extreme.csv.
+[[nodiscard]] std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file);
 
 /// The sentences of refusals, each once, with the scenes that they came in.
 [[nodiscard]] std::vector<std::string> refusals_in(std::span<const extreme_row> rows);

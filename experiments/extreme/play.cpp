@@ -92,13 +92,7 @@ std::vector<named_test> all_triangle_tests() {
 }
 
 extreme_row row_of(const aabb::triangle_case& one, const std::string& name, contender_role role, bool must_be_exact) {
-    return {.group = row_group::cases,
-            .scene = one.name,
-            .about = one.about,
-            .kind = one.kind,
-            .contender = name,
-            .role = role,
-            .must_be_exact = must_be_exact};
+    return {row_group::cases, one.name, one.about, one.kind, name, {}, role, must_be_exact};
 }
 
 /// Counts an answer that is not the true one.
@@ -147,23 +141,16 @@ struct candidate {
     contender who;
 };
 
-std::vector<candidate> box_candidates(bool named_values) {
+/// Of scenes of boxes, or of meshes.
+std::vector<candidate> candidates(aabb::stage stage, bool named_values) {
+    const bool meshes = stage == aabb::stage::local_detection;
     std::vector<candidate> all;
-    for (const aabb::composition& c : exact_compositions(aabb::stage::global_search, named_values))
-        all.push_back({to_text(c, aabb::stage::global_search), contender_role::composition, contender_of(c, false)});
+    for (const aabb::composition& c : exact_compositions(stage, named_values))
+        all.push_back({to_text(c, stage), contender_role::composition, contender_of(c, meshes)});
     for (const aabb::engine_info& engine : aabb::engines())
-        if (std::optional<contender> who = contender_of(engine, false))
-            all.push_back({engine.name, contender_role::engine, *std::move(who)});
-    return all;
-}
-
-std::vector<candidate> mesh_candidates(bool named_values) {
-    std::vector<candidate> all;
-    for (const aabb::composition& c : exact_compositions(aabb::stage::local_detection, named_values))
-        all.push_back({to_text(c, aabb::stage::local_detection), contender_role::composition, contender_of(c, true)});
-    for (const aabb::engine_info& engine : aabb::engines())
-        if (engine.collides_meshes)
-            all.push_back({engine.name, contender_role::engine, contender_of(engine, true).value()});
+        if (meshes ? engine.collides_meshes : engine.searches_boxes)
+            all.push_back({engine.name, contender_role::engine, contender_of(engine, meshes).value()});
+    if (!meshes) return all;
     for (const aabb::composition& c : inexact_compositions())
         all.push_back(
             {to_text(c[aabb::strategy_kind::triangle]), contender_role::triangle_test, contender_of(c, true)});
@@ -189,21 +176,17 @@ void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb
     }
 }
 
-void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> candidates,
-                std::vector<extreme_row>& rows) {
+void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> all, std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
     const bool boxes = static_cast<bool>(scene.make_boxes);
-    for (const candidate& one : candidates) {
+    for (const candidate& one : all) {
         // Engines list all candidates before they decide on the first.
         if (one.role == contender_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
+        extreme_row row{
+            boxes ? row_group::boxes : row_group::meshes, scene.name, scene.summary, {}, one.name, {}, one.role};
         // Boxes are compared, not computed with: every engine must be exact.
-        extreme_row row{.group = boxes ? row_group::boxes : row_group::meshes,
-                        .scene = scene.name,
-                        .about = scene.summary,
-                        .contender = one.name,
-                        .role = one.role,
-                        .must_be_exact = boxes ? one.who.exact_boxes : one.who.exact,
-                        .stated_bytes = scene.most_bytes};
+        row.must_be_exact = boxes ? one.who.exact_boxes : one.who.exact;
+        row.stated_bytes = scene.most_bytes;
         row.made = boxes ? judge.judge([&] { return one.who.make_global(uncounted); })
                          : judge.judge([&] { return one.who.make_local(uncounted); });
         if (one.role == contender_role::composition) require_stated_memory(scene, row.made);
@@ -218,17 +201,17 @@ std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases) 
     std::vector<extreme_row> rows;
     play_tests(cases, rows);
     const std::vector<aabb::mesh> meshes = meshes_of(cases);
-    for (const candidate& one : mesh_candidates(true))
+    for (const candidate& one : candidates(aabb::stage::local_detection, true))
         if (one.role != contender_role::triangle_test) play_stage(cases, meshes, one, rows);
     return rows;
 }
 
 std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
-    const std::vector<candidate> of_boxes = box_candidates(named_values);
-    const std::vector<candidate> of_meshes = mesh_candidates(named_values);
+    const auto of_boxes = candidates(aabb::stage::global_search, named_values);
+    const auto of_meshes = candidates(aabb::stage::local_detection, named_values);
     // Of as many triangles, parameters would show nothing new and take minutes.
-    const std::vector<candidate> of_many = mesh_candidates(false);
+    const auto of_many = candidates(aabb::stage::local_detection, false);
     std::vector<extreme_row> rows;
     progress shown("extreme scenes", scenes.size());
     for (std::size_t i = 0; i < scenes.size(); ++i) {

@@ -21,15 +21,11 @@ std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> ro
     return all;
 }
 
-row_list of(const row_list& rows, contender_role role) {
+/// Those that have this value there.
+template <class Value>
+row_list with(const row_list& rows, Value extreme_row::* member, const Value& value) {
     row_list all = rows;
-    std::erase_if(all, [&](const extreme_row* row) { return row->role != role; });
-    return all;
-}
-
-row_list of(const row_list& rows, const std::string& contender) {
-    row_list all = rows;
-    std::erase_if(all, [&](const extreme_row* row) { return row->contender != contender; });
+    std::erase_if(all, [&](const extreme_row* row) { return row->*member != value; });
     return all;
 }
 
@@ -82,20 +78,16 @@ std::string cell(const row_list& rows) {
     return refused ? "refused" : wrong ? "wrong" : "exact";
 }
 
-/// A row for each text, a column a contender; rows that all get right are left out.
-table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
-    table t{{{title, false}}, {}};
-    std::vector<std::string> names;
-    for (const auto& [name, of_contender] : by(rows, &extreme_row::contender)) {
-        names.push_back(name);
-        t.columns.push_back({name});
-    }
+/// A row for each text: first columns, of all its rows, then one for each of these contenders.
+template <class First>
+table contender_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
+                      const std::vector<std::string>& names, First first) {
+    table t{std::move(columns), {}};
+    for (const std::string& name : names) t.columns.push_back({name});
     for (const auto& [value, same] : by(rows, text)) {
-        if (std::ranges::none_of(same, [](const extreme_row* row) { return row->made.said == aabb::verdict::wrong; }))
-            continue;
-        std::vector<std::string> cells{value};
-        for (const std::string& name : names) cells.push_back(cell(of(same, name)));
-        t.rows.push_back(std::move(cells));
+        std::vector<std::string>& cells = t.rows.emplace_back(1, value);
+        std::ranges::move(first(same), std::back_inserter(cells));
+        for (const std::string& name : names) cells.push_back(cell(with(same, &extreme_row::contender, name)));
     }
     return t;
 }
@@ -107,28 +99,27 @@ std::vector<extreme_row> those(std::span<const extreme_row> rows, Wanted wanted)
     return all;
 }
 
+/// Rows that all get right are left out.
+table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
+    std::set<std::string> wrong;
+    for (const extreme_row& row : rows)
+        if (row.made.said == aabb::verdict::wrong) wrong.insert(row.*text);
+    const auto shown = those(rows, [&](const extreme_row& row) { return wrong.contains(row.*text); });
+    return contender_table({{title, false}}, shown, text, contenders_in(rows, contender_role::triangle_test),
+                           [](const row_list&) { return std::vector<std::string>(); });
+}
+
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
 constexpr std::array<std::string_view, 3> role_names = {"composition", "engine", "triangle_test"};
 
 constexpr std::array<std::string_view, 2> answers = {"no", "yes"};
 
-/// A contender with its precision.
-template <class Row>
-struct full_name_of {
-    Row& row;
-};
-template <class Row>
-full_name_of(Row&) -> full_name_of<Row>;
-template <class Row>
-std::string written(const full_name_of<Row>& name) {
-    return name.row.full_name();
-}
-
 constexpr auto columns_of_row = [](auto& r, auto field) {
     field("group", one_of_words(r.group, group_names));
     field("scene", r.scene);
     field("class", r.kind);
-    field("contender", full_name_of(r));
+    field("contender", r.contender);
+    field("precision", r.precision);
     field("role", one_of_words(r.role, role_names));
     field("must_be_exact", one_of_words(r.must_be_exact, answers));
     field("answer", one_of_words(r.made.said, aabb::verdict_names));
@@ -149,20 +140,15 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 
 table case_table(std::span<const extreme_row> rows) {
     const auto shown = those(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
-    table t{{{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, {}};
-    const std::vector<std::string> engines = contenders_in(shown, contender_role::engine);
-    for (const std::string& engine : engines) t.columns.push_back({engine});
-    for (const auto& [kind, of_kind] : by(shown, &extreme_row::kind)) {
+    const auto sums_of = [](const row_list& same) {
         std::set<std::string> cases;
-        for (const extreme_row* row : of_kind) cases.insert(row->scene);
-        row_list tests = of(of_kind, contender_role::triangle_test);
-        std::erase_if(tests, [](const extreme_row* row) { return !row->must_be_exact; });
-        std::vector<std::string> cells{kind, std::to_string(cases.size()), sum_cell(tests),
-                                       sum_cell(of(of_kind, contender_role::composition))};
-        for (const std::string& engine : engines) cells.push_back(cell(of(of_kind, engine)));
-        t.rows.push_back(std::move(cells));
-    }
-    return t;
+        for (const extreme_row* row : same) cases.insert(row->scene);
+        const row_list tests = with(same, &extreme_row::role, contender_role::triangle_test);
+        return std::vector{std::to_string(cases.size()), sum_cell(with(tests, &extreme_row::must_be_exact, true)),
+                           sum_cell(with(same, &extreme_row::role, contender_role::composition))};
+    };
+    return contender_table({{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, shown, &extreme_row::kind,
+                           contenders_in(shown, contender_role::engine), sums_of);
 }
 
 table inexact_case_table(std::span<const extreme_row> rows) {
@@ -177,15 +163,11 @@ table inexact_case_table(std::span<const extreme_row> rows) {
 table scene_table(std::span<const extreme_row> rows, row_group group) {
     const auto shown = those(
         rows, [&](const extreme_row& row) { return row.group == group && row.role != contender_role::triangle_test; });
-    table t{{{"scene", false}, {"compositions"}}, {}};
-    const std::vector<std::string> engines = contenders_in(shown, contender_role::engine);
-    for (const std::string& engine : engines) t.columns.push_back({engine});
-    for (const auto& [scene, of_scene] : by(shown, &extreme_row::scene)) {
-        std::vector<std::string> cells{scene, sum_cell(of(of_scene, contender_role::composition))};
-        for (const std::string& engine : engines) cells.push_back(cell(of(of_scene, engine)));
-        t.rows.push_back(std::move(cells));
-    }
-    return t;
+    return contender_table(
+        {{"scene", false}, {"compositions"}}, shown, &extreme_row::scene, contenders_in(shown, contender_role::engine),
+        [](const row_list& same) {
+            return std::vector{sum_cell(with(same, &extreme_row::role, contender_role::composition))};
+        });
 }
 
 table inexact_scene_table(std::span<const extreme_row> rows) {
@@ -225,6 +207,10 @@ std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
 
 std::string csv_of(std::span<const extreme_row> rows) {
     return csv_of(rows, columns_of_row);
+}
+
+std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
+    return rows_of_file<extreme_row>(file, columns_of_row);
 }
 
 std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {

@@ -18,12 +18,16 @@ void unless_it_gives_up(stiff_result& result, std::string_view integrator, const
     try {
         part();
     } catch (const aabb::input_error& error) {
-        result.add({error.what(), "gives up: " + std::string(integrator), 1, "never", false});
+        result.add({error.what(), "gives up: " + std::string(integrator), 1, "never", stiff_verdict::fails});
     }
 }
 
 [[nodiscard]] stiff_row told(std::string subject, std::string quantity, double measured) {
-    return {std::move(subject), std::move(quantity), measured, "", true};
+    return {std::move(subject), std::move(quantity), measured, ""};
+}
+
+[[nodiscard]] stiff_verdict verdict_if(bool holds) {
+    return holds ? stiff_verdict::holds : stiff_verdict::fails;
 }
 
 /// Measured differs from `expected` by no more than `share` of it.
@@ -31,15 +35,17 @@ void unless_it_gives_up(stiff_result& result, std::string_view integrator, const
                                double share) {
     return {std::move(subject), std::move(quantity), measured,
             fmt::format("{} ± {:.3g} %", short_number(expected), 100 * share),
-            std::abs(measured - expected) <= share * std::abs(expected)};
+            verdict_if(std::abs(measured - expected) <= share * std::abs(expected))};
 }
 
 [[nodiscard]] stiff_row at_most(std::string subject, std::string quantity, double measured, double limit) {
-    return {std::move(subject), std::move(quantity), measured, "≤ " + short_number(limit), measured <= limit};
+    return {std::move(subject), std::move(quantity), measured, "≤ " + short_number(limit),
+            verdict_if(measured <= limit)};
 }
 
 [[nodiscard]] stiff_row at_least(std::string subject, std::string quantity, double measured, double limit) {
-    return {std::move(subject), std::move(quantity), measured, "≥ " + short_number(limit), measured >= limit};
+    return {std::move(subject), std::move(quantity), measured, "≥ " + short_number(limit),
+            verdict_if(measured >= limit)};
 }
 
 }  // namespace aabblab

@@ -69,17 +69,14 @@ struct suite_report {
     std::vector<std::string> failures;  ///< what is not as it must be, a sentence each
 };
 
-/// As JSON, so that a report can be written again without playing the suite.
-void keep_report(const std::filesystem::path& file, const suite_report& report);
-/// The inverse.
-/// @throws aabb::input_error where it is not such a file.
-[[nodiscard]] suite_report kept_report(const std::filesystem::path& file);
-
 /// Play a suite into a folder and print it, or nothing.
 [[nodiscard]] suite_report play_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick,
                                               bool shown);
 [[nodiscard]] suite_report play_stiff_suite(const std::filesystem::path& folder,
                                             const std::vector<std::string>& studies, bool quick, bool shown);
+/// Of the rows that a suite left in a folder, or of what it drew, as earlier versions did; empty where there are none.
+/// @throws aabb::input_error where they are something else.
+[[nodiscard]] std::optional<suite_report> kept_report(const std::filesystem::path& folder);
 /// The pairs of triangles that `validate extreme` takes where nothing is said.
 [[nodiscard]] std::string usual_cases();
 

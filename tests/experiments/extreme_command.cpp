@@ -50,6 +50,19 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
     CHECK(std::ranges::any_of(failures, [](const std::string& sentence) {
         return sentence.find(" on many_against_one: holds ") != std::string::npos;
     }));
+    const std::vector<std::string> memory = aabblab::memory_in(rows);
+    REQUIRE(memory.size() == 1);
+    CHECK(memory[0].starts_with("many_against_one, "));
+    CHECK(memory[0].ends_with(" bytes, of 1,000 stated"));
+
+    // All of that comes from rows as they are kept, too.
+    const temporary_folder folder;
+    const std::string text = csv_of(rows);
+    const auto kept = aabblab::read_extreme_rows(folder.write("extreme.csv", text));
+    CHECK(csv_of(kept) == text);
+    CHECK(aabblab::failures_in(kept) == failures);
+    CHECK(aabblab::memory_in(kept) == memory);
+    CHECK(aabblab::scene_table(kept, aabblab::row_group::meshes).rows == meshes.rows);
 }
 
 TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, and the program with status 1") {

@@ -18,6 +18,19 @@ void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6)
     worlds::write_experiment(folder / "errors", any, [](const auto&, auto&) {});
     any.name = "atlas";
     worlds::write_experiment(folder / "atlas", any, [](const auto&, auto&) {});
+    // A suite left its rows, or, as earlier versions did, what it drew.
+    for (const char* suite : {"stiff", "extreme"}) std::filesystem::create_directories(folder / suite);
+    std::ofstream(folder / "stiff/plate.csv")
+        << "subject,quantity,measured,expected,verdict\na shot,share,0.25,0,FAILS\n";
+    std::ofstream(folder / "stiff/plate_points.csv") << "figure,line,x,y\ntunnelled,plain boxes,1,0.25\n";
+    std::ofstream(folder / "extreme/report.json")
+        << R"({"paragraphs": ["All of it."], "failures": [], "tables": [{"name": "t", "caption": "Few",
+               "columns": [{"name": "scene", "is_number": false}], "rows": [["lattice"]]}], "figures": [
+               {"name": "f", "caption": "Drawn", "x": {"label": "x", "logarithmic": false, "names": []},
+                "y": {"label": "y", "logarithmic": true, "names": []}, "marks": [{"x": 1, "label": "here"}],
+                "panels": [], "lines": [{"label": "one", "style": 0, "points": [[1, 2, 2, 2], [2, null, null, null]]}]}]})";
+    // What stands beside that is not of the record.
+    std::ofstream(folder / "extreme/extreme.csv") << "of another version\n";
     std::ofstream(folder / "failures.txt") << "";
     aabblab::seal_record(folder);
 }
@@ -49,6 +62,10 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
     const std::string page = bytes_of_file(folder / "a/report.html");
     REQUIRE_FALSE(holds(page, "not sealed"));
     CHECK(holds(page, "Atlas of global search"));
+    for (const char* part :
+         {"Stiff scenes", "a shot", "Share of shots", "Extreme scenes", "All of it.", "lattice", "Drawn"})
+        CHECK(holds(page, part));
+    CHECK(holds(bytes_of_file(folder / "a/figures/tunnelled.csv"), ",1,0.25,0.25,0.25,plain boxes\n"));
     // Nothing was written beside the results.
     CHECK(!std::filesystem::exists(results / "report.html"));
 
@@ -103,6 +120,8 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
     refused("c3/manifest.json was altered after the run",
             of_file("c3/manifest.json", worlds::exact_digest, "0000000000000000"));
     refused("c6/process-1.json was altered after the run", of_file("c6/process-1.json", "0.6", "0.5"));
+    refused("stiff/plate.csv was altered after the run", of_file("stiff/plate.csv", "FAILS", "holds"));
+    refused("extreme/report.json was altered after the run", of_file("extreme/report.json", "lattice", "pile"));
     refused("failures.txt is missing", [](const auto& results) { std::filesystem::remove(results / "failures.txt"); });
     refused("c3/manifest.json is missing", [](const auto& results) { std::filesystem::remove_all(results / "c3"); });
     refused("c3/results.csv is missing", [](const auto& run) { std::filesystem::remove(run / "c3/results.csv"); });

@@ -1,23 +1,30 @@
-#include "../testing.hpp"
+#include <catch2/matchers/catch_matchers.hpp>
+
+#include "../experiments/temporary_folder.hpp"
 
 #include "../validation/altered_stages.hpp"
 
+import aabblab.figures;
 import aabblab.trials;
 import aabblab.stepping;
 import aabblab.stiff;
 
 namespace {
 
-aabblab::stiff_result played(std::string_view name, const aabblab::contender& who) {
+const aabblab::stiff_study& study_named(std::string_view name) {
     const auto study = std::ranges::find(aabblab::stiff_studies(), name, &aabblab::stiff_study::name);
     REQUIRE(study != aabblab::stiff_studies().end());
-    return study->play({.quick = true, .who = who});
+    return *study;
+}
+
+aabblab::stiff_result played(std::string_view name, const aabblab::contender& who) {
+    return study_named(name).play({.quick = true, .who = who});
 }
 
 std::string wrong_in(const aabblab::stiff_result& result) {
     std::string all;
     for (const aabblab::stiff_row& r : result.rows)
-        if (!r.holds)
+        if (!r.holds())
             all += r.subject + ": " + r.quantity + " is " + std::to_string(r.measured) + ", not " + r.rule + "\n";
     return all;
 }
@@ -70,4 +77,41 @@ TEST_CASE("who finds no contact lets bodies through") {
     };
     REQUIRE(holds(wrong_in(played("ball_bounces", blind)), "restitution"));
     REQUIRE(holds(wrong_in(played("plate", blind)), "swept: share tunnelled"));
+}
+
+TEST_CASE("what a study left is read as it was written, and drawn as before") {
+    const aabblab::stiff_study& study = study_named("stability");
+    aabblab::stiff_result result;
+    result.add({"velocity_verlet", "greatest stable dt·ω", 2.25, "2 ± 0.5 %", aabblab::stiff_verdict::fails});
+    result.add({"symplectic_euler", "greatest stable dt·ω", -1e-9, "≤ 1", aabblab::stiff_verdict::holds});
+    result.add({"bdf, dt·ω 1", "energy drift", std::numeric_limits<double>::infinity(), ""});
+    result.plot("energy_drift", "bdf", 0.5, 1e-9);
+    result.plot("energy_drift", "bdf", 1, std::numeric_limits<double>::infinity());
+    result.plot("energy_drift", "velocity_verlet", 0.25, 1e-6);
+    const temporary_folder folder;
+    write_result(folder.path(), study, result);
+    const std::optional<aabblab::stiff_result> read = aabblab::read_result(folder.path(), study);
+    REQUIRE(read.has_value());
+    REQUIRE(wrong_in(*read) == wrong_in(result));
+    const std::string rows = bytes_of_file(folder / "stability.csv");
+    REQUIRE(holds(rows, "\"bdf, dt·ω 1\",energy drift,inf,,\n"));
+    write_result(folder.path(), study, *read);
+    REQUIRE(bytes_of_file(folder / "stability.csv") == rows);
+
+    const std::vector<aabblab::figure> figures = figures_of(study, *read);
+    REQUIRE(figures.size() == 1);
+    REQUIRE(csv_of(figures[0]) == csv_of(figures_of(study, result).at(0)));
+    REQUIRE(holds(csv_of(figures[0]), "\n2,0.25,1e-06,1e-06,1e-06,velocity_verlet\n"));
+    // The usual advice, and the limit that was found; not that of an integrator of first order.
+    REQUIRE(figures[0].marks.size() == 3);
+    REQUIRE(figures[0].marks[2].label == "velocity_verlet 2.25");
+
+    REQUIRE_FALSE(aabblab::read_result(folder.path(), study_named("plate")).has_value());
+    folder.write("stability.csv", "subject,quantity,measured,expected,verdict\na,b,1,c,maybe\n");
+    REQUIRE_THROWS_WITH(aabblab::read_result(folder.path(), study),
+                        Catch::Matchers::EndsWith(":2: verdict must be holds or FAILS, not 'maybe'"));
+}
+
+TEST_CASE("a study without points has no figure") {
+    REQUIRE(figures_of(study_named("dropped"), {}).empty());
 }

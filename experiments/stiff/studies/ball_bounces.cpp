@@ -58,31 +58,20 @@ double order_of(std::span<const double> steps, std::span<const double> errors) {
 void convergence(const stiff_setting& setting, stiff_result& result) {
     const oscillator contact{1e3, 0};
     constexpr std::array steps = {0.4, 0.2, 0.1, 0.05};
-    figure plot{.name = "ball_error_over_step",
-                .caption =
-                    "Error of the ball in contact over the step, of position and velocity together: each integrator "
-                    "falls with its order.",
-                .x = {"step times angular frequency", true},
-                .y = {"greatest error over the ball's own motion", true}};
     for (const integrator_info& i : integrators()) {
         std::vector<double> errors;
-        series line{std::string(i.name)};
         unless_it_gives_up(result, i.name, [&] {
-            for (const double scaled : steps) {
-                const double error = bounce_of(contact, setting.who, i, scaled / contact.frequency, tolerance).error;
-                errors.push_back(error);
-                line.points.push_back({scaled, error});
-            }
+            for (const double scaled : steps)
+                errors.push_back(bounce_of(contact, setting.who, i, scaled / contact.frequency, tolerance).error);
         });
         if (errors.size() < steps.size()) continue;
-        plot.lines.push_back(std::move(line));
+        for (std::size_t s = 0; s < steps.size(); ++s) result.plot("ball_error_over_step", i.name, steps[s], errors[s]);
         const std::string subject = subject_of(i, steps.back());
         // An integrator of first order is off by no more than a step.
         result.add(at_most(subject, "trajectory error", errors.back(), i.order == 1 ? steps.back() : 1e-3));
         if (!i.adaptive)
             result.add(at_least(std::string(i.name), "order of convergence", order_of(steps, errors), i.order - 0.1));
     }
-    result.figures.push_back(std::move(plot));
 }
 
 void stiffness(const stiff_setting& setting, stiff_result& result) {
@@ -119,7 +108,12 @@ stiff_study ball_bounces_study() {
         "A ball of 1 kg meets a floor at 1 m/s, on a linear spring, without a dashpot and with one for a restitution "
         "of 0.5, at dt·ω = 0.05 and stiffness 1e4 to 1e10 N/m",
         "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²))",
-        &play_ball_bounces};
+        &play_ball_bounces,
+        {figure{.name = "ball_error_over_step",
+                .caption = "Error of the ball in contact over the step, of position and velocity together: each "
+                           "integrator falls with its order.",
+                .x = {"step times angular frequency", true},
+                .y = {"greatest error over the ball's own motion", true}}}};
 }
 
 }  // namespace aabblab

@@ -43,10 +43,6 @@ stiff_result play_bouncing(const stiff_setting& setting) {
     const stepped_world world = bouncing_balls();
     const double began = 49 * mass * gravity * height;
     const double seconds = setting.quick ? 4 : duration;
-    figure plot{.name = "bouncing_energy",
-                .caption = "Energy of 49 balls that bounce without loss, over what they began with.",
-                .x = {"time (s)", false},
-                .y = {"relative energy error", false}};
     for (const published& other : results) {
         if (setting.quick && other.step < 1e-3) break;
         for (const integrator_info& i : integrators()) {
@@ -57,17 +53,16 @@ stiff_result play_bouncing(const stiff_setting& setting) {
                 double squares = 0;
                 double first = 0;
                 double last = 0;
-                series line{std::string(i.name) + ", " + short_number(other.step) + " s"};
+                const std::string subject = std::string(i.name) + ", " + short_number(other.step) + " s";
                 for (std::size_t s = 0; s < steps; ++s) {
                     balls.advance(other.step);
                     const double error = balls.energy() / began - 1;
                     squares += error * error / static_cast<double>(steps);
                     if (s < steps / 4) first += 4 * error / static_cast<double>(steps);
                     if (s >= steps - steps / 4) last += 4 * error / static_cast<double>(steps);
-                    if (s % (steps / 200) == 0) line.points.push_back({balls.state().time, error});
+                    if (s % (steps / 200) == 0) result.plot("bouncing_energy", subject, balls.state().time, error);
                     if (s % 1000 == 0) setting.progress(static_cast<double>(s) / static_cast<double>(steps));
                 }
-                const std::string subject = line.label;
                 if (i.order == 2) {
                     // Second order: the square of the step over the contact's own time, 1/ω.
                     const double limit = other.step * other.step * stiffness / mass;
@@ -78,7 +73,6 @@ stiff_result play_bouncing(const stiff_setting& setting) {
                     result.add(told(subject, "energy error, RMS", std::sqrt(squares)));
                     result.add(told(subject, "energy creep, first quarter to last", std::abs(last - first)));
                 }
-                plot.lines.push_back(std::move(line));
             });
         }
         result.add(told("published: ODE, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
@@ -86,7 +80,6 @@ stiff_result play_bouncing(const stiff_setting& setting) {
         result.add(told("published: DART, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
                         std::sqrt(other.dart) / began));
     }
-    result.figures.push_back(std::move(plot));
     return result;
 }
 
@@ -97,7 +90,11 @@ stiff_study bouncing_study() {
         "that must not creep; errors are relative to the energy at the beginning",
         "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
         "DART with impulses",
-        &play_bouncing};
+        &play_bouncing,
+        {figure{.name = "bouncing_energy",
+                .caption = "Energy of 49 balls that bounce without loss, over what they began with.",
+                .x = {"time (s)", false},
+                .y = {"relative energy error", false}}}};
 }
 
 }  // namespace aabblab

@@ -126,10 +126,18 @@ std::vector<method> all_methods() {
     return all;
 }
 
-series depth_line(const std::string& label, const trajectory& t) {
-    series line{label};
-    for (std::size_t i = 0; i < t.times.size(); ++i) line.points.push_back({t.times[i], t.depths[i]});
-    return line;
+/// Of balls.
+constexpr std::array<const char*, 2> sizes{"1 m", "10 mm"};
+
+/// "depth_10_mm"
+std::string figure_name(std::string words) {
+    std::ranges::replace(words, ' ', '_');
+    return words;
+}
+
+void plot_depths(const std::string& size, const std::string& label, const trajectory& t, stiff_result& result) {
+    const std::string depth = figure_name("depth " + size);
+    for (std::size_t i = 0; i < t.times.size(); ++i) result.plot(depth, label, t.times[i], t.depths[i]);
 }
 
 /// The trajectory by each method, as many at once as there are processors: nothing is timed.
@@ -152,27 +160,15 @@ std::vector<trajectory> played_by(const std::vector<method>& methods, const drop
 }
 
 /// What each method does to the trajectory, with one step of time.
-void hold_methods(const dropped_balls& balls, const std::string& file, const std::string& size,
-                  const stiff_setting& setting, stiff_result& result) {
+void hold_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
+                  stiff_result& result) {
     const double step = balls.seconds(1e-3);
     const trajectory right = balls.play(setting.who, *integrator_named("velocity_verlet"), step, 1, true);
-    figure plot{
-        .name = "departure_" + file,
-        .caption = "How far balls of " + size +
-                   " are from where exact contacts take them, because of a triangle "
-                   "test, an engine or a stale list; what never departs is not drawn, and of others no more than nine.",
-        .x = {"time (s)", false},
-        .y = {"greatest distance over a ball's diameter", true}};
-    figure depth{.name = "depth_" + file,
-                 .caption = "How deep balls of " + size +
-                            " are in each other at most, with exact contacts and with those "
-                            "of the methods that depart.",
-                 .x = {"time (s)", false},
-                 .y = {"greatest depth over a ball's diameter", false},
-                 .lines = {depth_line("exact", right)}};
     const std::vector<method> all = all_methods();
     const std::vector<trajectory> played = played_by(all, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
+    std::size_t drawn = 0;
+    const std::string departure = figure_name("departure " + size);
     for (std::size_t m = 0; m < all.size(); ++m) {
         const trajectory& t = played[m];
         const std::vector<double> far = balls.departures(t, right);
@@ -188,27 +184,18 @@ void hold_methods(const dropped_balls& balls, const std::string& file, const std
         result.add(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
         result.add(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
         result.add(told(subject, "energy error, RMS", t.energy_error));
-        if (plot.lines.size() == most_drawn) continue;
-        series line{all[m].label};
-        for (std::size_t s = 0; s < far.size(); ++s) line.points.push_back({step * static_cast<double>(s + 1), far[s]});
-        plot.lines.push_back(std::move(line));
-        depth.lines.push_back(depth_line(all[m].label, t));
+        if (drawn == most_drawn) continue;
+        if (drawn++ == 0) plot_depths(size, "exact", right, result);
+        for (std::size_t s = 0; s < far.size(); ++s)
+            result.plot(departure, all[m].label, step * static_cast<double>(s + 1), far[s]);
+        plot_depths(size, all[m].label, t, result);
     }
     result.add(told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(right.depths)));
     result.add(told("exact, " + size, "energy error, RMS", right.energy_error));
-    if (plot.lines.empty()) return;
-    result.figures.push_back(std::move(plot));
-    result.figures.push_back(std::move(depth));
 }
 
 /// Error over run time: each integrator over its step, and stale lists over how stale they are.
 void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
-    figure cost{.name = "error_over_time",
-                .caption =
-                    "Error of a trajectory over the time that detection takes for it: each integrator over its "
-                    "step, and a stale list over the frames from search to search, with steps of 1 ms.",
-                .x = {"detection (ms)", true},
-                .y = {"greatest distance from the right place (diameters)", true}};
     const std::vector<double> all = setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
     const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(all.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
@@ -217,31 +204,50 @@ void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, right).back(); };
     for (const integrator_info& i : integrators()) {
         if (i.adaptive || i.order == 5) continue;
-        series line{std::string(i.name)};
         std::vector<double> energy_errors;
         for (const double dt : all) {
             const trajectory t = balls.play(setting.who, i, dt, kept(dt), true);
             const double error = error_of(t);
-            line.points.push_back({t.detection_ms, error});
+            result.plot("error_over_time", i.name, t.detection_ms, error);
             const std::string subject = std::string(i.name) + ", " + short_number(dt) + " s";
             result.add(told(subject, "trajectory error at the end (diameters)", error));
             result.add(told(subject, "energy error, RMS", t.energy_error));
             energy_errors.push_back(t.energy_error);
         }
-        cost.lines.push_back(std::move(line));
         // Each step is half of the one before.
         const double order =
             std::log2(energy_errors.front() / energy_errors.back()) / static_cast<double>(all.size() - 1);
         result.add(at_least(std::string(i.name), "order of the energy error", order, i.order - 0.3));
     }
-    series stale{"velocity_verlet, neighbour_list:margin=0"};
     for (const char* const every : {"8", "16", "32", "64"}) {
         const method m = composed(std::string("prepare neighbour_list:margin=0,every=") + every);
         const trajectory t = balls.play(m.who, verlet, 1e-3, kept(1e-3), false);
-        stale.points.push_back({t.detection_ms, error_of(t)});
+        result.plot("error_over_time", "velocity_verlet, neighbour_list:margin=0", t.detection_ms, error_of(t));
     }
-    cost.lines.push_back(std::move(stale));
-    result.figures.push_back(std::move(cost));
+}
+
+std::vector<figure> figures() {
+    std::vector<figure> all{
+        figure{.name = "error_over_time",
+               .caption = "Error of a trajectory over the time that detection takes for it: each integrator over its "
+                          "step, and a stale list over the frames from search to search, with steps of 1 ms.",
+               .x = {"detection (ms)", true},
+               .y = {"greatest distance from the right place (diameters)", true}}};
+    const figure_axis time{"time (s)", false};
+    for (const std::string size : sizes) {
+        all.push_back({figure_name("departure " + size),
+                       "How far balls of " + size +
+                           " are from where exact contacts take them, because of a triangle test, an engine or a stale "
+                           "list; what never departs is not drawn, and of others no more than nine.",
+                       time,
+                       {"greatest distance over a ball's diameter", true}});
+        all.push_back({figure_name("depth " + size),
+                       "How deep balls of " + size +
+                           " are in each other at most, with exact contacts and with those of the methods that depart.",
+                       time,
+                       {"greatest depth over a ball's diameter", false}});
+    }
+    return all;
 }
 
 }  // namespace
@@ -255,8 +261,8 @@ stiff_result play_dropped(const stiff_setting& setting) {
     result.add(told("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
     result.add(
         told("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
-    hold_methods(balls, "1_m", "1 m", setting, result);
-    hold_methods(dropped_balls(side, 0.01), "10_mm", "10 mm", setting, result);
+    hold_methods(balls, sizes[0], setting, result);
+    hold_methods(dropped_balls(side, 0.01), sizes[1], setting, result);
     return result;
 }
 
@@ -267,7 +273,7 @@ stiff_study dropped_study() {
         "pushed by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
         "the trajectory of exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
         "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
-        &play_dropped};
+        &play_dropped, figures()};
 }
 
 }  // namespace aabblab

@@ -77,30 +77,24 @@ private:
 stiff_result play_plate(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t shots = setting.quick ? 200 : 2000;
-    figure plot{
-        .name = "tunnelled",
-        .caption = "Share of shots that go through a plate unseen, over the way of a step.",
-        .x = {"way of a step over body and plate", true},
-        .y = {"share tunnelled", false},
-        .lines = {{"plain boxes", series_style::points}, {"swept boxes", series_style::points}, {"1 - reach / way"}}};
     for (const double ways : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
         shot fired(setting.who, ways * reach);
         const double expected = std::max(0.0, 1 - 1 / ways);
-        plot.lines[2].points.push_back({ways, expected});
+        result.plot("tunnelled", "1 - reach / way", ways, expected);
         for (const bool swept : {false, true}) {
             std::size_t unseen = 0;
             for (std::size_t s = 0; s < shots; ++s)
                 if (!fired.is_seen((static_cast<double>(s) + 0.5) / static_cast<double>(shots), swept)) ++unseen;
             const double share = static_cast<double>(unseen) / static_cast<double>(shots);
-            plot.lines[swept ? 1 : 0].points.push_back({ways, share});
+            result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ways, share);
             const std::string subject = "a step of " + short_number(ways) + " reaches, " + (swept ? "swept" : "plain");
             stiff_row row = told(subject, "share tunnelled of " + std::to_string(shots), share);
             row.rule = swept ? "0" : short_number(expected) + ", one shot more or less";
-            row.holds = std::abs(share - (swept ? 0 : expected)) <= (swept ? 0 : 1.01 / static_cast<double>(shots));
+            row.verdict =
+                verdict_if(std::abs(share - (swept ? 0 : expected)) <= (swept ? 0 : 1.01 / static_cast<double>(shots)));
             result.add(std::move(row));
         }
     }
-    result.figures.push_back(std::move(plot));
     return result;
 }
 
@@ -111,7 +105,14 @@ stiff_study plate_study() {
         "stand where a step ends; swept ones reach from step to step, and where they meet the step is looked into in "
         "parts that no body jumps over",
         "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
-        &play_plate};
+        &play_plate,
+        {figure{
+            .name = "tunnelled",
+            .caption = "Share of shots that go through a plate unseen, over the way of a step.",
+            .x = {"way of a step over body and plate", true},
+            .y = {"share tunnelled", false},
+            .lines = {
+                {"plain boxes", series_style::points}, {"swept boxes", series_style::points}, {"1 - reach / way"}}}}};
 }
 
 }  // namespace aabblab

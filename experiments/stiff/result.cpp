@@ -1,0 +1,77 @@
+module aabblab.stiff;
+
+import aabblab.files;
+import aabblab.numbers;
+import aabblab.results;
+
+namespace aabblab {
+
+namespace {
+
+/// A column of any number, in fifteen digits.
+template <class Number>
+struct any_number {
+    Number& value;
+};
+template <class Number>
+any_number(Number&) -> any_number<Number>;
+template <class Number>
+std::string written(const any_number<Number>& number) {
+    return fifteen_digits(number.value);
+}
+bool taken(const any_number<double>& to, const std::string& text) {
+    const char* const end = text.data() + text.size();
+    return std::from_chars(text.data(), end, to.value) == std::from_chars_result{end, std::errc{}};
+}
+
+constexpr auto columns_of_row = [](auto& r, auto field) {
+    field("subject", r.subject);
+    field("quantity", r.quantity);
+    field("measured", any_number(r.measured));
+    field("expected", r.rule);
+    field("verdict", one_of_words(r.verdict, stiff_verdict_words));
+};
+
+constexpr auto columns_of_point = [](auto& p, auto field) {
+    field("figure", p.figure);
+    field("line", p.line);
+    field("x", any_number(p.x));
+    field("y", any_number(p.y));
+};
+
+std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_study& study, const char* ending) {
+    return folder / (std::string(study.name) + ending);
+}
+
+}  // namespace
+
+std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result) {
+    std::vector<figure> all = study.figures;
+    if (study.mark) study.mark(all, result.rows);
+    for (figure& f : all)
+        for (const stiff_point& p : result.points) {
+            if (p.figure != f.name) continue;
+            auto line = std::ranges::find(f.lines, p.line, &series::label);
+            if (line == f.lines.end()) line = f.lines.insert(line, {p.line});
+            line->points.push_back({p.x, p.y});
+        }
+    std::erase_if(all, [](const figure& f) {
+        return std::ranges::all_of(f.lines, [](const series& line) { return line.points.empty(); });
+    });
+    return all;
+}
+
+void write_result(const std::filesystem::path& folder, const stiff_study& study, const stiff_result& result) {
+    write_file(file_of(folder, study, ".csv"), csv_of(std::span<const stiff_row>(result.rows), columns_of_row));
+    write_file(file_of(folder, study, "_points.csv"),
+               csv_of(std::span<const stiff_point>(result.points), columns_of_point));
+}
+
+std::optional<stiff_result> read_result(const std::filesystem::path& folder, const stiff_study& study) {
+    const std::filesystem::path rows = file_of(folder, study, ".csv");
+    if (!std::filesystem::exists(rows)) return std::nullopt;
+    return stiff_result{rows_of_file<stiff_row>(rows, columns_of_row),
+                        rows_of_file<stiff_point>(file_of(folder, study, "_points.csv"), columns_of_point)};
+}
+
+}  // namespace aabblab
