@@ -13,8 +13,6 @@ struct written_choice {
     Choice& choice;
 };
 template <class Choice>
-written_choice(Choice&) -> written_choice<Choice>;
-template <class Choice>
 std::string written(const written_choice<Choice>& one) {
     return to_text(one.choice);
 }

@@ -1,6 +1,8 @@
 module aabblab.extreme;
 
+import aabb.policy;
 import aabb.validation;
+import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.results;
 
@@ -11,11 +13,12 @@ namespace {
 using row_list = std::vector<const extreme_row*>;
 
 /// The rows that have the same text there, in the order in which the texts come first.
-std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> rows, std::string extreme_row::* text) {
+template <class Text>
+std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> rows, Text text) {
     std::vector<std::pair<std::string, row_list>> all;
     for (const extreme_row& row : rows) {
-        auto found = std::ranges::find(all, row.*text, &std::pair<std::string, row_list>::first);
-        if (found == all.end()) found = all.insert(all.end(), {row.*text, {}});
+        auto found = std::ranges::find(all, std::invoke(text, row), &std::pair<std::string, row_list>::first);
+        if (found == all.end()) found = all.insert(all.end(), {std::invoke(text, row), {}});
         found->second.push_back(&row);
     }
     return all;
@@ -155,7 +158,7 @@ table inexact_case_table(std::span<const extreme_row> rows) {
     // Those with settings are in the file.
     const auto shown = those(rows, [](const extreme_row& row) {
         return row.group == row_group::cases && row.role == contender_role::triangle_test && !row.must_be_exact &&
-               row.contender.find(':') == std::string::npos;
+               aabb::parse_strategy(row.contender).settings.empty();
     });
     return wrong_table("class", shown, &extreme_row::kind);
 }
@@ -214,18 +217,13 @@ std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {
-    std::vector<std::pair<std::string, std::vector<std::string>>> scenes_of;  // by sentence
-    for (const extreme_row& row : rows) {
-        if (row.made.said != aabb::verdict::refused) continue;
-        auto found = std::ranges::find_if(scenes_of, [&](const auto& one) { return one.first == row.made.reason; });
-        if (found == scenes_of.end()) found = scenes_of.insert(scenes_of.end(), {row.made.reason, {}});
-        if (std::ranges::find(found->second, row.scene) == found->second.end()) found->second.push_back(row.scene);
-    }
     std::vector<std::string> all;
-    for (const auto& [sentence, scenes] : scenes_of) {
-        std::string text;
-        for (const std::string& scene : scenes) text += (text.empty() ? "" : ", ") + scene;
-        all.push_back(text + ": " + sentence);
+    const auto refused = those(rows, [](const extreme_row& row) { return row.made.said == aabb::verdict::refused; });
+    for (const auto& [sentence, same] : by(refused, [](const extreme_row& row) { return row.made.reason; })) {
+        std::vector<std::string> scenes;
+        for (const extreme_row* row : same)
+            if (std::ranges::find(scenes, row->scene) == scenes.end()) scenes.push_back(row->scene);
+        all.push_back(fmt::format("{}: {}", fmt::join(scenes, ", "), sentence));
     }
     return all;
 }

@@ -37,16 +37,12 @@ struct one_of_words {
     Value& value;
     std::span<const std::string_view> words;
 };
-template <class Value>
-one_of_words(Value&, std::span<const std::string_view>) -> one_of_words<Value>;
 
 /// A column of numbers with all their digits; those that are read are above 0, as logarithmic axes have them.
 template <class Number>
 struct all_digits {
     Number& value;
 };
-template <class Number>
-all_digits(Number&) -> all_digits<Number>;
 
 // How a value stands in its field; types of a table's own add theirs beside them.
 

@@ -14,8 +14,6 @@ struct any_number {
     Number& value;
 };
 template <class Number>
-any_number(Number&) -> any_number<Number>;
-template <class Number>
 std::string written(const any_number<Number>& number) {
     return fifteen_digits(number.value);
 }

@@ -28,7 +28,7 @@ template <class Test>
 struct engine {
     std::string name;
     std::string summary;
-    bool exact = false;                                  ///< its pair sets equal the exact ones on every input
+    bool exact = true;                                   ///< its pair sets equal the exact ones on every input
     std::unique_ptr<global_stage> (*boxes)() = nullptr;  ///< null where it cannot stand in for global search
     std::unique_ptr<local_stage> (*meshes)() = nullptr;  ///< null where it cannot stand in for local detection
     std::vector<library_test> triangles = {};            ///< tests that its library has

@@ -86,7 +86,6 @@ private:
 engine boost_rtree_engine() {
     return {.name = "boost_rtree",
             .summary = "Boost.Geometry's R-tree, packed anew in each frame and asked for what meets each box",
-            .exact = true,
             .boxes = made<global_stage, boost_rtree>};
 }
 

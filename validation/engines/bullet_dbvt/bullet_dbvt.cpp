@@ -80,7 +80,6 @@ private:
 engine bullet_dbvt_engine() {
     return {.name = "bullet_dbvt",
             .summary = "Bullet's dynamic tree of boxes, collided with itself",
-            .exact = true,
             .boxes = made<global_stage, bullet_dbvt>};
 }
 

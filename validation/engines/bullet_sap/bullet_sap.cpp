@@ -108,7 +108,6 @@ private:
 engine bullet_sap_engine() {
     return {.name = "bullet_sap",
             .summary = "Bullet's incremental sweep on three axes; quadratic in a first frame, and where much moves",
-            .exact = true,
             .boxes = made<global_stage, bullet_sap>};
 }
 

@@ -42,7 +42,6 @@ private:
 engine cgal_engine() {
     return {.name = "cgal",
             .summary = "CGAL's intersection of box sequences, and its exact kernel for triangles",
-            .exact = true,
             .boxes = made<global_stage, cgal_boxes>,
             .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); },
             .triangles = cgal_tests()};

@@ -101,7 +101,6 @@ class cgal_tree final : public model_engine<tree_model> {
 engine cgal_tree_engine() {
     return {.name = "cgal_tree",
             .summary = "CGAL's AABB tree of the first mesh, asked for each triangle of the second; its exact kernel",
-            .exact = true,
             .meshes = made<local_stage, cgal_tree>};
 }
 

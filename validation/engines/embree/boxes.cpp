@@ -82,14 +82,12 @@ private:
 engine embree_engine() {
     return {.name = "embree",
             .summary = "Embree's collision of a scene with itself, on a tree of low quality built anew in each frame",
-            .exact = true,
             .boxes = made<global_stage, embree_boxes, RTC_BUILD_QUALITY_LOW>};
 }
 
 engine embree_refit_engine() {
     return {.name = "embree_refit",
             .summary = "the same on a good tree that is refitted while the number of boxes stays; for little motion",
-            .exact = true,
             .boxes = made<global_stage, embree_boxes, RTC_BUILD_QUALITY_REFIT>};
 }
 

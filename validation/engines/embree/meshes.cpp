@@ -133,18 +133,21 @@ engine embree_meshes_engine() {
             .summary =
                 "Embree's collision of two scenes of medium quality, built anew for each new pose, with "
                 "Devillers and Guigue's test in double",
+            .exact = false,
             .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_MEDIUM>};
 }
 
 engine embree_meshes_low_engine() {
     return {.name = "embree_meshes_low",
             .summary = "as embree_meshes, with scenes of low quality, which are built faster",
+            .exact = false,
             .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_LOW>};
 }
 
 engine embree_meshes_refit_engine() {
     return {.name = "embree_meshes_refit",
             .summary = "as embree_meshes, with scenes that are refitted for each new pose and when vertices move",
+            .exact = false,
             .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_REFIT>};
 }
 

@@ -74,6 +74,7 @@ std::unique_ptr<local_stage> make_fcl_meshes();
 engine fcl_engine() {
     return {.name = "fcl",
             .summary = "FCL's dynamic AABB tree for boxes, and its trees of oriented boxes in double for meshes",
+            .exact = false,
             .boxes = made<global_stage, fcl_boxes>,
             .meshes = make_fcl_meshes};
 }

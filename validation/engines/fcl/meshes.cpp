@@ -162,6 +162,7 @@ engine fcl_aabb_engine() {
             .summary =
                 "FCL's trees of axis-aligned boxes, the second mesh's refitted for each new pose, with vertices "
                 "rounded to float in the first one's frame",
+            .exact = false,
             .meshes = made<local_stage, fcl_axis_aligned>};
 }
 

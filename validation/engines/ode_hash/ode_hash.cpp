@@ -194,14 +194,12 @@ engine ode_hash_engine() {
     return {
         .name = "ode_hash",
         .summary = "ODE's hashed grid with cells of several sizes; with a bit for each pair, for 131,071 boxes at most",
-        .exact = true,
         .boxes = made<global_stage, ode_hash>};
 }
 
 engine ode_sap_engine() {
     return {.name = "ode_sap",
             .summary = "ODE's sweep along one axis, sorted by radix in each frame",
-            .exact = true,
             .boxes = made<global_stage, ode_sap>};
 }
 
