@@ -13,11 +13,6 @@ std::string label_of(contender_name name) {
     return name.engine.empty() ? text_in_line(name.choices) : name.engine;
 }
 
-double number_in(const std::string& text) {
-    double value = 0;
-    return taken(value, text) ? value : std::nan("");
-}
-
 }  // namespace
 
 const atlas_line* atlas_scene::find(std::string_view label) const {
@@ -40,10 +35,10 @@ double atlas_scene::least_ms(span_of_time of) const {
 
 double atlas_scene::number(std::string_view parameter) const {
     const auto set = std::ranges::find(scene.settings, parameter, &aabb::setting::name);
-    if (set != scene.settings.end()) return number_in(set->value);
+    if (set != scene.settings.end()) return number_or_nan(set->value);
     const std::vector<aabb::parameter_info>& parameters = scene_named(scene.kind).parameters;
     const auto info = std::ranges::find(parameters, parameter, &aabb::parameter_info::name);
-    return info != parameters.end() ? number_in(info->fallback) : std::numeric_limits<double>::quiet_NaN();
+    return info != parameters.end() ? number_or_nan(info->fallback) : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {

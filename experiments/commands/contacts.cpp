@@ -56,7 +56,6 @@ void find_contacts(const contacts_request& request) {
     scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     search_method method = method_of(who, outlook_of(scene));
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
-    if (rows) rows->commit();
     if (request.json)
         print_json(method, result);
     else

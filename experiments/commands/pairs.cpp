@@ -46,7 +46,6 @@ void find_pairs(const pairs_request& request) {
         rows.emplace(*request.out, "frame,a,b");
     }
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
-    if (rows) rows->commit();
     if (request.json)
         print_json(method, result);
     else

@@ -215,7 +215,7 @@ void add_scene(const command_parser& program) {
     const command_parser command =
         program.add_command("scene", "Write a scene as a recording of boxes, or as a picture");
     auto& request = command.calls(write_scene);
-    command.argument("NAME", &request.kind, "The scene");
+    command.argument("NAME", &request.kind, "One of the scenes that 'aabblab list scenes' shows");
     add_parameters(command, request);
     command
         .option("--mesh MESH", &request.meshes,

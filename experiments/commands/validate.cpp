@@ -14,14 +14,6 @@ namespace aabblab {
 
 namespace {
 
-/// Every global search and every local detection once: stages know nothing of each other, so pairs show nothing new.
-std::vector<aabb::composition> every_composition() {
-    std::vector<aabb::composition> all = aabb::every_composition(aabb::stage::global_search);
-    for (const aabb::composition& c : aabb::every_composition(aabb::stage::local_detection))
-        if (std::ranges::find(all, c) == all.end()) all.push_back(c);
-    return all;
-}
-
 experiment built_in_experiment() {
     experiment e;
     for (const scene_info& info : scene_kinds())
@@ -33,7 +25,10 @@ experiment built_in_experiment() {
                       {{"objects", "40"}, {"frames", "4"}},
                       {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
                       1}});
-    e.compositions = every_composition();
+    // Every global search and every local detection once: stages know nothing of each other, so pairs show nothing new.
+    e.compositions = aabb::every_composition(aabb::stage::global_search);
+    for (const aabb::composition& c : aabb::every_composition(aabb::stage::local_detection))
+        if (std::ranges::find(e.compositions, c) == e.compositions.end()) e.compositions.push_back(c);
     for (const aabb::engine_info& engine : aabb::engines()) e.engines.push_back(engine.name);
     return e;
 }

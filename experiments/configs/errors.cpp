@@ -75,8 +75,7 @@ void require_meshes(const document& doc, const node& scene) {
     const node* kinds = scene.find("kind");
     if (!kinds) return;
     for (const located_text& kind : doc.alternatives_of("kind", *kinds)) {
-        const auto info = std::ranges::find(scene_kinds(), kind.text, &scene_info::name);
-        if (info != scene_kinds().end() && !info->has_meshes)
+        if (std::ranges::count(scene_names(), kind.text) > 0 && !scene_named(kind.text).has_meshes)
             doc.fail(kind.line, kind.text + " is a scene of boxes, which has no triangles");
     }
 }

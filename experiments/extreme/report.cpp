@@ -213,7 +213,8 @@ std::string csv_of(std::span<const extreme_row> rows) {
 }
 
 std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
-    return rows_of_file<extreme_row>(file, columns_of_row);
+    return rows_of_file<extreme_row>(file, columns_of_row,
+                                     std::array<std::string_view, 2>{"precision", "stated_bytes"});
 }
 
 std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {

@@ -111,6 +111,7 @@ frames_result search_frames(scene_play& scene, search_method& method, number_tab
         result.object_pairs += count_object_pairs(frame.contacts);
         shown.at(frame.number + 1);
     });
+    if (rows) rows->commit();
     result.pairs = found.candidates();
     result.contacts = found.contacts().value_or(0);
     result.digest = found.digest();

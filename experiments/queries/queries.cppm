@@ -72,7 +72,7 @@ struct frames_result {
     }
 };
 /// Searches every frame of a scene.
-/// @param rows takes what is found: frame and pair, or frame, objects and triangles; null where nobody wants them
+/// @param rows takes what is found, and is committed: frame and pair, or frame, objects and triangles; null for none
 /// @throws defect where something is found twice.
 [[nodiscard]] frames_result search_frames(scene_play& scene, search_method& method, number_table* rows);
 

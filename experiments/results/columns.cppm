@@ -84,6 +84,10 @@ template <class Number>
     if constexpr (std::is_floating_point_v<Number>) return std::isfinite(to);
     return true;
 }
+[[nodiscard]] inline double number_or_nan(const std::string& text) {
+    double number = 0;
+    return taken(number, text) ? number : std::nan("");
+}
 template <class Value>
 [[nodiscard]] bool taken(const one_of_words<Value>& to, const std::string& text) {
     const auto found = std::ranges::find(to.words, text);
@@ -173,10 +177,11 @@ template <class Row, class Columns, class Seen>
 
 /// Of a file that is complete, as `csv_of` writes it.
 template <class Row, class Columns>
-[[nodiscard]] std::vector<Row> rows_of_file(const std::filesystem::path& file, Columns columns) {
+[[nodiscard]] std::vector<Row> rows_of_file(const std::filesystem::path& file, Columns columns,
+                                            std::span<const std::string_view> later = {}) {
     const std::vector<csv_record> records = whole_records_of(text_of_file(file), file.string());
     if (records.empty()) require_header(file.string(), {}, names_of<Row>(columns));
-    return rows_in<Row>(records, file.string(), columns, {}, [](const Row&, std::size_t) {});
+    return rows_in<Row>(records, file.string(), columns, later, [](const Row&, std::size_t) {});
 }
 
 }  // namespace aabblab

@@ -66,10 +66,11 @@ void write_result(const std::filesystem::path& folder, const stiff_study& study,
 }
 
 std::optional<stiff_result> read_result(const std::filesystem::path& folder, const stiff_study& study) {
-    const std::filesystem::path rows = file_of(folder, study, ".csv");
-    if (!std::filesystem::exists(rows)) return std::nullopt;
+    const auto rows = file_of(folder, study, ".csv"), points = file_of(folder, study, "_points.csv");
+    // Earlier versions left rows alone.
+    if (!std::filesystem::exists(rows) || !std::filesystem::exists(points)) return std::nullopt;
     return stiff_result{rows_of_file<stiff_row>(rows, columns_of_row),
-                        rows_of_file<stiff_point>(file_of(folder, study, "_points.csv"), columns_of_point)};
+                        rows_of_file<stiff_point>(points, columns_of_point)};
 }
 
 }  // namespace aabblab

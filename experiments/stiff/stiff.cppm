@@ -61,7 +61,7 @@ struct stiff_study {
 /// In the order in which they are told.
 [[nodiscard]] std::span<const stiff_study> stiff_studies();
 
-/// With their points; those that have none are left out.
+/// With their points; a figure in which no line has any is left out.
 [[nodiscard]] std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result);
 
 /// Writes STUDY.csv, the rows, and STUDY_points.csv.

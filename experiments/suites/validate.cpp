@@ -76,7 +76,7 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
-// Earlier versions kept no rows, but what they drew.
+// Earlier versions sealed what they drew, not rows.
 
 figure_axis axis_of(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
@@ -182,7 +182,12 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
 
 std::optional<suite_report> kept_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return drawn_report(folder / "report.json");
-    if (std::filesystem::exists(folder / "extreme.csv")) return report_of(read_extreme_rows(folder / "extreme.csv"));
+    if (std::filesystem::exists(folder / "extreme.csv")) {
+        const std::vector<extreme_row> rows = read_extreme_rows(folder / "extreme.csv");
+        // Cases are played last: without any the run was interrupted.
+        if (std::ranges::count(rows, row_group::cases, &extreme_row::group) == 0) return std::nullopt;
+        return report_of(rows);
+    }
     suite_report report;
     for (const stiff_study& study : stiff_studies())
         if (const std::optional<stiff_result> result = read_result(folder, study)) add_study(report, study, *result);

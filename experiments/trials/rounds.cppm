@@ -55,8 +55,8 @@ inline constexpr double hopeless_ratio = 20;
 /// When to give up on a candidate, by what another takes for the same.
 struct stopping_rule {
     double ratio = hopeless_ratio;
-    double grace = 0;  ///< that is too short to matter
-    /// Nobody takes more, so that a few do not take all time, but who is within the margin of the other.
+    double grace = 0;  ///< seconds that are too short to matter; added to each limit
+    /// No candidate gets more, so that a few do not take all time, unless it stays within `margin` times the other.
     double share = std::numeric_limits<double>::infinity();
     double margin = 1;
 

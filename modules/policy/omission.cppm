@@ -25,6 +25,7 @@ inline constexpr std::array absence_texts = std::to_array<std::string_view>(
      "no projection list of the z axis", "no projection lists beside those that the sweep keeps for itself",
      "no list of neighbours", "no division of large objects", "no local detection", "no boxes of single triangles",
      "no indices of nodes", "no work counters"});
+static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters) + 1);
 
 [[nodiscard]] inline std::string to_text(absence what) {
     return std::string(absence_texts[static_cast<std::size_t>(what)]);

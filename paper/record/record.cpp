@@ -81,7 +81,7 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
     for (const std::string& name : names_in(folder / "atlas"))
         add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
     for (const std::string suite : {"extreme", "stiff"}) {
-        // Of an earlier version, in place of rows.
+        // Earlier versions sealed what they drew in place of rows.
         const bool drawn = std::filesystem::exists(folder / suite / "report.json");
         for (const std::string& name : names_in(folder / suite))
             if (drawn ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});

@@ -112,6 +112,7 @@ public:
                 break;
         }
         outlook_.pairs = pairs.size() - before;
+        // Where a list is made, also of its first tests, which take far less.
         share_of_update_ = searches ? search_->share_of_update() : 0;
     }
 

@@ -1,6 +1,8 @@
 #include "../random_poses.hpp"
 
 using namespace aabb;
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::MessageMatches;
 
 namespace {
 
@@ -60,6 +62,30 @@ TEST_CASE("the image of a box holds the image of every point of it") {
             for (int j = 0; j < 20; ++j) RC_ASSERT(contains(image, bounds_of(to_a(any_point(b)))));
         }
     }));
+}
+
+TEST_CASE("the margin of a box's image is needed: without it rounding loses points") {
+    // The same formula without growing, over boxes of one point, whose image a tight box would have to hit exactly.
+    int lost = 0;
+    REQUIRE(rc::check([&] {
+        const box reach_b = far_box();
+        const pose a = any_pose(1e9);
+        const pose b = brings_near(reach_b.min, a);
+        const relative_pose to_a(a, b, reach_b);
+        const vec3f x = any_point(reach_b);
+        for (int i = 0; i < 3; ++i) {
+            double bound = 0;
+            for (int k = 0; k < 3; ++k) bound += a.rotation[3 * k + i] * (b.translation[k] - a.translation[k]);
+            for (int j = 0; j < 3; ++j) {
+                double turn = 0;
+                for (int k = 0; k < 3; ++k) turn += a.rotation[3 * k + i] * b.rotation[3 * k + j];
+                bound += turn * x[j];
+            }
+            lost += static_cast<float>(bound) != to_a(x)[i];
+        }
+        RC_ASSERT(contains(to_a(bounds_of(x)), bounds_of(to_a(x))));
+    }));
+    CHECK(lost > 0);
 }
 
 TEST_CASE("two meshes moved together keep their vertices") {
@@ -156,4 +182,17 @@ TEST_CASE("a mesh beyond the range of float in the other's frame is refused") {
     CHECK_THROWS_AS(relative_pose({}, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1e300, 0, 0}}, {{0, 0, 0}, {1, 1, 1}}),
                     input_error);
     CHECK_NOTHROW(relative_pose({}, {}, {{-huge, -huge, -huge}, {huge, huge, huge}}));
+}
+
+TEST_CASE("what is not a rigid motion is refused") {
+    const auto refused = [](pose p, const char* why) {
+        CHECK_THROWS_MATCHES(require_rigid(p), input_error, MessageMatches(ContainsSubstring(why)));
+    };
+    CHECK_NOTHROW(require_rigid({}));
+    CHECK_NOTHROW(require_rigid({{1, 4e-7, 0, -4e-7, 1, 0, 0, 0, 1}, {1e9, 0, 0}}));
+    refused({{1.001, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not orthonormal");
+    refused({{1, 0, 0, 0, 1, 0, 0, 0, -1}, {0, 0, 0}}, "reflection");
+    refused({{0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0}}, "not orthonormal");
+    refused({{std::nan(""), 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not finite");
+    refused({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, std::numeric_limits<double>::infinity(), 0}}, "not finite");
 }

@@ -148,6 +148,8 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
                                               "y3", "z3", "x4",   "y4",      "z4",      "x5",      "y5",
                                               "z5", "x6", "y6",   "z6"});
     // Both meshes turned about z by a quarter and taken away: y is where x was, and x where -y was.
+    REQUIRE(json_of({"collide", a, b, "--json", "--pose-a", "1,0,0,100, 0,1,0,200, 0,0,1,300", "--pose-b",
+                     "1,0,0,100, 0,1,0,200, 0,0,1,300"})["digest"] == json_of({"collide", a, b, "--json"})["digest"]);
     const auto there =
         rows_of({"--pose-a", "0,-1,0,100, 1,0,0,200, 0,0,1,300", "--pose-b", "0,-1,0,99.8, 1,0,0,200.4, 0,0,1,299.9"});
     REQUIRE(there.size() == here.size());

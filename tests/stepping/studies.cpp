@@ -18,7 +18,11 @@ const aabblab::stiff_study& study_named(std::string_view name) {
 }
 
 aabblab::stiff_result played(std::string_view name, const aabblab::contender& who) {
-    return study_named(name).play({.quick = true, .who = who});
+    const aabblab::stiff_study& study = study_named(name);
+    aabblab::stiff_result result = study.play({.quick = true, .who = who});
+    for (const aabblab::stiff_point& p : result.points)
+        CHECK(std::ranges::count(study.figures, p.figure, &aabblab::figure::name) == 1);
+    return result;
 }
 
 std::string wrong_in(const aabblab::stiff_result& result) {

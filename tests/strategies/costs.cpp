@@ -34,7 +34,8 @@ TEST_CASE("auto selects a strategy of each kind with a reason, exact and not ref
         // From scenes of which nothing is known to those of meshes that are asked often.
         scene_outlook scene;
         if (*rc::gen::arbitrary<bool>())
-            scene = {*rc::gen::inRange<std::size_t>(0, 100), *rc::gen::inRange<std::size_t>(0, 1'000'000),
+            scene = {*rc::gen::element<std::size_t>(0, 1, 2, 3, 4, 63, 64, 1000, 100'000),
+                     *rc::gen::element<std::size_t>(0, 1, 20'417, 1'000'000),
                      *rc::gen::inRange<std::size_t>(0, 1'000'000)};
         const std::vector<selected_strategy> all = select_strategies({}, scene);
         RC_ASSERT(all.size() == strategy_kind_count);

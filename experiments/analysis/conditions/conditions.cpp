@@ -25,8 +25,7 @@ std::string value_of(const factors& all, std::string_view name) {
 }
 
 double number_of(const factors& all, std::string_view name) {
-    double value = 0;
-    return taken(value, value_of(all, name)) ? value : std::nan("");
+    return number_or_nan(value_of(all, name));
 }
 
 selection selection::with(aabb::strategy_kind kind, std::string choice) const {

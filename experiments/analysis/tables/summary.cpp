@@ -107,8 +107,7 @@ void set_labels(scene_summary& scene) {
             scene.common += (scene.common.empty() ? "" : ", ") + std::string(name_of(kind)) + " " + value;
     }
     for (summary_line& line : scene.lines) {
-        const std::string& engine = line.name.engine;
-        line.label = engine.empty() ? text_in_line(line.name.choices, scene.differing) : engine;
+        line.label = line.name.engine.empty() ? text_in_line(line.name.choices, scene.differing) : line.name.engine;
         if (line.label.empty()) line.label = only_name_of(line.name);
     }
 }
