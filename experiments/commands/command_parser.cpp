@@ -212,9 +212,13 @@ std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
         return prefix + unexpected(program, command, rest.front());
     if (const auto rest = program.remaining(); !rest.empty()) return unexpected(program, program, rest.front());
     const std::string said = error.what();
-    // The parser counts values; every option of ours that takes a value takes one.
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
-        return prefix + said.substr(0, said.find(':')) + " takes one value";
+    // The parser counts values; every option of ours that takes a value takes one. It does not name hidden ones.
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+        std::string name = said.substr(0, said.find(':'));
+        for (const CLI::Option* option : command.get_options())
+            if (name.empty() && option->count() > 1) name = "--" + option->get_lnames().front();
+        return prefix + name + " takes one value";
+    }
     return prefix + said;
 }
 

@@ -22,23 +22,23 @@ struct contacts_request {
     bool json = false;
 };
 
-void print_json(const search_method& method, const frames_result& result) {
+std::string json_of(const search_method& method, const frames_result& result) {
     const nlohmann::ordered_json summary = {{"objects", result.objects},   {"frames", result.ms.size()},
                                             {"candidates", result.pairs},  {"object_pairs", result.object_pairs},
                                             {"contacts", result.contacts}, {"digest", result.digest},
                                             {"build_ms", result.build_ms}, {"ms", result.ms},
                                             {"method", method.name},       {"exact", method.exact}};
-    print(summary.dump() + "\n");
+    return summary.dump() + "\n";
 }
 
-void print_text(const contacts_request& request, const search_method& method, const frames_result& result) {
-    print(fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
-                      counted(result.ms.size(), "frame")));
-    print(fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
-                      counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
-                      counted(result.pairs, "pair"), result.digest));
-    print(fmt::format("{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", method.text(), result.build_ms,
-                      result.mean_ms()));
+std::string text_of(const contacts_request& request, const search_method& method, const frames_result& result) {
+    return fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
+                       counted(result.ms.size(), "frame")) +
+           fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
+                       counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
+                       counted(result.pairs, "pair"), result.digest) +
+           fmt::format("{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", method.text(), result.build_ms,
+                       result.mean_ms());
 }
 
 void find_contacts(const contacts_request& request) {
@@ -56,10 +56,7 @@ void find_contacts(const contacts_request& request) {
     scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     search_method method = method_of(who, outlook_of(scene));
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
-    if (request.json)
-        print_json(method, result);
-    else
-        print_text(request, method, result);
+    print(request.json ? json_of(method, result) : text_of(request, method, result));
 }
 
 }  // namespace

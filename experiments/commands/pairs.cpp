@@ -20,20 +20,20 @@ struct pairs_request {
     bool json = false;
 };
 
-void print_json(const search_method& method, const frames_result& result) {
+std::string json_of(const search_method& method, const frames_result& result) {
     const nlohmann::ordered_json summary = {
         {"objects", result.objects}, {"frames", result.ms.size()}, {"pairs", result.pairs}, {"digest", result.digest},
         {"ms", result.ms},           {"method", method.name},      {"exact", method.exact}};
-    print(summary.dump() + "\n");
+    return summary.dump() + "\n";
 }
 
-void print_text(const pairs_request& request, const search_method& method, const frames_result& result) {
-    print(fmt::format("{}: {}, {}\n", visible(request.recording), counted(result.objects, "object"),
-                      counted(result.ms.size(), "frame")));
-    print(fmt::format("{}, digest {}\n", counted(result.pairs, "overlapping pair"), result.digest));
-    if (!result.ms.empty())
-        // A list of neighbours serves most frames, and is made in a few.
-        print(fmt::format("{}: {:.4g} ms a frame (mean)\n", method.text(), result.mean_ms()));
+std::string text_of(const pairs_request& request, const search_method& method, const frames_result& result) {
+    std::string text =
+        fmt::format("{}: {}, {}\n{}, digest {}\n", visible(request.recording), counted(result.objects, "object"),
+                    counted(result.ms.size(), "frame"), counted(result.pairs, "overlapping pair"), result.digest);
+    // A list of neighbours serves most frames, and is made in a few.
+    if (!result.ms.empty()) text += fmt::format("{}: {:.4g} ms a frame (mean)\n", method.text(), result.mean_ms());
+    return text;
 }
 
 void find_pairs(const pairs_request& request) {
@@ -46,10 +46,7 @@ void find_pairs(const pairs_request& request) {
         rows.emplace(*request.out, "frame,a,b");
     }
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
-    if (request.json)
-        print_json(method, result);
-    else
-        print_text(request, method, result);
+    print(request.json ? json_of(method, result) : text_of(request, method, result));
 }
 
 }  // namespace

@@ -100,8 +100,8 @@ struct paired_ratio {
     double least = 1;
     double greatest = 1;
 
-    /// Whether the rounds leave it open which of the two is faster by more than 3 %.
-    [[nodiscard]] bool may_be_same() const { return least < 1.03 && greatest > 1 / 1.03; }
+    /// Whether the rounds leave it open which of the two is faster by more than 3 %. One round leaves all open.
+    [[nodiscard]] bool may_be_same() const { return least == greatest || (least < 1.03 && greatest > 1 / 1.03); }
 };
 /// @param ms one or more, by round, as are those of the other
 [[nodiscard]] paired_ratio paired_ratio_of(std::span<const double> ms, std::span<const double> of_other);

@@ -206,6 +206,18 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
     REQUIRE(different.answers[0].in_a == "00000000000000a2");
 }
 
+TEST_CASE("Ratios are to the first composition, though an engine stands before it") {
+    std::vector<row> rows = rows_of({});
+    for (row& r : rows) {
+        if (r.name[aabb::strategy_kind::sort] != "insertion") continue;
+        r.name = {};
+        r.name.engine = "cgal";
+    }
+    const aabblab::comparison found = compare({"a", rows, {}}, {"b", rows, {}}, aabblab::compared::ratios);
+    REQUIRE(found.scenes.size() == 1);
+    CHECK(found.scenes[0].base == "std");
+}
+
 TEST_CASE("compare lists what changed beyond noise, or all, and ends with status 0") {
     const temporary_folder folder;
     const std::string a = write_results(folder / "a", rows_of({}));

@@ -537,6 +537,7 @@ TEST_CASE("A ratio of times in the same rounds has a median, a least and a great
     CHECK(ratio.least == 1.5);
     CHECK(ratio.greatest == 4);
     CHECK_FALSE(ratio.may_be_same());
+    CHECK(of({2}, {1}).may_be_same());
     CHECK(of({1.02, 1.3}, {1, 1}).may_be_same());
     CHECK(of({0.7, 0.98}, {1, 1}).may_be_same());
     CHECK(of({0.7, 1.3}, {1, 1}).may_be_same());

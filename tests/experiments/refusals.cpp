@@ -30,6 +30,7 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
             {{"pairs", "x", "y"}, "pairs: unexpected argument 'y'"},
             {{"pairs", "x", "--out"}, "pairs: --out takes one value"},
             {{"pairs", "x", "--sort", "std", "--sort", "std"}, "pairs: --sort takes one value"},
+            {{"scene", "still", "--n", "5", "--n", "6"}, "scene: --n takes one value"},
             {{"collide", "icosphere"}, "collide: expected B, the other mesh, or --self"},
             {{"scene", "brownian"}, "scene: expected --out, --motion or --picture"},
             {{"list", "--jsn"}, "did you mean '--json'?"},

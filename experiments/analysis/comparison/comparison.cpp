@@ -126,10 +126,13 @@ cells log_times(const played_scenes& run, const shared_scene& in, const contende
     return all;
 }
 
-/// The first of whom both runs have times.
+/// The first of whom both runs have times, an engine only where there is no other.
 std::optional<contender_name> base_of(const shared_scene& in, const played_scenes& a, const played_scenes& b) {
-    for (const contender_name& name : in.names)
-        if (!log_times(a, in, name, nullptr).empty() && !log_times(b, in, name, nullptr).empty()) return name;
+    for (const bool engine : {false, true})
+        for (const contender_name& name : in.names)
+            if (name.engine.empty() != engine && !log_times(a, in, name, nullptr).empty() &&
+                !log_times(b, in, name, nullptr).empty())
+                return name;
     return std::nullopt;
 }
 
