@@ -106,7 +106,7 @@ void print_omissions(std::span<const other_way> all) {
 
 /// The same with counters in its stages.
 contender with_counters(contender who) {
-    const auto counting = [](auto make) {
+    const auto counting = [](const auto& make) {
         return [make](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
     };
     who.make_global = counting(who.make_global);

@@ -157,7 +157,7 @@ TEST_CASE("Who was disturbed once is not dropped") {
         std::ofstream(played) << "once";
         return slow.who.make_global(counted);
     };
-    CHECK(holds(race_of(scene, std::move(all), 5).finalists, "disturbed"));
+    CHECK(holds(race_of(scene, all, 5).finalists, "disturbed"));
 }
 
 TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
@@ -201,7 +201,7 @@ TEST_CASE("Each repeat of a race begins with another racer") {
         racer& r = all.emplace_back(delayed(name, sleeping(5ms)));
         r.who = noted(r.who, name, file);
     }
-    REQUIRE(race_of(scene, std::move(all), 20).finalists.size() == 2);
+    REQUIRE(race_of(scene, all, 20).finalists.size() == 2);
     const std::string order = bytes_of_file(file);
     // A round, then at least five repeats.
     REQUIRE(order.size() >= 2 + 2 * 5);
