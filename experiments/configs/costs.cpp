@@ -56,7 +56,7 @@ aabb::cost_model costs_in(const document& doc) {
 
 /// A folder that the environment names; empty where it does not, or not from the root on.
 std::filesystem::path folder_in(const char* variable) {
-    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): nobody changes the environment
+    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): the environment is never changed
     const std::filesystem::path folder = value ? value : "";
     return folder.is_absolute() ? folder : std::filesystem::path();
 }

@@ -24,7 +24,7 @@ struct explain_request {
 // What the parts of the module share.
 namespace aabblab {
 
-/// What a contender does without, by its stages and by its strategies.
+/// What a configuration leaves out, in its stages and its strategies.
 /// @param by_stages what its stages say of themselves
 [[nodiscard]] std::vector<aabb::omission> omissions_of(const contender_name& who,
                                                        std::vector<aabb::omission> by_stages);

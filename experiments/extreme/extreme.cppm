@@ -17,7 +17,7 @@ struct extreme_row {
     std::string about;
     std::string kind{};  ///< of a case
     std::string contender;
-    std::string precision{};  ///< that a triangle test played a case in
+    std::string precision{};  ///< of the coordinates in which a triangle test decides a case
     contender_role role = contender_role::composition;
     bool must_be_exact = true;
     bool as_expected = true;       ///< otherwise the suite fails

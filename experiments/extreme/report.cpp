@@ -81,7 +81,7 @@ std::string cell(const row_list& rows) {
     return refused ? "refused" : wrong ? "wrong" : "exact";
 }
 
-/// A row for each text: first columns, of all its rows, then one for each of these contenders.
+/// A row for each text: the first columns summarise its rows, then each name has a column.
 template <class First>
 table contender_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
                       const std::vector<std::string>& names, First first) {

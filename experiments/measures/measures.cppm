@@ -49,7 +49,7 @@ struct scene_measures {
 /// The same of a scene that is made already, from its first frame on.
 [[nodiscard]] scene_measures measure_scene(scene_play& scene);
 
-/// As it is told: "displacement", "0.031 of a mean extent a frame".
+/// As it is printed: "displacement", "0.031 of a mean extent a frame".
 [[nodiscard]] table told(const scene_measures& m);
 
 /// "brownian (objects=1000, …)"

@@ -63,11 +63,11 @@ void rank(std::vector<racer>& finalists);
 
 struct recommend_request {
     std::vector<std::string> what;      ///< names a scene
-    std::optional<std::string> report;  ///< a page to be written of all that is printed, and more
+    std::optional<std::string> report;  ///< the HTML page to write
     double seconds = 60;
 };
 
-/// Runs a race and prints who is how fast, and what to use.
+/// Runs a race, prints the ranking and recommends a configuration.
 /// @returns the exit status: 1 where somebody does not find what others find
 [[nodiscard]] int recommend(const recommend_request& request);
 
