@@ -236,7 +236,7 @@ paper() {
 
 # prepare ARGUMENT…: answers what needs no build, and ends there; else sets up what is missing and builds.
 prepare() {
-    [[ $preset =~ ^(debug|release|bench)$ ]] || fail "AABBLAB_PRESET is '$preset'; it must be debug, release or bench."
+    [[ $preset =~ ^(debug|release|bench|lint)$ ]] || fail "AABBLAB_PRESET is '$preset'; it must be debug, release, bench or lint."
     [[ $AABBLAB_INSTALL =~ ^(yes|no|all)$ ]] || fail "AABBLAB_INSTALL is '$AABBLAB_INSTALL'; it must be yes, no or all."
     if [[ $1 =~ ^(test|data|benchmark|paper)$ && ${2-} =~ ^(-h|--help)$ ]]; then
         help_on "$1"

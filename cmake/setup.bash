@@ -31,9 +31,8 @@ mapfile -t optional_needs < <(needs_in validation/engines)
 optional_needs+=('valgrind valgrind valgrind')
 # An integrator's library brings more than all the others, MPI and a Fortran compiler among it, and serves one study.
 [[ ! $studies ]] || mapfile -t -O "${#optional_needs[@]}" optional_needs < <(needs_in experiments/stepping)
-[[ ${AABBLAB_LINT:-0} == 0 ]] || needs+=(
+[[ $preset != lint ]] || needs+=(
     'clang-format-19   -  clang-format-19'
-    'clang-tidy-19     -  clang-tidy-19'
     'llvm-19-dev       -  llvm-config-19'
     'libclang-19-dev   -  </usr/lib/llvm-19/include/clang/Basic/Version.inc>'
 )

@@ -2,7 +2,7 @@
 # few tools of this system, and those that a test writes to bin/.
 # shellcheck shell=bash disable=SC2154
 
-unset AABBLAB_PRESET AABBLAB_INSTALL AABBLAB_LINT AABBLAB_DATA
+unset AABBLAB_PRESET AABBLAB_INSTALL AABBLAB_DATA
 mkdir checkout bin sources
 cp -r "$root"/{aabblab,CMakeLists.txt,CMakePresets.json,cmake} checkout/
 for folder in modules strategies validation/engines paper experiments/stepping tests; do
