@@ -65,8 +65,14 @@ inline std::vector<aabb::composition> all_global_compositions() {
     });
     return all;
 }
+/// Every tree with the exact triangle test, and the others with each tree as it is by default: a test knows nothing of
+/// the tree that hands it triangles.
 inline std::vector<aabb::composition> all_local_compositions() {
-    return all_compositions(aabb::stage::local_detection);
+    std::vector<aabb::composition> all = all_compositions(aabb::stage::local_detection);
+    std::erase_if(all, [](const aabb::composition& c) {
+        return c[aabb::strategy_kind::triangle].name != "exact" && !c[aabb::strategy_kind::tree].settings.empty();
+    });
+    return all;
 }
 inline bool is_exact_locally(const aabb::composition& c) {
     return is_exact(c, aabb::stage::local_detection);
