@@ -57,17 +57,35 @@ inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     std::erase_if(all, [&](const aabb::composition& c) { return !refusal_of(c, stage).empty(); });
     return all;
 }
-/// The exact ones that play scenes of boxes.
-inline std::vector<aabb::composition> all_global_compositions() {
-    std::vector<aabb::composition> all = all_compositions(aabb::stage::global_search);
-    std::erase_if(all, [](const aabb::composition& c) {
-        return !is_exact(c, aabb::stage::global_search) || !needs_meshes(c).empty();
-    });
-    return all;
+/// Exact ones that play scenes of boxes, so many that any strategies of three kinds that go together stand in one:
+/// hardly a fault needs four (Kuhn, Wallace, Gallo 2004). `validate` and `validate extreme` play all.
+inline std::vector<aabb::composition> global_compositions() {
+    using three = std::pair<aabb::strategy_kind, std::string>;
+    constexpr aabb::stage stage = aabb::stage::global_search;
+    std::vector<std::pair<aabb::composition, std::vector<three>>> all;
+    for (const aabb::composition& c : all_compositions(stage)) {
+        if (!is_exact(c, stage) || !needs_meshes(c).empty()) continue;
+        std::vector<three>& threes = all.emplace_back(c, std::vector<three>()).second;
+        for (const aabb::strategy_kind left_out : kinds_of(stage)) {
+            aabb::composition others = c;
+            others[left_out] = {};
+            threes.emplace_back(left_out, to_text(others, stage));
+        }
+    }
+    std::vector<aabb::composition> taken;
+    std::set<three> seen;
+    // First those of which most is new.
+    for (std::ptrdiff_t least_new = 4; least_new > 0; --least_new)
+        for (const auto& [composition, threes] : all) {
+            if (std::ranges::count_if(threes, [&](const three& t) { return !seen.contains(t); }) < least_new) continue;
+            seen.insert(threes.begin(), threes.end());
+            taken.push_back(composition);
+        }
+    return taken;
 }
 /// Every tree with the exact triangle test, and the others with each tree as it is by default: a test knows nothing of
 /// the tree that hands it triangles.
-inline std::vector<aabb::composition> all_local_compositions() {
+inline std::vector<aabb::composition> local_compositions() {
     std::vector<aabb::composition> all = all_compositions(aabb::stage::local_detection);
     std::erase_if(all, [](const aabb::composition& c) {
         return c[aabb::strategy_kind::triangle].name != "exact" && !c[aabb::strategy_kind::tree].settings.empty();
@@ -78,7 +96,7 @@ inline bool is_exact_locally(const aabb::composition& c) {
     return is_exact(c, aabb::stage::local_detection);
 }
 inline std::vector<aabb::composition> exact_local_compositions() {
-    std::vector<aabb::composition> all = all_local_compositions();
+    std::vector<aabb::composition> all = local_compositions();
     std::erase_if(all, [](const aabb::composition& c) { return !is_exact_locally(c); });
     return all;
 }

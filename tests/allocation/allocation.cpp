@@ -26,7 +26,7 @@ std::vector<box> orbiting(int frame) {
 TEST_CASE("global search allocates nothing in steady state") {
     std::vector<std::vector<box>> frames;
     for (int frame = 0; frame < 9; ++frame) frames.push_back(orbiting(frame));
-    for (const aabb::composition& composition : all_global_compositions()) {
+    for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
         const auto stage = global_of(composition, instrumentation::none);
         for (std::uint32_t id = 0; id < frames[0].size(); ++id) stage->insert(id);
@@ -56,7 +56,7 @@ TEST_CASE("global search allocates nothing in steady state") {
 }
 
 TEST_CASE("local detection allocates nothing in steady state") {
-    for (const aabb::composition& composition : all_local_compositions()) {
+    for (const aabb::composition& composition : local_compositions()) {
         INFO(text_of_local(composition));
         // Fronts are kept of so many leaves only.
         mesh m = ripples(keeps_front(composition) ? 12 : 6);

@@ -260,7 +260,7 @@ void require_of_detection(Make make, bool frees_all, std::uint32_t squares = few
 }  // namespace
 
 TEST_CASE("a composed global search that runs out of memory is exact afterwards, or refuses", "[long]") {
-    for (const aabb::composition& composition : all_global_compositions()) {
+    for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
         require_of_search([&] { return global_of(composition, instrumentation::counters); }, true);
     }
@@ -275,7 +275,7 @@ TEST_CASE("an engine for boxes that runs out of memory is exact afterwards, or r
 }
 
 TEST_CASE("a composed local detection that runs out of memory is exact afterwards, or refuses", "[long]") {
-    for (const aabb::composition& composition : all_local_compositions()) {
+    for (const aabb::composition& composition : local_compositions()) {
         INFO(text_of_local(composition));
         // A triangle test takes no memory, so one is tried with every allocation.
         require_of_detection([&] { return local_of(composition, instrumentation::none); }, true,
@@ -304,7 +304,7 @@ TEST_CASE("a model is not asked before it fits its mesh again") {
         stage.refit(0);
         CHECK(ask(stage).any);
     };
-    for (const aabb::composition& composition : all_local_compositions())
+    for (const aabb::composition& composition : local_compositions())
         refuses(*local_of(composition, instrumentation::none));
     for (const engine_info& engine : engines())
         if (engine.collides_meshes) refuses(*make_mesh_engine(engine.name));

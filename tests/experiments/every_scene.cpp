@@ -7,7 +7,7 @@ import aabblab.scenes;
 
 TEST_CASE("every composition is exact on every scene of boxes") {
     std::vector<aabblab::contender> contenders;
-    for (const aabb::composition& c : all_global_compositions()) contenders.push_back(aabblab::contender_of(c, false));
+    for (const aabb::composition& c : global_compositions()) contenders.push_back(aabblab::contender_of(c, false));
     for (const aabb::engine_info& engine : aabb::engines())
         if (const auto contender = aabblab::contender_of(engine, false)) contenders.push_back(*contender);
     REQUIRE(contenders.size() > 500);
@@ -33,7 +33,7 @@ TEST_CASE("every composition is exact on every scene of boxes") {
 
 TEST_CASE("every exact local composition is exact on every scene of meshes, and others on none worse than they say") {
     std::vector<aabblab::contender> contenders;
-    for (const aabb::composition& c : all_local_compositions()) contenders.push_back(aabblab::contender_of(c, true));
+    for (const aabb::composition& c : local_compositions()) contenders.push_back(aabblab::contender_of(c, true));
     for (const aabb::engine_info& engine : aabb::engines())
         if (const auto contender = aabblab::contender_of(engine, true)) contenders.push_back(*contender);
     // Global search decides nothing here, but what is done before it may: parts of meshes are models of their own.

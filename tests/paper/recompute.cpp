@@ -6,7 +6,7 @@ import aabblab.claims;
 import aabblab.conditions;
 import aabblab.reproduction;
 
-TEST_CASE("A program of another language finds the same ratios, intervals and verdicts in the rows") {
+TEST_CASE("A program of another language finds the same ratios, intervals and verdicts in the rows", "[long]") {
     const temporary_folder folder;
     worlds::write_world(folder.path(), 0.9, 0.15);
     const aabblab::measurements results(folder.path());

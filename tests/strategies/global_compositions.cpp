@@ -92,7 +92,7 @@ TEST_CASE("a composition refuses what makes no sense, searches no frame that it 
     const std::vector<box> boxes(3, cube(0, 1));
     std::vector<box> inverted = boxes;
     inverted[2].max[0] = -1;
-    for (const aabb::composition& composition : all_global_compositions()) {
+    for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
         const auto stage = global_of(composition);
         std::vector<index_pair> pairs;
@@ -129,7 +129,7 @@ TEST_CASE("every composition finds the pairs where all boxes moved, counted or n
         frames[1].push_back(moved(frames[0].back(), {way, way, way}));
     }
     const std::array expected{overlapping(frames[0]), overlapping(frames[1])};
-    for (const aabb::composition& composition : all_global_compositions()) {
+    for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
         const auto plain = global_of(composition);
         const auto counted = search_of(composition, n);
@@ -150,7 +150,7 @@ TEST_CASE("without a partition there are no cells and no copies") {
         const vec3f at{static_cast<float>(i), static_cast<float>(i * 7 % 80), static_cast<float>(i * 11 % 80)};
         boxes.push_back({at, at + vec3f{1, 1, 1}});
     }
-    for (const aabb::composition& composition : all_global_compositions()) {
+    for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
         if (tests_all(composition)) continue;
         const auto stage = search_of(composition, boxes.size());

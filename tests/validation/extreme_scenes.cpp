@@ -22,7 +22,7 @@ void require_expected(const extreme_scene& scene, const judgement& made, bool mu
 }  // namespace
 
 TEST_CASE("every global search is exact on every extreme scene, or refuses what must be refused") {
-    std::vector<aabb::composition> compositions = all_global_compositions();
+    std::vector<aabb::composition> compositions = global_compositions();
     // Cells of 3 in worlds of any size no machine can hold.
     std::erase_if(compositions, [](const aabb::composition& c) {
         return c[strategy_kind::partition] == strategy_choice{"uniform_grid", {{"cell_size", "3"}}};

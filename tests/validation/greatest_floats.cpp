@@ -56,7 +56,7 @@ TEST_CASE("engines find every pair of boxes that reach to the greatest floats") 
 TEST_CASE("compositions find every pair of boxes that reach to the greatest floats") {
     // Most of them overlap, so that each further object is many pairs.
     const std::vector<frame> frames = frames_of(120, 1);
-    for (aabb::composition composition : all_global_compositions()) {
+    for (aabb::composition composition : global_compositions()) {
         // Cells of 3 in this world no machine can hold.
         if (strategy_choice& partition = composition[strategy_kind::partition];
             partition == strategy_choice{"uniform_grid", {{"cell_size", "3"}}})
