@@ -38,7 +38,8 @@ TEST_CASE("What is unpacked of an archive ends with the program, however that en
     CHECK(comes_true([&] { return std::filesystem::is_empty(unpacked); }));
 }
 
-TEST_CASE("The archived run is whole, README says what is found in it, and so does a program of another language", "[long]") {
+TEST_CASE("The archived run is whole, README says what is found in it, and so does a program of another language",
+          "[long]") {
     const temporary_folder folder;
     judge_published(full_run, folder);
     const std::string report = bytes_of_file(folder / "report.md");
