@@ -139,7 +139,7 @@ std::size_t next_to_fail(std::size_t k, bool each = true) {
 #if __has_feature(address_sanitizer)
     each = false;
 #endif
-    return each ? k + 1 : k + 1 + k / 8;
+    return each ? k + 1 : k + 1 + k / 4;
 }
 
 /// Lets each allocation of a stage's life fail in turn.
