@@ -9,36 +9,36 @@ namespace aabblab {
 
 namespace {
 
-/// By its experiment.
-using played_scene = std::pair<std::string, scene_choice>;
+/// A scene of an experiment.
+using scene_key = std::pair<std::string, scene_choice>;
 
-/// The rows of a run, by scene and by what played it.
-class played_scenes {
+/// The rows of a run by scene, then by composition or engine.
+class rows_by_scene {
 public:
-    explicit played_scenes(std::span<const row> rows) {
+    explicit rows_by_scene(std::span<const row> rows) {
         for (const row& r : rows) scenes_[{r.experiment, r.scene}][r.name].push_back(&r);
     }
 
     using repeats = std::vector<const row*>;
-    using players = std::map<contender_name, repeats>;
-    [[nodiscard]] const std::map<played_scene, players>& scenes() const { return scenes_; }
-    /// No rows where there are none.
-    [[nodiscard]] const repeats& of(const played_scene& scene, const contender_name& name) const {
+    using repeats_by_name = std::map<contender_name, repeats>;
+    [[nodiscard]] const std::map<scene_key, repeats_by_name>& scenes() const { return scenes_; }
+    /// Empty if the run lacks the scene or the name.
+    [[nodiscard]] const repeats& of(const scene_key& scene, const contender_name& name) const {
         static const repeats none;
-        const auto players = scenes_.find(scene);
-        if (players == scenes_.end()) return none;
-        const auto found = players->second.find(name);
-        return found != players->second.end() ? found->second : none;
+        const auto by_name = scenes_.find(scene);
+        if (by_name == scenes_.end()) return none;
+        const auto entry = by_name->second.find(name);
+        return entry != by_name->second.end() ? entry->second : none;
     }
 
 private:
-    std::map<played_scene, players> scenes_;
+    std::map<scene_key, repeats_by_name> scenes_;
 };
 
-/// A scene with the seeds and the players that both runs have, not every one of them with every other.
+/// A scene with the seeds and the names that occur in both runs, though not every seed has rows of every name.
 struct shared_scene {
-    const row* any;                     ///< of A
-    std::vector<played_scene> seeds;    ///< which differ in their seed only
+    const row* any;                     ///< a row of A
+    std::vector<scene_key> seeds;       ///< differ in their seed only
     std::vector<contender_name> names;  ///< in the order of A
 };
 
@@ -47,13 +47,13 @@ void add_once(std::vector<T>& to, const T& value) {
     if (std::ranges::find(to, value) == to.end()) to.push_back(value);
 }
 
-std::vector<shared_scene> scenes_shared(std::span<const row> a, const played_scenes& b) {
+std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_scene& b) {
     std::vector<shared_scene> scenes;
-    std::map<played_scene, std::size_t> places;  // whatever the seed
+    std::map<scene_key, std::size_t> places;  // keyed without the seed
     for (const row& r : a) {
-        const played_scene seed{r.experiment, r.scene};
+        const scene_key seed{r.experiment, r.scene};
         if (b.of(seed, r.name).empty()) continue;
-        const auto [place, is_new] = places.emplace(played_scene{r.experiment, whatever_seed(r.scene)}, scenes.size());
+        const auto [place, is_new] = places.emplace(scene_key{r.experiment, whatever_seed(r.scene)}, scenes.size());
         if (is_new) scenes.push_back({&r, {}, {}});
         add_once(scenes[place->second].seeds, seed);
         add_once(scenes[place->second].names, r.name);
@@ -61,7 +61,7 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const played_sce
     return scenes;
 }
 
-/// As tables of these compositions name them.
+/// The labels that a table of these compositions would use.
 std::vector<std::string> labels_of(std::span<const contender_name> names) {
     std::vector<row> rows;
     for (const contender_name& name : names) {
@@ -83,51 +83,51 @@ std::optional<double> log_ms(const row& r) {
     return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
 }
 
-std::optional<double> log_ms_in(const played_scenes::repeats& all, const row& same_repeat) {
-    for (const row* r : all)
+std::optional<double> log_ms_in(const rows_by_scene::repeats& rows, const row& same_repeat) {
+    for (const row* r : rows)
         if (r->repeat == same_repeat.repeat)
             if (const std::optional<double> ms = log_ms(*r)) return ms;
     return std::nullopt;
 }
 
-std::size_t size_of(const cells& all) {
+std::size_t size_of(const cells& logs) {
     std::size_t count = 0;
-    for (std::size_t process = 0; process < all.processes(); ++process)
-        for (std::size_t seed = 0; seed < all.seeds(); ++seed) count += all.at(process, seed).size();
+    for (std::size_t process = 0; process < logs.processes(); ++process)
+        for (std::size_t seed = 0; seed < logs.seeds(); ++seed) count += logs.at(process, seed).size();
     return count;
 }
 
-/// The chance that n values all lie above m others of the same distribution: no test may be surer than that. The
-/// bootstrap of a few values would be, as it knows no others; of a single one it knows no noise at all.
+/// The probability that n values all exceed m others of the same distribution, a lower bound for any p-value. The
+/// bootstrap of a few values falls below it because it underestimates their variance; of one value it sees none.
 double least_chance(std::size_t n, std::size_t m) {
     double chance = 1;
     for (std::size_t i = 1; i <= n; ++i) chance *= static_cast<double>(i) / static_cast<double>(m + i);
     return chance;
 }
 
-/// Logarithms of one player's milliseconds a frame, or of their ratios to another's in the same repeat.
-cells log_times(const played_scenes& run, const shared_scene& in, const contender_name& who,
+/// Logarithms of the milliseconds per frame, or of their ratios to the baseline's in the same repeat.
+cells log_times(const rows_by_scene& run, const shared_scene& in, const contender_name& name,
                 const contender_name* base) {
     std::vector<std::uint64_t> processes;
-    for (const played_scene& seed : in.seeds)
-        for (const row* r : run.of(seed, who)) processes.push_back(r->process);
+    for (const scene_key& seed : in.seeds)
+        for (const row* r : run.of(seed, name)) processes.push_back(r->process);
     std::ranges::sort(processes);
-    const auto twice = std::ranges::unique(processes);
-    processes.erase(twice.begin(), twice.end());
-    cells all(processes.size(), in.seeds.size());
+    const auto duplicates = std::ranges::unique(processes);
+    processes.erase(duplicates.begin(), duplicates.end());
+    cells logs(processes.size(), in.seeds.size());
     for (std::size_t seed = 0; seed < in.seeds.size(); ++seed)
-        for (const row* r : run.of(in.seeds[seed], who)) {
+        for (const row* r : run.of(in.seeds[seed], name)) {
             const std::optional<double> own = log_ms(*r);
             const std::optional<double> other = base ? log_ms_in(run.of(in.seeds[seed], *base), *r) : 0;
             if (!own || !other) continue;
             const auto process = std::ranges::lower_bound(processes, r->process) - processes.begin();
-            all.add(static_cast<std::size_t>(process), seed, *own - *other);
+            logs.add(static_cast<std::size_t>(process), seed, *own - *other);
         }
-    return all;
+    return logs;
 }
 
-/// The first of whom both runs have times, an engine only where there is no other.
-std::optional<contender_name> base_of(const shared_scene& in, const played_scenes& a, const played_scenes& b) {
+/// The first name that is timed in both runs; an engine is the baseline only if there is no composition.
+std::optional<contender_name> base_of(const shared_scene& in, const rows_by_scene& a, const rows_by_scene& b) {
     for (const bool engine : {false, true})
         for (const contender_name& name : in.names)
             if (name.engine.empty() != engine && !log_times(a, in, name, nullptr).empty() &&
@@ -136,7 +136,7 @@ std::optional<contender_name> base_of(const shared_scene& in, const played_scene
     return std::nullopt;
 }
 
-/// Of one player in a scene, in A and in B.
+/// The logarithms of one composition or engine in a scene, in A and in B.
 struct line {
     std::size_t scene;
     std::string label;
@@ -144,87 +144,87 @@ struct line {
     cells b;
 };
 
-/// Adds all to their scenes, judged together as one family of tests.
-void add_judged(std::span<const line> all, std::vector<compared_time> compared_scene::* to,
+/// Decides all lines as one family of tests, and adds each to its scene.
+void add_judged(std::span<const line> lines, std::vector<compared_time> compared_scene::* to,
                 std::vector<compared_scene>& scenes) {
     std::vector<compared_time> times;
     std::vector<evidence> evidences;
-    for (const line& one : all) {
-        const estimate a = bootstrap(one.a);
-        const estimate b = bootstrap(one.b);
+    for (const line& entry : lines) {
+        const estimate a = bootstrap(entry.a);
+        const estimate b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
         const interval around = change.range();
-        const double least = least_chance(size_of(one.a), size_of(one.b));
+        const double least = least_chance(size_of(entry.a), size_of(entry.b));
         evidence& shown = evidences.emplace_back(evidence_of(change));
         shown.p = std::max(shown.p, least);
         compared_time& time = times.emplace_back();
-        time.label = one.label;
+        time.label = entry.label;
         time.in_a = std::exp(a.value);
         time.in_b = std::exp(b.value);
         time.change = std::exp(change.value);
         time.around = {std::exp(around.low), std::exp(around.high)};
-        time.too_few = decide({outcome::more, least * static_cast<double>(all.size())}) == outcome::undecided;
+        time.too_few = decide({outcome::more, least * static_cast<double>(lines.size())}) == outcome::undecided;
     }
     const std::vector<outcome> outcomes = decide_together(evidences);
     for (std::size_t i = 0; i < times.size(); ++i) {
-        // Only a change needs the correction: hundreds of lines without one would else all be undecided.
+        // Only changes are corrected; otherwise hundreds of unchanged lines would all end up undecided.
         times[i].found =
             outcomes[i] == outcome::undecided && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
-        (scenes[all[i].scene].*to).push_back(std::move(times[i]));
+        (scenes[lines[i].scene].*to).push_back(std::move(times[i]));
     }
 }
 
 using number = std::pair<std::string, std::optional<std::uint64_t>>;
 
-/// All that does not vary between repeats, by column.
+/// The values that do not vary between repeats, by column.
 std::vector<number> numbers_of(const row& r) {
-    std::vector<number> all = {{"candidates", r.candidates}, {"contacts", r.contacts}};
-    for (std::size_t i = 0; i < r.counts.size(); ++i) all.emplace_back(aabb::work_names[i], r.counts[i]);
+    std::vector<number> numbers = {{"candidates", r.candidates}, {"contacts", r.contacts}};
+    for (std::size_t i = 0; i < r.counts.size(); ++i) numbers.emplace_back(aabb::work_names[i], r.counts[i]);
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
-        all.emplace_back("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
-    all.emplace_back("missing", r.missing);
-    all.emplace_back("invented", r.invented);
-    return all;
+        numbers.emplace_back("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
+    numbers.emplace_back("missing", r.missing);
+    numbers.emplace_back("invented", r.invented);
+    return numbers;
 }
 
-std::set<std::string> exact_digests(const played_scenes::players& players) {
+std::set<std::string> exact_digests(const rows_by_scene::repeats_by_name& of_scene) {
     std::set<std::string> digests;
-    for (const auto& [name, repeats] : players)
+    for (const auto& [name, repeats] : of_scene)
         for (const row* r : repeats)
             if (r->status == "exact") digests.insert(r->digest);
     return digests;
 }
 
 std::string joined(const std::set<std::string>& texts) {
-    std::string all;
-    for (const std::string& text : texts) all += (all.empty() ? "" : " ") + text;
-    return all.empty() ? "-" : all;
+    std::string list;
+    for (const std::string& text : texts) list += (list.empty() ? "" : " ") + text;
+    return list.empty() ? "-" : list;
 }
 
-void compare_answers(const played_scenes& a, const played_scenes& b, comparison& found) {
+void compare_answers(const rows_by_scene& a, const rows_by_scene& b, comparison& report) {
     for (const auto& [scene, in_a] : a.scenes()) {
         const auto in_b = b.scenes().find(scene);
         if (in_b == b.scenes().end()) continue;
-        ++found.answers_compared;
+        ++report.answers_compared;
         const std::set<std::string> of_a = exact_digests(in_a);
         const std::set<std::string> of_b = exact_digests(in_b->second);
         std::set<std::string> both = of_a;
         both.insert(of_b.begin(), of_b.end());
         if (both.size() < 2) continue;
         const row& any = *in_a.begin()->second.front();
-        found.answers.push_back({any.experiment, any.scene, joined(of_a), joined(of_b)});
+        report.answers.push_back({any.experiment, any.scene, joined(of_a), joined(of_b)});
     }
 }
 
-/// @returns how many were compared
-std::size_t compare_numbers(const shared_scene& in, const played_scenes& a, const played_scenes& b,
+/// @returns the number of values compared
+std::size_t compare_numbers(const shared_scene& in, const rows_by_scene& a, const rows_by_scene& b,
                             std::span<const std::string> labels, std::vector<changed_number>& changed) {
     std::size_t compared = 0;
     for (std::size_t i = 0; i < in.names.size(); ++i) {
         std::vector<std::pair<std::vector<number>, std::vector<number>>> by_seed;  // of A and B
-        for (const played_scene& seed : in.seeds) {
-            const played_scenes::repeats& of_a = a.of(seed, in.names[i]);
-            const played_scenes::repeats& of_b = b.of(seed, in.names[i]);
+        for (const scene_key& seed : in.seeds) {
+            const rows_by_scene::repeats& of_a = a.of(seed, in.names[i]);
+            const rows_by_scene::repeats& of_b = b.of(seed, in.names[i]);
             if (!of_a.empty() && !of_b.empty())
                 by_seed.emplace_back(numbers_of(*of_a.front()), numbers_of(*of_b.front()));
         }
@@ -248,52 +248,52 @@ std::size_t compare_numbers(const shared_scene& in, const played_scenes& a, cons
     return compared;
 }
 
-std::size_t count_missing(const played_scenes& from, const played_scenes& in) {
+std::size_t count_missing(const rows_by_scene& from, const rows_by_scene& in) {
     std::size_t count = 0;
-    for (const auto& [scene, players] : from.scenes())
-        for (const auto& [name, repeats] : players) count += in.of(scene, name).empty();
+    for (const auto& [scene, by_name] : from.scenes())
+        for (const auto& [name, repeats] : by_name) count += in.of(scene, name).empty();
     return count;
 }
 
 }  // namespace
 
 comparison compare(const run_results& a, const run_results& b, compared what) {
-    const played_scenes of_a(a.rows);
-    const played_scenes of_b(b.rows);
-    comparison found;
-    compare_answers(of_a, of_b, found);
-    if (found.answers_compared == 0)
+    const rows_by_scene of_a(a.rows);
+    const rows_by_scene of_b(b.rows);
+    comparison report;
+    compare_answers(of_a, of_b, report);
+    if (report.answers_compared == 0)
         throw aabb::input_error(a.folder.string() + " and " + b.folder.string() +
                                 " have no scene in common: none of the same experiment, kind, parameters and seed");
-    found.only_in_a = count_missing(of_a, of_b);
-    found.only_in_b = count_missing(of_b, of_a);
+    report.only_in_a = count_missing(of_a, of_b);
+    report.only_in_b = count_missing(of_b, of_a);
     std::vector<line> ratios;
     std::vector<line> times;
     for (const shared_scene& shared : scenes_shared(a.rows, of_b)) {
-        const std::size_t place = found.scenes.size();
+        const std::size_t place = report.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
-        compared_scene& scene = found.scenes.emplace_back();
+        compared_scene& scene = report.scenes.emplace_back();
         scene.experiment = shared.any->experiment;
         scene.scene = whatever_seed(shared.any->scene);
-        found.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
+        report.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
         const std::optional<contender_name> base = base_of(shared, of_a, of_b);
         if (!base) continue;
         for (std::size_t i = 0; i < labels.size(); ++i) {
-            const contender_name& who = shared.names[i];
+            const contender_name& name = shared.names[i];
             const auto add = [&](std::vector<line>& to, const contender_name* over) {
-                line one{place, labels[i], log_times(of_a, shared, who, over), log_times(of_b, shared, who, over)};
-                if (!one.a.empty() && !one.b.empty()) to.push_back(std::move(one));
+                line entry{place, labels[i], log_times(of_a, shared, name, over), log_times(of_b, shared, name, over)};
+                if (!entry.a.empty() && !entry.b.empty()) to.push_back(std::move(entry));
             };
             if (what == compared::ratios_and_times) add(times, nullptr);
-            if (who == *base)
+            if (name == *base)
                 scene.base = labels[i];
             else
                 add(ratios, &*base);
         }
     }
-    add_judged(ratios, &compared_scene::ratios, found.scenes);
-    add_judged(times, &compared_scene::times, found.scenes);
-    return found;
+    add_judged(ratios, &compared_scene::ratios, report.scenes);
+    add_judged(times, &compared_scene::times, report.scenes);
+    return report;
 }
 
 }  // namespace aabblab

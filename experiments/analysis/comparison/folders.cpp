@@ -12,17 +12,17 @@ bool has_results(const std::filesystem::path& folder) {
     return std::filesystem::is_regular_file(folder / "results.csv", ignored);
 }
 
-/// The folder, or those in it, that hold a results.csv.
+/// The folder itself if it holds a results.csv, otherwise its sub-folders that do.
 std::vector<std::filesystem::path> folders_in(const std::filesystem::path& folder) {
     if (has_results(folder)) return {folder};
     std::error_code error;
-    std::vector<std::filesystem::path> found;
+    std::vector<std::filesystem::path> paths;
     for (auto entry = std::filesystem::directory_iterator(folder, error);
          !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
-        if (has_results(entry->path())) found.push_back(entry->path());
+        if (has_results(entry->path())) paths.push_back(entry->path());
     if (error) throw aabb::input_error(folder.string() + " cannot be read: " + error.message());
-    std::ranges::sort(found);
-    return found;
+    std::ranges::sort(paths);
+    return paths;
 }
 
 std::string maker_of(const manifest_summary& m) {
@@ -38,15 +38,15 @@ run_results read_results(const std::filesystem::path& folder) {
                                 "; expected a folder of results");
     run_results run{folder, {}, {}};
     std::map<std::string, std::filesystem::path> folder_of;  // by experiment
-    for (const std::filesystem::path& one : folders_in(folder)) {
-        std::vector<row> rows = verified_rows(one);
+    for (const std::filesystem::path& subfolder : folders_in(folder)) {
+        std::vector<row> rows = verified_rows(subfolder);
         if (rows.empty()) continue;
         for (const row& r : rows)
-            if (const auto& before = folder_of.emplace(r.experiment, one).first->second; before != one)
+            if (const auto& before = folder_of.emplace(r.experiment, subfolder).first->second; before != subfolder)
                 throw aabb::input_error(
                     fmt::format("{} and {} both hold results of the experiment {}; compare one of them",
-                                before.string(), one.string(), r.experiment));
-        run.manifests.push_back(read_manifest(one));
+                                before.string(), subfolder.string(), r.experiment));
+        run.manifests.push_back(read_manifest(subfolder));
         run.rows.insert(run.rows.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
     }
     if (run.rows.empty())

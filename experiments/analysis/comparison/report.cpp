@@ -8,7 +8,7 @@ namespace aabblab {
 
 namespace {
 
-/// By the number of each `outcome`.
+/// Indexed by `outcome`.
 constexpr std::array<std::string_view, 4> outcome_names{"less", "same", "more", "undecided"};
 
 std::string heading_of(const compared_scene& s) {
@@ -19,19 +19,19 @@ void print_block(const std::string& heading, const table& t) {
     if (!t.rows.empty()) print("\n" + heading + "\n" + to_text(t, output_width()));
 }
 
-void print_answers(const comparison& found) {
+void print_answers(const comparison& report) {
     table t{{{"experiment", false}, {"scene", false}, {"parameters", false}, {"digest in A", false}, {"in B", false}},
             {}};
-    for (const different_answer& d : found.answers)
+    for (const different_answer& d : report.answers)
         t.rows.push_back({d.experiment, d.scene.kind, parameters_text(d.scene), d.in_a, d.in_b});
-    print_block(fmt::format("the answers differ in {} of {} scenes", t.rows.size(), found.answers_compared), t);
+    print_block(fmt::format("the answers differ in {} of {} scenes", t.rows.size(), report.answers_compared), t);
 }
 
-/// Those beyond noise, or all.
-table table_of(std::span<const compared_time> times, const std::string& unit, bool all) {
+/// Lists the times that changed beyond noise, or all of them.
+table table_of(std::span<const compared_time> times, const std::string& unit, bool list_all) {
     table t{{{"composition", false}, {unit + " in A"}, {"in B"}, {"B/A"}, {"95 %"}, {"B is", false}}, {}};
     for (const compared_time& time : times)
-        if (all || time.found == outcome::less || time.found == outcome::more)
+        if (list_all || time.found == outcome::less || time.found == outcome::more)
             t.rows.push_back({time.label, fmt::format("{:.3f}", time.in_a), fmt::format("{:.3f}", time.in_b),
                               fmt::format("{:.3f}", time.change),
                               time.too_few ? "-" : fmt::format("{:.3f}-{:.3f}", time.around.low, time.around.high),
@@ -39,13 +39,13 @@ table table_of(std::span<const compared_time> times, const std::string& unit, bo
     return t;
 }
 
-/// Prints those of each scene, and in a line how many there are: "24 ratios compared: 2 changed beyond noise, …".
-/// @param heading what is said of them behind the scene
-/// @param all are listed
-void print_compared(const comparison& found, std::vector<compared_time> compared_scene::* times, std::string_view what,
-                    const std::string& unit, auto heading, bool all) {
+/// Prints a table per scene, then a line of totals: "24 ratios compared: 2 changed beyond noise, …".
+/// @param heading returns the text that follows the scene's name
+/// @param list_all includes unchanged and undecided ones
+void print_compared(const comparison& report, std::vector<compared_time> compared_scene::* times, std::string_view what,
+                    const std::string& unit, auto heading, bool list_all) {
     std::size_t count = 0, changed = 0, same = 0, undecided = 0, too_few = 0;
-    for (const compared_scene& s : found.scenes) {
+    for (const compared_scene& s : report.scenes) {
         for (const compared_time& time : s.*times) {
             ++count;
             changed += time.found == outcome::less || time.found == outcome::more;
@@ -53,7 +53,7 @@ void print_compared(const comparison& found, std::vector<compared_time> compared
             undecided += time.found == outcome::undecided;
             too_few += time.found == outcome::undecided && time.too_few;
         }
-        print_block(heading_of(s) + heading(s), table_of(s.*times, unit, all));
+        print_block(heading_of(s) + heading(s), table_of(s.*times, unit, list_all));
     }
     print(fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided", count,
                       what, changed, same, 100 * equivalence_band, undecided));
@@ -63,7 +63,7 @@ void print_compared(const comparison& found, std::vector<compared_time> compared
         print(
             fmt::format("undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's "
                         "correction for all {}{}\n",
-                        100 * equivalence_band, what, all ? "" : "; --all lists them"));
+                        100 * equivalence_band, what, list_all ? "" : "; --all lists them"));
 }
 
 std::string percents(std::uint64_t before, std::uint64_t after) {
@@ -71,9 +71,9 @@ std::string percents(std::uint64_t before, std::uint64_t after) {
     return fmt::format("{:+.2f}", 100 * (static_cast<double>(after) / static_cast<double>(before) - 1));
 }
 
-void print_numbers(const comparison& found) {
+void print_numbers(const comparison& report) {
     std::size_t changed = 0;
-    for (const compared_scene& s : found.scenes) {
+    for (const compared_scene& s : report.scenes) {
         table t{{{"composition", false}, {"what", false}, {"in A"}, {"in B"}, {"%"}}, {}};
         for (const changed_number& n : s.changed)
             t.rows.push_back(
@@ -81,7 +81,7 @@ void print_numbers(const comparison& found) {
         changed += t.rows.size();
         print_block(heading_of(s) + "; sums over seeds", t);
     }
-    print(fmt::format("{}{} counts and sizes compared: {} changed\n", changed > 0 ? "\n" : "", found.numbers_compared,
+    print(fmt::format("{}{} counts and sizes compared: {} changed\n", changed > 0 ? "\n" : "", report.numbers_compared,
                       changed));
 }
 
@@ -94,21 +94,21 @@ int print_comparison(const compare_request& request) {
         require_one_machine(a, b);
         note("times of runs at different hours differ by more than the noise within each; ratios tell more");
     }
-    const comparison found = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
+    const comparison report = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
     print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
-    print_answers(found);
+    print_answers(report);
     print_compared(
-        found, &compared_scene::ratios, "ratios", "ratio",
+        report, &compared_scene::ratios, "ratios", "ratio",
         [](const compared_scene& s) { return "; time over that of '" + s.base + "'"; }, request.all);
     if (request.times)
         print_compared(
-            found, &compared_scene::times, "times", "ms",
+            report, &compared_scene::times, "times", "ms",
             [](const compared_scene&) { return "; milliseconds a frame"; }, request.all);
-    print_numbers(found);
-    if (found.only_in_a + found.only_in_b > 0)
+    print_numbers(report);
+    if (report.only_in_a + report.only_in_b > 0)
         print(fmt::format("left out is what only one of them has: {} compositions in a scene of A, {} of B\n",
-                          found.only_in_a, found.only_in_b));
-    return found.answers.empty() ? 0 : 1;
+                          report.only_in_a, report.only_in_b));
+    return report.answers.empty() ? 0 : 1;
 }
 
 }  // namespace aabblab

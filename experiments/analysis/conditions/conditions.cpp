@@ -6,26 +6,26 @@ namespace aabblab {
 
 namespace {
 
-/// Everything that tells a scene from others, but its seed, and its frames, which times do not depend on.
+/// The factors of a scene, except its seed and its number of frames, on which times per frame do not depend.
 factors factors_of(const scene_choice& scene) {
-    factors all{{"scene", scene.kind}};
+    factors of_scene{{"scene", scene.kind}};
     for (const aabb::setting& s : scene.settings)
-        if (s.name != "frames") all.emplace_back(s.name, s.value);
+        if (s.name != "frames") of_scene.emplace_back(s.name, s.value);
     std::string meshes;
     for (const std::string& mesh : scene.meshes) meshes += (meshes.empty() ? "" : "+") + mesh;
-    if (!meshes.empty()) all.emplace_back("meshes", meshes);
-    return all;
+    if (!meshes.empty()) of_scene.emplace_back("meshes", meshes);
+    return of_scene;
 }
 
 }  // namespace
 
-std::string value_of(const factors& all, std::string_view name) {
-    const auto found = std::ranges::find(all, name, &std::pair<std::string, std::string>::first);
-    return found != all.end() ? found->second : "";
+std::string value_of(const factors& of, std::string_view name) {
+    const auto factor = std::ranges::find(of, name, &std::pair<std::string, std::string>::first);
+    return factor != of.end() ? factor->second : "";
 }
 
-double number_of(const factors& all, std::string_view name) {
-    return number_or_nan(value_of(all, name));
+double number_of(const factors& of, std::string_view name) {
+    return number_or_nan(value_of(of, name));
 }
 
 selection selection::with(aabb::strategy_kind kind, std::string choice) const {
@@ -34,7 +34,7 @@ selection selection::with(aabb::strategy_kind kind, std::string choice) const {
     return changed;
 }
 
-// Results of before axial_cut chose the number of axes itself, as the archived run, name none where two were cut.
+// Older results, such as the archived run, omit `axes` where two were cut, which was the default at the time.
 static std::string as_named_now(const std::string& choice) {
     constexpr std::string_view cut = "axial_cut";
     if (!choice.starts_with(cut) || choice.find("axes=") != std::string::npos) return choice;
@@ -59,15 +59,14 @@ std::string text_of(const selection& s) {
 condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(of)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
-        // Whatever number stands there.
         if (std::ranges::find(processes_, r->process) == processes_.end()) processes_.push_back(r->process);
     }
     std::ranges::sort(seeds_);
     std::ranges::sort(processes_);
 }
 
-std::optional<double> condition::value(const selection& who, const row_value& of) const {
-    const std::vector<const row*> rows = rows_of(who);
+std::optional<double> condition::value(const selection& composition, const row_value& of) const {
+    const std::vector<const row*> rows = rows_of(composition);
     return rows.empty() ? std::nullopt : of(*rows.front());
 }
 
@@ -77,64 +76,64 @@ void condition::add(cells& to, const row& r, double value) const {
     to.add(static_cast<std::size_t>(process), static_cast<std::size_t>(seed), value);
 }
 
-std::vector<const row*> condition::rows_of(const selection& who) const {
-    std::vector<const row*> found;
+std::vector<const row*> condition::rows_of(const selection& composition) const {
+    std::vector<const row*> rows;
     for (const row* r : rows_)
-        if (who.matches(r->name) && r->status == "exact") found.push_back(r);
-    return found;
+        if (composition.matches(r->name) && r->status == "exact") rows.push_back(r);
+    return rows;
 }
 
 cells condition::log_ratios(const selection& arm, const selection& base, const row_value& of) const {
-    cells all(processes(), seeds());
-    const std::vector<const row*> against = rows_of(base);
+    cells ratios(processes(), seeds());
+    const std::vector<const row*> base_rows = rows_of(base);
     for (const row* r : rows_of(arm)) {
         const double value = of(*r).value_or(0);
         if (!(value > 0)) continue;
-        for (const row* b : against) {
+        for (const row* b : base_rows) {
             if (b->repeat != r->repeat || b->scene != r->scene) continue;
-            if (const double other = of(*b).value_or(0); other > 0) add(all, *r, std::log(value / other));
+            if (const double other = of(*b).value_or(0); other > 0) add(ratios, *r, std::log(value / other));
         }
     }
-    return all;
+    return ratios;
 }
 
-cells condition::logs(const selection& who, const row_value& of) const {
-    cells all(processes(), seeds());
-    for (const row* r : rows_of(who))
-        if (const double value = of(*r).value_or(0); value > 0) add(all, *r, std::log(value));
-    return all;
+cells condition::logs(const selection& composition, const row_value& of) const {
+    cells logarithms(processes(), seeds());
+    for (const row* r : rows_of(composition))
+        if (const double value = of(*r).value_or(0); value > 0) add(logarithms, *r, std::log(value));
+    return logarithms;
 }
 
 std::vector<double> condition::values(const row_value& of) const {
-    std::vector<double> all;
+    std::vector<double> numbers;
     for (const row* r : rows_)
-        if (const std::optional<double> value = of(*r)) all.push_back(*value);
-    return all;
+        if (const std::optional<double> value = of(*r)) numbers.push_back(*value);
+    return numbers;
 }
 
 std::vector<double> condition::differences(const row_value& of) const {
     std::map<std::pair<contender_name, std::optional<std::uint64_t>>, const row*> before;
-    std::vector<double> all;
+    std::vector<double> shares;
     for (const row* r : rows_) {
         const row*& last = before[{r->name, r->scene.seed}];
         if (last) {
             const double a = of(*last).value_or(0), b = of(*r).value_or(0);
-            if (a + b > 0) all.push_back(2 * std::abs(a - b) / (a + b));
+            if (a + b > 0) shares.push_back(2 * std::abs(a - b) / (a + b));
         }
         last = r;
     }
-    return all;
+    return shares;
 }
 
-std::optional<quartiles> condition::spread(const selection& who, const row_value& of) const {
+std::optional<quartiles> condition::spread(const selection& composition, const row_value& of) const {
     std::vector<double> values;
-    for (const row* r : rows_of(who))
+    for (const row* r : rows_of(composition))
         if (const std::optional<double> value = of(*r)) values.push_back(*value);
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values));
 }
 
-std::optional<figure_point> condition::point(double x, const selection& who, const row_value& of) const {
-    const std::optional<quartiles> q = spread(who, of);
+std::optional<figure_point> condition::point(double x, const selection& composition, const row_value& of) const {
+    const std::optional<quartiles> q = spread(composition, of);
     if (!q) return std::nullopt;
     return figure_point{x, q->median, q->low, q->high};
 }
@@ -157,11 +156,11 @@ const measurements::experiment_results& measurements::read(const std::string& ex
 }
 
 std::vector<std::string> measurements::experiments() const {
-    std::vector<std::string> all;
+    std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
-        if (std::filesystem::exists(entry.path() / "results.csv")) all.push_back(entry.path().filename().string());
-    std::ranges::sort(all);
-    return all;
+        if (std::filesystem::exists(entry.path() / "results.csv")) names.push_back(entry.path().filename().string());
+    std::ranges::sort(names);
+    return names;
 }
 
 extent_of_results measurements::extent(const std::string& experiment) const {

@@ -1,4 +1,4 @@
-/// What experiments measured, read from their results folders: condition by condition, whatever seeds and processes.
+/// Reads the results of experiments and groups them by condition, across seeds and processes.
 export module aabblab.conditions;
 
 import aabb.registry;
@@ -11,18 +11,18 @@ import aabblab.statistics;
 
 export namespace aabblab {
 
-/// Names and values that tell a condition from others: scene, objects, displacement, …
+/// The names and values that identify a condition: scene, objects, displacement, …
 using factors = std::vector<std::pair<std::string, std::string>>;
 
-/// The value of a factor; empty where there is none of that name.
-[[nodiscard]] std::string value_of(const factors& all, std::string_view name);
-/// The same as a number; NaN where it is none.
-[[nodiscard]] double number_of(const factors& all, std::string_view name);
+/// The value of a factor; empty if no factor has that name.
+[[nodiscard]] std::string value_of(const factors& of, std::string_view name);
+/// The value as a number; NaN if it is not a number.
+[[nodiscard]] double number_of(const factors& of, std::string_view name);
 
-/// As claims write it.
+/// A short alias for the tables of claims.
 using kind = aabb::strategy_kind;
 
-/// Strategies that name a composition among others, by kind; a kind that is not named may be anything.
+/// A filter of compositions: one strategy per kind; a kind without a strategy matches any.
 class selection {
 public:
     selection() = default;
@@ -31,7 +31,7 @@ public:
     }
 
     [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return wanted_[kind]; }
-    /// The same, but for this kind.
+    /// A copy with this kind replaced.
     [[nodiscard]] selection with(aabb::strategy_kind kind, std::string choice) const;
     [[nodiscard]] bool matches(const contender_name& name) const;
 
@@ -48,35 +48,35 @@ class condition {
 public:
     condition(factors of, std::vector<const row*> rows);
 
-    /// That it is of.
+    /// The experiment of the condition.
     [[nodiscard]] std::string experiment() const { return rows_.empty() ? "" : rows_.front()->experiment; }
-    /// Scene and parameters without the seed.
+    /// The scene and its parameters, without the seed.
     [[nodiscard]] const factors& of() const { return of_; }
     [[nodiscard]] std::size_t processes() const { return std::max<std::size_t>(1, processes_.size()); }
     [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
-    /// Triangles of its meshes, each counted once; 0 in a scene of boxes.
+    /// The triangles of its meshes, each counted once; 0 in a scene of boxes.
     [[nodiscard]] double triangles() const {
         return rows_.empty() ? 0 : static_cast<double>(rows_.front()->triangles.value_or(0));
     }
-    /// What does not vary between repeats and seeds, of one composition; empty where it has no row (or was wrong).
-    [[nodiscard]] std::optional<double> value(const selection& who, const row_value& of) const;
+    /// A value that is equal in all repeats and seeds of a composition; empty if it has no exact row.
+    [[nodiscard]] std::optional<double> value(const selection& composition, const row_value& of) const;
 
     /// Logarithms of the ratios of two compositions in the same repeat.
     [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& of) const;
-    /// Logarithms of one composition's values: for counts and bytes, which no machine disturbs.
-    [[nodiscard]] cells logs(const selection& who, const row_value& of) const;
-    /// Of every repeat of every composition that has it.
+    /// Logarithms of one composition's values: for counts and bytes, which do not depend on the machine.
+    [[nodiscard]] cells logs(const selection& composition, const row_value& of) const;
+    /// The values of all repeats of all compositions that have one.
     [[nodiscard]] std::vector<double> values(const row_value& of) const;
-    /// Between each repeat and the next, of one composition with one seed, as a share of their mean.
+    /// The differences of successive repeats of a composition with one seed, relative to their mean.
     [[nodiscard]] std::vector<double> differences(const row_value& of) const;
-    /// Median and quartiles over all repeats; empty where there are none.
-    [[nodiscard]] std::optional<quartiles> spread(const selection& who, const row_value& of) const;
-    /// The same as a point of a figure.
-    [[nodiscard]] std::optional<figure_point> point(double x, const selection& who, const row_value& of) const;
+    /// Median and quartiles over all repeats; empty if there are none.
+    [[nodiscard]] std::optional<quartiles> spread(const selection& composition, const row_value& of) const;
+    /// The spread as a point of a figure.
+    [[nodiscard]] std::optional<figure_point> point(double x, const selection& composition, const row_value& of) const;
 
 private:
-    [[nodiscard]] std::vector<const row*> rows_of(const selection& who) const;
-    /// Into the cell of the row's process and seed.
+    [[nodiscard]] std::vector<const row*> rows_of(const selection& composition) const;
+    /// Adds to the cell of the row's process and seed.
     void add(cells& to, const row& r, double value) const;
 
     factors of_;
@@ -85,23 +85,23 @@ private:
     std::vector<std::uint64_t> processes_;
 };
 
-/// How large the results of an experiment are.
+/// The size of the results of an experiment.
 struct extent_of_results {
     std::size_t rows = 0, compositions = 0, scenes = 0, processes = 0, seeds = 0, repeats = 0;
 };
 
-/// The results of experiments in the folders of one, each read when it is first asked for.
+/// The results of the experiments in the sub-folders of a folder, each read on first use.
 class measurements {
 public:
-    /// @param name by which reports call it
+    /// @param name the name in reports
     explicit measurements(std::filesystem::path folder, std::string name = {})
         : folder_(std::move(folder)), name_(std::move(name)) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// Those that have results, in the order of their names.
+    /// The experiments with results, sorted by name.
     [[nodiscard]] std::vector<std::string> experiments() const;
-    /// The conditions of an experiment in the order of its config; none where it has no results.
+    /// The conditions of an experiment in the order of its config; empty if it has no results.
     [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const {
         return read(experiment).conditions;
     }

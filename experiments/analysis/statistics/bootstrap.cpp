@@ -16,18 +16,18 @@ std::uint64_t next_random(std::uint64_t& state) {
     return z ^ (z >> 31U);
 }
 
-/// Evenly from 0 to `count` - 1, but for less than `count` in 2^64.
+/// A number from 0 to `count` - 1, uniform up to a bias of less than `count` in 2^64.
 std::size_t pick(std::uint64_t& state, std::size_t count) {
     return static_cast<std::size_t>(next_random(state) % count);
 }
 
-/// 0 to `count` - 1, as they are or drawn with replacement.
-std::vector<std::size_t> places(std::size_t count, bool drawn, std::uint64_t& state) {
-    std::vector<std::size_t> all(count);
-    std::iota(all.begin(), all.end(), std::size_t{0});
+/// The indices 0 to `count` - 1, in order or drawn with replacement.
+std::vector<std::size_t> indices_of(std::size_t count, bool drawn, std::uint64_t& state) {
+    std::vector<std::size_t> indices(count);
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
     if (drawn)
-        for (std::size_t& one : all) one = pick(state, count);
-    return all;
+        for (std::size_t& index : indices) index = pick(state, count);
+    return indices;
 }
 
 double median_of(std::span<double> values) {
@@ -37,13 +37,13 @@ double median_of(std::span<double> values) {
     return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
-/// Of the statistic, over draws of one level.
+/// The variance of the statistic over resamples of one level.
 double variance_of(const sample_size& size, level drawn, const std::function<double(const resample&)>& statistic) {
     std::uint64_t state = 1;
     std::vector<double> values;
     for (std::size_t i = 0; i < draws_of_a_level; ++i) {
         const double value = statistic(resample(size.processes, size.seeds, drawn, next_random(state)));
-        // A draw may consist of empty cells only, where results are not complete.
+        // A draw may consist of empty cells only if the results are incomplete.
         if (std::isfinite(value)) values.push_back(value);
     }
     if (values.size() < 2) return 0;
@@ -64,8 +64,8 @@ sample_size cells::size() const {
 
 resample::resample(std::size_t processes, std::size_t seeds, level drawn, std::uint64_t random)
     : drawn_(drawn), random_(random) {
-    processes_ = places(processes, drawn == level::processes, random_);
-    seeds_ = places(seeds, drawn == level::seeds, random_);
+    processes_ = indices_of(processes, drawn == level::processes, random_);
+    seeds_ = indices_of(seeds, drawn == level::seeds, random_);
 }
 
 double resample::mean_of(const cells& measured) const {
@@ -89,8 +89,8 @@ double resample::mean_of(const cells& measured) const {
 
 interval estimate::range(double miss) const {
     if (!(error > 0)) return {value, value};
-    const double reach = error * quantile(complement(boost::math::students_t(degrees), miss));
-    return {value - reach, value + reach};
+    const double radius = error * quantile(complement(boost::math::students_t(degrees), miss));
+    return {value - radius, value + radius};
 }
 
 double estimate::chance_above(double limit) const {
@@ -111,14 +111,14 @@ estimate bootstrap(const sample_size& size, const std::function<double(const res
                    : variance_of(size, drawn, statistic) * static_cast<double>(count) / static_cast<double>(count - 1);
     };
     const double noise = variance(level::repeats, size.repeats);
-    // Means of processes, and of seeds, differ by the noise of repeats too.
+    // The variance between processes, and between seeds, includes the noise of repeats.
     const double of_processes = variance(level::processes, size.processes);
     const double of_seeds = variance(level::seeds, size.seeds);
     const double by_process = std::max(0.0, of_processes - noise);
     const double by_seed = std::max(0.0, of_seeds - noise);
     const double sum = by_process + by_seed + noise;
     if (!(sum > 0)) return result;
-    // What was subtracted was not known better for it, so degrees of freedom go by what was seen.
+    // Subtracting the noise adds no information, so the degrees of freedom follow the observed variance.
     const auto share = [](double part, double seen, std::size_t degrees) {
         return degrees > 0 && part > 0 ? seen * seen / static_cast<double>(degrees) : 0;
     };

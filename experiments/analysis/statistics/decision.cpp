@@ -4,31 +4,31 @@ namespace aabblab {
 
 namespace {
 
-bool any_is(std::span<const support> all, support what) {
-    return std::ranges::find(all, what) != all.end();
+bool any_is(std::span<const support> endpoints, support what) {
+    return std::ranges::find(endpoints, what) != endpoints.end();
 }
 
-bool all_are(std::span<const support> all, support what) {
-    return std::ranges::all_of(all, [=](support one) { return one == what; });
+bool all_are(std::span<const support> endpoints, support what) {
+    return std::ranges::all_of(endpoints, [=](support endpoint) { return endpoint == what; });
 }
 
-/// The p-value of the outcome that is nearest to being shown.
+/// The smallest p-value among the outcomes.
 double least(const tested& t) {
     const double direction = std::min(t.p.less, t.p.more);
     return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
 }
 
-/// The level at which each p-value is decided, by Holm's step-down rule from the least on; 0 from the first that is
-/// above its level.
+/// The level at which each p-value is decided by Holm's step-down rule (1979), in ascending order; 0 from the first
+/// p-value above its level.
 template <class Tested, class P>
-std::vector<double> holm_levels(std::span<const Tested> all, P p_of) {
-    std::vector<std::size_t> order(all.size());
+std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
+    std::vector<std::size_t> order(family.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(std::invoke(p_of, all[i]), i); });
-    std::vector<double> levels(all.size(), 0);
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(std::invoke(p_of, family[i]), i); });
+    std::vector<double> levels(family.size(), 0);
     for (std::size_t done = 0; done < order.size(); ++done) {
         const double level = one_sided / static_cast<double>(order.size() - done);
-        if (std::invoke(p_of, all[order[done]]) > level) break;
+        if (std::invoke(p_of, family[order[done]]) > level) break;
         levels[order[done]] = level;
     }
     return levels;
@@ -42,25 +42,25 @@ evidence evidence_of(const estimate& log_ratio) {
     const evidence more{outcome::more, log_ratio.chance_below(high)};
     const evidence same{outcome::same, std::max(log_ratio.chance_above(high), log_ratio.chance_below(low))};
     const evidence less{outcome::less, log_ratio.chance_above(low)};
-    const std::array<evidence, 3> all{less, same, more};
-    return *std::ranges::min_element(all, {}, &evidence::p);
+    const std::array<evidence, 3> outcomes{less, same, more};
+    return *std::ranges::min_element(outcomes, {}, &evidence::p);
 }
 
 outcome decide(const evidence& e) {
     return e.p <= one_sided ? e.nearest : outcome::undecided;
 }
 
-std::vector<outcome> decide_together(std::span<const evidence> all) {
-    const std::vector<double> levels = holm_levels(all, &evidence::p);
+std::vector<outcome> decide_together(std::span<const evidence> family) {
+    const std::vector<double> levels = holm_levels(family, &evidence::p);
     std::vector<outcome> outcomes;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        outcomes.push_back(levels[i] > 0 ? all[i].nearest : outcome::undecided);
+    for (std::size_t i = 0; i < family.size(); ++i)
+        outcomes.push_back(levels[i] > 0 ? family[i].nearest : outcome::undecided);
     return outcomes;
 }
 
 tails tails_of(const estimate& log_ratio, double band) {
     const double high = std::log1p(band);
-    // An interval without width would lie within a band that has none.
+    // A zero-width interval would otherwise lie within a zero-width band.
     const double same = band > 0 ? std::max(log_ratio.chance_above(high), log_ratio.chance_below(-high)) : 1;
     return {log_ratio.chance_above(0), log_ratio.chance_below(0), same, log_ratio.chance_above(high),
             std::abs(log_ratio.value) <= high};
@@ -76,7 +76,7 @@ outcome direction_of(const tails& p, double level) {
 support support_of(expectation expected, const tails& p, double level) {
     if (expected == expectation::not_more && p.not_more <= level) return support::favours;
     const outcome direction = direction_of(p, level);
-    // However wide the interval is: a narrower one would show it to be the same.
+    // This holds for any width of the interval: with more repeats the ratio would be shown to be the same.
     if (direction != outcome::undecided && p.within) return support::no_difference;
     switch (direction) {
         case outcome::less: return support::favours;
@@ -87,8 +87,8 @@ support support_of(expectation expected, const tails& p, double level) {
     return support::undecided;
 }
 
-std::vector<double> levels_together(std::span<const tested> all) {
-    return holm_levels(all, least);
+std::vector<double> levels_together(std::span<const tested> family) {
+    return holm_levels(family, least);
 }
 
 verdict_kind verdict_of(std::span<const support> primary) {
@@ -99,9 +99,9 @@ verdict_kind verdict_of(std::span<const support> primary) {
     return all_are(primary, support::no_difference) ? verdict_kind::no_difference : verdict_kind::does_not_hold;
 }
 
-std::string text_of(support found) {
+std::string text_of(support verdict) {
     constexpr std::array names{"for", "no difference", "against", "undecided"};
-    return names[static_cast<std::size_t>(found)];
+    return names[static_cast<std::size_t>(verdict)];
 }
 
 std::string text_of(verdict_kind verdict) {
