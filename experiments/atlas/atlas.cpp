@@ -16,8 +16,8 @@ std::string label_of(contender_name name) {
 }  // namespace
 
 const atlas_line* atlas_scene::find(std::string_view label) const {
-    const auto found = std::ranges::find(lines, label, &atlas_line::label);
-    return found != lines.end() ? &*found : nullptr;
+    const auto line = std::ranges::find(lines, label, &atlas_line::label);
+    return line != lines.end() ? &*line : nullptr;
 }
 
 const atlas_line& atlas_scene::fastest(span_of_time of) const {

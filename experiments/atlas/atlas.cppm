@@ -1,5 +1,5 @@
-/// Which composition or engine wins in which scene: a map made of the rows of experiments, with what it costs to use
-/// one of them everywhere, where the borders lie, and what it says of statements of others.
+/// An atlas of the fastest composition or engine per scene, computed from the rows of experiments, with the regret of
+/// using one of them everywhere, the borders between winners, and verdicts on published statements.
 export module aabblab.atlas;
 
 import aabb.std;
@@ -13,15 +13,15 @@ import aabblab.tables;
 
 export namespace aabblab {
 
-/// What is held against what.
+/// The times that are compared.
 enum class span_of_time : unsigned char {
-    frame,  ///< a frame after the first, a mean
-    whole   ///< all frames, making the stages included
+    frame,  ///< the mean per frame after the first
+    whole   ///< all frames, including the construction of the stages
 };
 
-/// One composition or engine in one scene, by repeat; who was not repeated has fewer.
+/// The times of one composition or engine in one scene, by repeat; lines may differ in their number of repeats.
 struct atlas_line {
-    std::string label;  ///< what it is composed of, without kinds that do nothing: "bucket + columns + simd"
+    std::string label;  ///< its strategies other than `none`: "bucket + columns + simd"
     bool automatic = false;
     std::vector<double> frame_ms;
     std::vector<double> whole_ms;
@@ -35,54 +35,54 @@ struct atlas_line {
 
 struct atlas_scene {
     scene_choice scene;
-    bool unseen = false;  ///< not of the map: there to judge what was learnt on it
+    bool unseen = false;  ///< not in the map; held out to test models fitted to it
     scene_measures measures;
     std::vector<atlas_line> lines;  ///< exact ones
 
-    /// None where it did not play.
+    /// Null if the scene has no such line.
     [[nodiscard]] const atlas_line* find(std::string_view label) const;
-    /// The fastest that is not `auto`.
+    /// The fastest line, except `auto`.
     [[nodiscard]] const atlas_line& fastest(span_of_time of) const;
-    /// Time of the fastest, `auto` among them.
+    /// The time of the fastest line, including `auto`.
     [[nodiscard]] double least_ms(span_of_time of) const;
-    /// A parameter of the scene as a number, its default where it is not set; NaN where it has none of that name.
+    /// A parameter of the scene as a number, by default its default value; NaN if the scene has no such parameter.
     [[nodiscard]] double number(std::string_view parameter) const;
 };
 
-/// The same scenes without `columns`, which wins nearly everywhere, and without `auto`, which takes it: what is left to
-/// whoever has neither.
+/// The scenes without `columns`, which wins nearly everywhere, and without `auto`, which selects it: the choice among
+/// classic strategies.
 [[nodiscard]] std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas);
 
-/// Of the ratio of two lines' times, over the repeats that both have.
+/// The logarithm of the ratio of two lines' times, over the repeats that both have.
 [[nodiscard]] estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time of);
 
-/// Those of an experiment whose results are in the folder, as far as they are there. Scenes are made, to be measured.
-/// @param unseen whether the scenes are apart from the map
+/// Reads the scenes of an experiment from its results folder. Each scene is generated again to compute its measures.
+/// @param unseen whether the scenes are held out from the map
 [[nodiscard]] std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool unseen);
 
-/// Who wins, and where: a line for everybody.
+/// In how many scenes each composition or engine is the fastest, one row each.
 [[nodiscard]] table winners_table(const std::vector<atlas_scene>& atlas);
-/// Scene by scene: what it is like, who is the fastest and by how much, and the time of `auto` over that.
+/// One row per scene: its measures, the fastest, the lead over the second, and the ratio of `auto` to the fastest.
 [[nodiscard]] table cells_table(const std::vector<atlas_scene>& atlas);
-/// What it costs to use one of them everywhere, against the fastest of each scene, `auto` among them.
+/// The regret of using one of them everywhere, relative to the fastest of each scene, including `auto`.
 [[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of);
 
-/// Where the fastest of one scene becomes slower than that of the next, along one parameter, all others equal. Lines
-/// that differ in parameters only, as lists by their margin, are one: the fastest of them.
+/// The value of one parameter, all others equal, at which the fastest of one scene and of the next swap places. Lines
+/// that differ only in parameters, such as the skin of a Verlet list, count as one, represented by the fastest.
 struct border {
     std::string before;
     std::string after;
     std::string parameter;
-    std::string others;  ///< of the scene
+    std::string others;  ///< the other settings of the scene
     double at = 0;
-    interval range{};  ///< 95 %, within the two scenes
+    interval range{};  ///< 95 %, clamped to the two scenes
 };
 [[nodiscard]] std::vector<border> borders_of(const std::vector<atlas_scene>& atlas);
-[[nodiscard]] table borders_table(const std::vector<border>& all);
-/// All borders between the same two along the same parameter in one line.
-[[nodiscard]] table borders_summary(const std::vector<border>& all);
+[[nodiscard]] table borders_table(const std::vector<border>& borders);
+/// One row for all borders between the same two lines along the same parameter.
+[[nodiscard]] table borders_summary(const std::vector<border>& borders);
 
-/// One ratio that a statement is judged by.
+/// One ratio on which the verdict on a statement depends.
 struct judged_ratio {
     std::string where;
     std::string what;  ///< "bullet_sap over bullet_dbvt"
@@ -98,32 +98,32 @@ struct judged_statement {
     verdict_kind verdict = verdict_kind::undecided;
     std::vector<judged_ratio> ratios;
 };
-/// What others have published of broad phases, and what was found here, each judged as claims of the paper are: ratios
-/// of times of a frame, geometric means over scenes, decided together.
+/// Verdicts on published statements about broad phases, by the same rule as claims of the paper: ratios of times per
+/// frame, geometric means over scenes, decided as one family.
 [[nodiscard]] std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas);
-[[nodiscard]] table statements_table(const std::vector<judged_statement>& all);
-[[nodiscard]] table ratios_table(const std::vector<judged_statement>& all);
-/// Labels that statements speak of.
+[[nodiscard]] table statements_table(const std::vector<judged_statement>& judged);
+[[nodiscard]] table ratios_table(const std::vector<judged_statement>& judged);
+/// The labels on which statements depend.
 [[nodiscard]] std::vector<std::string> labels_in_statements();
 
-/// What a line's frame takes, as a sum of costs of what a scene's measures count, fitted to the scenes of the map; and
-/// how many times too long or too short that is, there and in the scenes that it was not fitted to.
+/// A linear cost model of the time per frame: the costs of the terms that a scene's measures count, fitted to the
+/// scenes of the map, and the factor by which it is off there and in the scenes held out.
 struct line_model {
     std::string label;
-    std::vector<estimate> costs;  ///< ns, of each term
+    std::vector<estimate> costs;  ///< ns per unit of each term
     accuracy seen;
     accuracy unseen;
 };
 [[nodiscard]] std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas);
 [[nodiscard]] table models_table(const std::vector<line_model>& models);
 [[nodiscard]] table costs_table(const std::vector<line_model>& models);
-/// Of who is predicted to be the fastest, in each scene that the models were not fitted to.
+/// The regret of choosing the line with the least predicted time, in each held-out scene.
 [[nodiscard]] std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
                                                     const std::vector<line_model>& models);
 
 [[nodiscard]] std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas);
 
-/// Writes atlas.md, a page, the tables as CSV and the figures into the folder.
+/// Writes atlas.md, atlas.html, the tables as CSV and the figures to the folder.
 void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas);
 
 }  // namespace aabblab

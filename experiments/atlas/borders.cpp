@@ -21,14 +21,14 @@ std::string without(const scene_choice& scene, std::string_view parameter) {
     return settings_text(others);
 }
 
-/// Where a line from one logarithm of a ratio to another is 0, as a share of the way, and its 95 % interval by draws
-/// from both ends.
+/// The fraction of the segment at which the interpolated logarithm of the ratio is 0, and its 95 % interval by sampling
+/// both ends.
 std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     const auto share = [](double a, double b) { return a == b ? 0.5 : std::clamp(a / (a - b), 0.0, 1.0); };
     constexpr std::size_t draws = 2000;
     std::mt19937_64 random(1);
     const auto drawn = [&](const estimate& e) {
-        // The sum of twelve even draws is close to normal, and the same with every library.
+        // The sum of twelve uniform numbers is close to normal, and reproducible with every library.
         double sum = -6;
         for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11U) * 0x1p-53;
         return e.value + sum * e.error;
@@ -37,14 +37,14 @@ std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     for (std::size_t i = 0; i < draws; ++i) {
         const double a = drawn(from);
         const double b = drawn(to);
-        // Beyond an end, where one of them is ahead at both.
+        // Clamp to an end if one of them is ahead at both.
         shares.push_back(a >= 0 ? 0 : b <= 0 ? 1 : share(a, b));
     }
     std::ranges::sort(shares);
     return {share(from.value, to.value), {shares[draws / 40], shares[draws - 1 - draws / 40]}};
 }
 
-/// The fastest of a family; none where none of it plays.
+/// The fastest line of a family; null if the scene has none.
 const atlas_line* fastest_of(const atlas_scene& scene, const std::string& family) {
     const atlas_line* best = nullptr;
     for (const atlas_line& line : scene.lines)
@@ -64,7 +64,7 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
     const atlas_line* before_at_last = fastest_of(to, before);
     if (!after_at_first || !before_at_last) return std::nullopt;
     const double first = std::log(from.number(parameter));
-    const double way = std::log(to.number(parameter)) - first;
+    const double length = std::log(to.number(parameter)) - first;
     if (!std::isfinite(first)) return std::nullopt;
     const estimate at_first = log_ratio_in(from, first_best, *after_at_first, span_of_time::frame);
     const estimate at_last = log_ratio_in(to, *before_at_last, last_best, span_of_time::frame);
@@ -74,21 +74,21 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
                   after,
                   std::string(parameter),
                   from.scene.kind + " " + without(from.scene, parameter),
-                  std::exp(first + share * way),
-                  {std::exp(first + range.low * way), std::exp(first + range.high * way)}};
+                  std::exp(first + share * length),
+                  {std::exp(first + range.low * length), std::exp(first + range.high * length)}};
 }
 
-/// The logarithm of where a border lies, and its error.
-estimate log_place_of(const border& one) {
+/// The logarithm of the position of a border, and its error.
+estimate log_place_of(const border& b) {
     constexpr double errors_in_interval = 2 * 1.96;
     constexpr double many_degrees = 1000;
-    return {std::log(one.at), std::log(one.range.high / one.range.low) / errors_in_interval, many_degrees};
+    return {std::log(b.at), std::log(b.range.high / b.range.low) / errors_in_interval, many_degrees};
 }
 
 }  // namespace
 
 std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
-    std::vector<border> all;
+    std::vector<border> borders;
     for (const std::string_view parameter : parameters) {
         std::map<std::string, std::vector<const atlas_scene*>> lines;
         for (const atlas_scene& scene : atlas)
@@ -97,30 +97,30 @@ std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
         for (auto& [others, scenes] : lines) {
             std::ranges::stable_sort(scenes, {}, [&](const atlas_scene* s) { return s->number(parameter); });
             for (std::size_t i = 1; i < scenes.size(); ++i)
-                if (auto one = border_between(*scenes[i - 1], *scenes[i], parameter)) all.push_back(*std::move(one));
+                if (auto b = border_between(*scenes[i - 1], *scenes[i], parameter)) borders.push_back(*std::move(b));
         }
     }
-    return all;
+    return borders;
 }
 
-table borders_table(const std::vector<border>& all) {
+table borders_table(const std::vector<border>& borders) {
     table t{{{"before", false}, {"after", false}, {"along", false}, {"at"}, {"low"}, {"high"}, {"others", false}}, {}};
-    for (const border& one : all)
-        t.rows.push_back({one.before, one.after, one.parameter, fmt::format("{:.4g}", one.at),
-                          fmt::format("{:.4g}", one.range.low), fmt::format("{:.4g}", one.range.high), one.others});
+    for (const border& b : borders)
+        t.rows.push_back({b.before, b.after, b.parameter, fmt::format("{:.4g}", b.at),
+                          fmt::format("{:.4g}", b.range.low), fmt::format("{:.4g}", b.range.high), b.others});
     return t;
 }
 
-table borders_summary(const std::vector<border>& all) {
+table borders_summary(const std::vector<border>& borders) {
     std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> alike;
-    for (const border& one : all) alike[{one.parameter, one.before, one.after}].push_back(&one);
+    for (const border& b : borders) alike[{b.parameter, b.before, b.after}].push_back(&b);
     std::vector<std::vector<const border*>> groups;
     for (const auto& [what, group] : alike) groups.push_back(group);
     std::ranges::stable_sort(groups, [](const auto& a, const auto& b) { return a.size() > b.size(); });
     table t = empty_table({"along", "fastest before", "fastest after"}, {"borders", "at", "95 %", "from", "to"});
     for (const std::vector<const border*>& group : groups) {
         std::vector<estimate> places;
-        for (const border* one : group) places.push_back(log_place_of(*one));
+        for (const border* b : group) places.push_back(log_place_of(*b));
         const auto [low, high] = std::ranges::minmax(group, {}, &border::at);
         const estimate mean = mean_of(places);
         const border& any = *group.front();

@@ -9,10 +9,10 @@ namespace {
 
 constexpr span_of_time frame = span_of_time::frame;
 
-/// The map's scenes are those of this kind.
+/// The kind of the scenes in the map.
 constexpr const char* kind_of_map = "cloud";
 
-/// So many are told apart in a figure; the others are "another".
+/// The winners that get a series of their own in a figure; the others share the series "another".
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most = 7;
     std::map<std::string, std::size_t> wins;
@@ -24,21 +24,21 @@ std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& a
     return labels;
 }
 
-/// A series a winner, all winners in every panel, so that they look the same in all.
+/// One series per winner; every panel has all of them, so that a winner looks the same in all panels.
 std::vector<series> empty_series(const std::vector<std::string>& winners) {
-    std::vector<series> all;
-    for (const std::string& label : winners) all.push_back({label, series_style::points});
-    all.push_back({"another", series_style::points});
-    return all;
+    std::vector<series> lines;
+    for (const std::string& label : winners) lines.push_back({label, series_style::points});
+    lines.push_back({"another", series_style::points});
+    return lines;
 }
 
 void add_point(std::vector<series>& to, const std::string& winner, double x, double y) {
-    const auto found = std::ranges::find(to, winner, &series::label);
-    series& one = found != to.end() ? *found : to.back();
-    one.points.push_back({x, y});
+    const auto match = std::ranges::find(to, winner, &series::label);
+    series& line = match != to.end() ? *match : to.back();
+    line.points.push_back({x, y});
 }
 
-/// @param among "", or those among whom the fastest is looked for
+/// @param among empty, or text that names the restricted set of candidates
 figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds,
               const std::string& among) {
     figure f{
@@ -64,7 +64,7 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
     return f;
 }
 
-/// All scenes that move, by what every one of them has.
+/// All scenes in motion, by measures that are defined for each of them.
 figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners,
                       const std::string& among) {
     figure f{.name = among.empty() ? "map_inversions" : "map_classic_inversions",
@@ -81,7 +81,7 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
     return f;
 }
 
-/// Regrets in ascending order, of `auto` and of those who have the least.
+/// Regrets in ascending order, one curve per line, for the lines with the smallest median regret.
 figure regret_figure(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most = 7;
     constexpr std::size_t least_scenes = 2;
@@ -94,35 +94,36 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
     for (const std::string& label : labels_of(atlas)) {
         const std::vector<double> regrets = regrets_of(atlas, label, frame);
         if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;
-        series one{label};
+        series curve{label};
         for (std::size_t i = 0; i < regrets.size(); ++i)
-            one.points.push_back({(static_cast<double>(i) + 0.5) / static_cast<double>(regrets.size()), regrets[i]});
-        f.lines.push_back(std::move(one));
+            curve.points.push_back({(static_cast<double>(i) + 0.5) / static_cast<double>(regrets.size()), regrets[i]});
+        f.lines.push_back(std::move(curve));
     }
     std::ranges::stable_sort(f.lines, {}, [](const series& s) { return s.points[s.points.size() / 2].y; });
     if (f.lines.size() > most) f.lines.resize(most);
     return f;
 }
 
-void add_maps(std::vector<figure>& all, const std::vector<atlas_scene>& atlas, const std::string& among) {
+void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atlas, const std::string& among) {
     const std::vector<std::string> winners = most_frequent_winners(atlas);
     std::vector<double> clouds;
     for (const atlas_scene& scene : atlas)
         if (const double n = scene.number("clouds");
             scene.scene.kind == kind_of_map && std::ranges::find(clouds, n) == clouds.end())
             clouds.push_back(n);
-    for (const double n : clouds) all.push_back(map_of(atlas, winners, n, among));
-    all.push_back(inversions_map(atlas, winners, among));
+    for (const double n : clouds) figures.push_back(map_of(atlas, winners, n, among));
+    figures.push_back(inversions_map(atlas, winners, among));
 }
 
 }  // namespace
 
 std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
-    std::vector<figure> all;
-    add_maps(all, atlas, "");
-    if (const auto others = without_columns(atlas); !others.empty()) add_maps(all, others, " of those without columns");
-    all.push_back(regret_figure(atlas));
-    return all;
+    std::vector<figure> figures;
+    add_maps(figures, atlas, "");
+    if (const auto others = without_columns(atlas); !others.empty())
+        add_maps(figures, others, " of those without columns");
+    figures.push_back(regret_figure(atlas));
+    return figures;
 }
 
 }  // namespace aabblab

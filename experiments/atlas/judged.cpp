@@ -8,11 +8,11 @@ namespace aabblab {
 
 namespace {
 
-// Statements as they are written down.
+// The statements as published.
 
 using scene_filter = std::function<bool(const atlas_scene&)>;
 
-/// A time over another, over some scenes.
+/// A ratio of times over a set of scenes.
 struct stated_ratio {
     std::string where;
     std::string arm;
@@ -20,7 +20,7 @@ struct stated_ratio {
     scene_filter in;
     expectation expected = expectation::less;
     double band = equivalence_band;
-    /// Where it is set, the ratio is over the same in these scenes: how much more it is here than there.
+    /// If set, the ratio is divided by the same ratio in these scenes.
     scene_filter over = nullptr;
 };
 
@@ -31,9 +31,9 @@ struct statement {
     std::vector<stated_ratio> ratios;
 };
 
-// Who plays, as it is labelled.
+// The labels of the compositions and engines.
 const std::string columns = "bucket + columns + simd";
-const std::string kept_list = "neighbour_list:margin=0.1 + bucket + columns + simd";
+const std::string verlet_list = "neighbour_list:margin=0.1 + bucket + columns + simd";
 const std::string incremental = "insertion + incremental";
 const std::string in_regions = "insertion + subdivided";
 const std::string one_axis = "insertion + one_axis";
@@ -45,7 +45,7 @@ const std::string grids = "ode_hash";
 const std::string dynamic_tree = "bullet_dbvt";
 const std::string bullet_sap = "bullet_sap";
 
-/// In the map, where a parameter has a value.
+/// A filter by the value of a parameter.
 struct setting_is {
     std::string_view parameter;
     double value;
@@ -53,18 +53,18 @@ struct setting_is {
 scene_filter map_with(std::vector<setting_is> settings, bool all_move = true) {
     return [settings = std::move(settings), all_move](const atlas_scene& s) {
         if (s.scene.kind != "cloud" || (all_move && s.number("moving") != 1)) return false;
-        for (const setting_is& one : settings)
-            if (s.number(one.parameter) != one.value) return false;
+        for (const setting_is& setting : settings)
+            if (s.number(setting.parameter) != setting.value) return false;
         return true;
     };
 }
 
-/// All move by so much a frame.
+/// All boxes move by this displacement per frame.
 scene_filter moved(double objects, double displacement) {
     return map_with({{"objects", objects}, {"displacement", displacement}});
 }
 
-scene_filter so_many(double objects) {
+scene_filter boxes(double objects) {
     return map_with({{"objects", objects}});
 }
 
@@ -72,11 +72,11 @@ scene_filter sizes_to(double ratio, double objects) {
     return map_with({{"objects", objects}, {"ratio", ratio}});
 }
 
-/// How many times more it is here than there.
-stated_ratio compared(std::string where, std::string arm, std::string base, scene_filter here, scene_filter there) {
-    stated_ratio one{std::move(where), std::move(arm), std::move(base), std::move(here)};
-    one.over = std::move(there);
-    return one;
+/// The ratio in some scenes relative to the ratio in others.
+stated_ratio compared(std::string where, std::string arm, std::string base, scene_filter in, scene_filter over) {
+    stated_ratio ratio{std::move(where), std::move(arm), std::move(base), std::move(in)};
+    ratio.over = std::move(over);
+    return ratio;
 }
 
 scene_filter resting(double objects, double moving) {
@@ -87,28 +87,28 @@ scene_filter kind_is(std::string kind) {
     return [kind = std::move(kind)](const atlas_scene& s) { return s.scene.kind == kind; };
 }
 
-/// Both arms compared at each pair of number of boxes and displacement.
+/// One ratio for each pair of number of boxes and displacement.
 std::vector<stated_ratio> moves(const std::string& arm, const std::string& base,
                                 std::initializer_list<std::pair<double, double>> cases) {
-    std::vector<stated_ratio> all;
+    std::vector<stated_ratio> ratios;
     for (const auto& [objects, displacement] : cases)
-        all.push_back({fmt::format("{} boxes, by {:g}", grouped(static_cast<std::uint64_t>(objects)), displacement),
-                       arm, base, moved(objects, displacement)});
-    return all;
+        ratios.push_back({fmt::format("{} boxes, by {:g}", grouped(static_cast<std::uint64_t>(objects)), displacement),
+                          arm, base, moved(objects, displacement)});
+    return ratios;
 }
 
-/// Both arms compared at each number of boxes.
+/// One ratio for each number of boxes.
 std::vector<stated_ratio> of_sizes(const std::string& arm, const std::string& base, std::initializer_list<double> sizes,
                                    expectation expected = expectation::less, double band = equivalence_band) {
-    std::vector<stated_ratio> all;
+    std::vector<stated_ratio> ratios;
     for (const double objects : sizes)
-        all.push_back(
-            {grouped(static_cast<std::uint64_t>(objects)) + " boxes", arm, base, so_many(objects), expected, band});
-    return all;
+        ratios.push_back(
+            {grouped(static_cast<std::uint64_t>(objects)) + " boxes", arm, base, boxes(objects), expected, band});
+    return ratios;
 }
 
 const std::vector<statement>& statements() {
-    static const std::vector<statement> all{
+    static const std::vector<statement> published{
         {"B1",
          "Bullet's manual and wiki, \"Broadphase\"",
          "Sweep and prune is fastest where most objects rest; the dynamic tree where many move.",
@@ -122,7 +122,7 @@ const std::vector<statement>& statements() {
          "boxes is much faster.",
          {{"1,000 boxes at rest", incremental, columns, resting(1000, 0)},
           {"10,000 boxes at rest", incremental, columns, resting(10000, 0)},
-          {"10,000 boxes at rest", incremental, kept_list, resting(10000, 0)},
+          {"10,000 boxes at rest", incremental, verlet_list, resting(10000, 0)},
           {"1,000 boxes, all move by 1", columns, incremental, moved(1000, 1)},
           {"10,000 boxes, all move by 1", columns, incremental, moved(10000, 1)}}},
         {"B3", "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract",
@@ -155,10 +155,10 @@ const std::vector<statement>& statements() {
          "Benchmark of BEPUphysics 0.16, 2011",
          "A sweep along one axis is the fastest of all with 100 boxes; with many, a grid of two axes with a sweep "
          "along the third beats a dynamic hierarchy.",
-         {{"100 boxes", simd_sweep, dynamic_tree, so_many(100)},
-          {"100 boxes", simd_sweep, columns, so_many(100)},
-          {"10,000 boxes", columns, dynamic_tree, so_many(10000)},
-          {"30,000 boxes", columns, dynamic_tree, so_many(30000)}}},
+         {{"100 boxes", simd_sweep, dynamic_tree, boxes(100)},
+          {"100 boxes", simd_sweep, columns, boxes(100)},
+          {"10,000 boxes", columns, dynamic_tree, boxes(10000)},
+          {"30,000 boxes", columns, dynamic_tree, boxes(30000)}}},
         {"B8",
          "The manual of Nape; comments of Box2D 2.0, b2BroadPhase",
          "Sweep and prune is poor at fast motion and at many sizes; a dynamic tree suffers from neither.",
@@ -182,19 +182,18 @@ const std::vector<statement>& statements() {
         {"B12",
          "Y. Serpa, M. Rodrigues, Computer Graphics Forum 38, 2019, title",
          "A kd-tree that makes use of where boxes were before is fast and scales.",
-         {{"10,000 boxes", kd_tree, simd_sweep, so_many(10000)},
-          {"10,000 boxes", kd_tree, grid, so_many(10000)},
-          {"10,000 boxes", kd_tree, dynamic_tree, so_many(10000)},
-          compared("its lead over a sweep, 10,000 boxes over 1,000", kd_tree, simd_sweep, so_many(10000),
-                   so_many(1000))}},
+         {{"10,000 boxes", kd_tree, simd_sweep, boxes(10000)},
+          {"10,000 boxes", kd_tree, grid, boxes(10000)},
+          {"10,000 boxes", kd_tree, dynamic_tree, boxes(10000)},
+          compared("its lead over a sweep, 10,000 boxes over 1,000", kd_tree, simd_sweep, boxes(10000), boxes(1000))}},
         {"B13", "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
          "Of sweeps the one that tests by vectors is the best.", of_sizes(simd_sweep, one_axis, {100, 1000, 10000})},
         {"B14",
          "G. Capannini, T. Larsson, SCCG 2016 and IEEE TVCG 2018, titles (the latter on several threads)",
          "A sweep of two axes is efficient, and for massive scenes.",
-         {{"1,000 boxes", two_axis, one_axis, so_many(1000)},
-          {"30,000 boxes", two_axis, one_axis, so_many(30000)},
-          compared("30,000 boxes over 1,000", two_axis, one_axis, so_many(30000), so_many(1000))}},
+         {{"1,000 boxes", two_axis, one_axis, boxes(1000)},
+          {"30,000 boxes", two_axis, one_axis, boxes(30000)},
+          compared("30,000 boxes over 1,000", two_axis, one_axis, boxes(30000), boxes(1000))}},
         {"B15",
          "G. Capannini, T. Larsson, SIGRAD 2016, abstract (of a form for boxes of one size alone)",
          "A sweep of two axes gains where all boxes have one size.",
@@ -213,27 +212,28 @@ const std::vector<statement>& statements() {
         {"B17", "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
          "Of grids with a sweep in their cells the one over three axes is better than the one over two.",
          of_sizes(grid, columns, {1000, 10000, 30000})}};
-    return all;
+    return published;
 }
 
-// What was found of them.
+// The measured ratios.
 
 struct measured_ratio {
     std::size_t scenes = 0;
     estimate log{std::nan(""), 0, 1};
 };
 
-/// The mean over the scenes that both play, which know nothing of each other.
+/// The mean over the scenes that have both lines; scenes are independent estimates.
 measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& in) {
-    std::vector<estimate> all;
+    std::vector<estimate> logs;
     for (const atlas_scene& scene : atlas) {
         if (!in(scene)) continue;
         const atlas_line* arm = scene.find(r.arm);
         const atlas_line* base = scene.find(r.base);
         if (!arm || !base) continue;
-        if (const estimate one = log_ratio_in(scene, *arm, *base, span_of_time::frame); one.known()) all.push_back(one);
+        if (const estimate log = log_ratio_in(scene, *arm, *base, span_of_time::frame); log.known())
+            logs.push_back(log);
     }
-    return all.empty() ? measured_ratio() : measured_ratio{all.size(), mean_of(all)};
+    return logs.empty() ? measured_ratio() : measured_ratio{logs.size(), mean_of(logs)};
 }
 
 measured_ratio measured(const std::vector<atlas_scene>& atlas, const stated_ratio& r) {
@@ -251,39 +251,39 @@ std::string what_of(const stated_ratio& r) {
 }  // namespace
 
 std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas) {
-    std::vector<judged_statement> all;
+    std::vector<judged_statement> verdicts;
     std::vector<tested> evidence;
     std::vector<judged_ratio*> judged;
-    // Pointers to ratios stay good: room for all is made first.
-    all.reserve(statements().size());
+    // Reserve first, because `judged` points to the ratios.
+    verdicts.reserve(statements().size());
     for (const statement& s : statements()) {
-        judged_statement& made =
-            all.emplace_back(s.id, s.source, s.says, verdict_kind::undecided, std::vector<judged_ratio>());
-        made.ratios.reserve(s.ratios.size());
+        judged_statement& entry =
+            verdicts.emplace_back(s.id, s.source, s.says, verdict_kind::undecided, std::vector<judged_ratio>());
+        entry.ratios.reserve(s.ratios.size());
         for (const stated_ratio& r : s.ratios) {
-            const measured_ratio found = measured(atlas, r);
-            if (found.scenes == 0 || !found.log.known()) continue;
-            const interval range = found.log.range();
-            judged.push_back(&made.ratios.emplace_back(r.where, what_of(r), found.scenes, std::exp(found.log.value),
-                                                       interval{std::exp(range.low), std::exp(range.high)},
-                                                       support::undecided));
-            evidence.push_back({r.expected, tails_of(found.log, r.band)});
+            const measured_ratio ratio = measured(atlas, r);
+            if (ratio.scenes == 0 || !ratio.log.known()) continue;
+            const interval range = ratio.log.range();
+            judged.push_back(&entry.ratios.emplace_back(r.where, what_of(r), ratio.scenes, std::exp(ratio.log.value),
+                                                        interval{std::exp(range.low), std::exp(range.high)},
+                                                        support::undecided));
+            evidence.push_back({r.expected, tails_of(ratio.log, r.band)});
         }
     }
     const std::vector<double> levels = levels_together(evidence);
     for (std::size_t i = 0; i < judged.size(); ++i)
         judged[i]->found = support_of(evidence[i].expected, evidence[i].p, levels[i]);
-    for (judged_statement& s : all) {
-        std::vector<support> found;
-        for (const judged_ratio& r : s.ratios) found.push_back(r.found);
-        s.verdict = verdict_of(found);
+    for (judged_statement& s : verdicts) {
+        std::vector<support> endpoints;
+        for (const judged_ratio& r : s.ratios) endpoints.push_back(r.found);
+        s.verdict = verdict_of(endpoints);
     }
-    return all;
+    return verdicts;
 }
 
-table statements_table(const std::vector<judged_statement>& all) {
+table statements_table(const std::vector<judged_statement>& judged) {
     table t{{{"statement", false}, {"says", false}, {"source", false}, {"verdict", false}, {"ratios", false}}, {}};
-    for (const judged_statement& s : all) {
+    for (const judged_statement& s : judged) {
         std::string ratios;
         for (const judged_ratio& r : s.ratios) ratios += (ratios.empty() ? "" : ", ") + fmt::format("{:.3g}", r.ratio);
         t.rows.push_back({s.id, s.says, s.source, text_of(s.verdict), ratios});
@@ -291,9 +291,9 @@ table statements_table(const std::vector<judged_statement>& all) {
     return t;
 }
 
-table ratios_table(const std::vector<judged_statement>& all) {
+table ratios_table(const std::vector<judged_statement>& judged) {
     table t = empty_table({"statement", "where", "time of a frame"}, {"scenes", "ratio", "95 %"}, {"found"});
-    for (const judged_statement& s : all)
+    for (const judged_statement& s : judged)
         for (const judged_ratio& r : s.ratios)
             t.rows.push_back({s.id, r.where, r.what, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),
                               fmt::format("{:.3g}-{:.3g}", r.range.low, r.range.high), text_of(r.found)});

@@ -1,4 +1,4 @@
-/// Who plays in an atlas, what it costs to use one of them everywhere, and how sure ratios are.
+/// Labels of an atlas, their regrets, and ratios with their errors.
 module aabblab.atlas:labels;
 
 import aabb.std;
@@ -7,7 +7,7 @@ import aabblab.statistics;
 
 namespace aabblab {
 
-/// Everybody, in the order in which they play.
+/// All labels, in the order of their first appearance.
 [[nodiscard]] inline std::vector<std::string> labels_of(const std::vector<atlas_scene>& atlas) {
     std::vector<std::string> labels;
     for (const atlas_scene& scene : atlas)
@@ -16,7 +16,7 @@ namespace aabblab {
     return labels;
 }
 
-/// What a line is made of, whatever the parameters: "neighbour_list + bucket + columns + simd".
+/// The strategies of a line without their parameters: "neighbour_list + bucket + columns + simd".
 [[nodiscard]] inline std::string family_of(std::string_view label) {
     std::string family;
     for (std::size_t at = 0; at < label.size(); ++at) {
@@ -26,7 +26,7 @@ namespace aabblab {
     return family;
 }
 
-/// Times over those of the fastest, of each scene that it plays, in ascending order.
+/// Times relative to the fastest, one per scene that has the label, in ascending order.
 [[nodiscard]] inline std::vector<double> regrets_of(const std::vector<atlas_scene>& atlas, const std::string& label,
                                                     span_of_time of) {
     std::vector<double> regrets;
@@ -36,12 +36,12 @@ namespace aabblab {
     return regrets;
 }
 
-/// Of two lines of a scene. Where both have one repeat, repeats of others say how much they differ; nothing is known
-/// where those have one too.
+/// The logarithm of the ratio of two lines. If their own repeats give no error, it is pooled from the repeats of all
+/// lines of the scene; without any repeats the result is unknown.
 [[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_line& arm, const atlas_line& base,
                                            span_of_time of) {
-    const estimate one = log_ratio(arm, base, of);
-    if (one.error > 0) return one;
+    const estimate own = log_ratio(arm, base, of);
+    if (own.error > 0) return own;
     double squares = 0;
     double degrees = 0;
     for (const atlas_line& line : scene.lines) {
@@ -53,7 +53,7 @@ namespace aabblab {
         degrees += count - 1;
     }
     if (degrees == 0) return {std::nan(""), 0, 1};
-    return {one.value, std::sqrt(2 * squares / degrees), degrees};
+    return {own.value, std::sqrt(2 * squares / degrees), degrees};
 }
 
 }  // namespace aabblab

@@ -11,7 +11,7 @@ namespace {
 
 constexpr span_of_time frame = span_of_time::frame;
 
-/// What a frame's time is made of, as far as a scene's measures tell it: so many of each.
+/// A term of the cost model: a count per frame, computed from a scene's measures.
 struct term {
     std::string_view name;
     double (*of)(const scene_measures& m);
@@ -23,7 +23,7 @@ double objects(const scene_measures& m) {
 double pairs(const scene_measures& m) {
     return objects(m) * m.pairs_an_object;
 }
-/// How far boxes move beside each other, in mean extents; beyond one they are new.
+/// The relative motion of neighbouring boxes in typical extents, at most 1.
 double renewed(const scene_measures& m) {
     return m.motion && m.boxes.typical_extent > 0 ? std::min(1.0, m.motion->relative / m.boxes.typical_extent) : 0;
 }
@@ -50,15 +50,15 @@ std::vector<double> work_of(const scene_measures& m) {
 }
 
 std::vector<timed_work> seen_by(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
-    std::vector<timed_work> all;
+    std::vector<timed_work> observations;
     for (const atlas_scene& scene : atlas) {
         const atlas_line* line = scene.find(label);
         if (!line || scene.unseen != unseen) continue;
-        // As many repeats in each: the median stands for all.
-        all.push_back(
+        // One observation per scene gives each the same weight, whatever its repeats.
+        observations.push_back(
             {scene.scene.kind + " " + settings_text(scene.scene), work_of(scene.measures), {1e6 * line->ms(frame)}});
     }
-    return all;
+    return observations;
 }
 
 double predicted(const std::vector<estimate>& costs, const scene_measures& m) {
@@ -71,7 +71,7 @@ double predicted(const std::vector<estimate>& costs, const scene_measures& m) {
 }  // namespace
 
 std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
-    std::vector<line_model> all;
+    std::vector<line_model> models;
     const std::vector<std::string> labels = labels_of(atlas);
     progress shown("fitting costs", labels.size());
     for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -83,9 +83,9 @@ std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
         m.seen = accuracy_of(seen, m.costs);
         if (const std::vector<timed_work> unseen = seen_by(atlas, label, true); !unseen.empty())
             m.unseen = accuracy_of(unseen, m.costs);
-        all.push_back(std::move(m));
+        models.push_back(std::move(m));
     }
-    return all;
+    return models;
 }
 
 table models_table(const std::vector<line_model>& models) {
@@ -99,8 +99,8 @@ table models_table(const std::vector<line_model>& models) {
 
 table costs_table(const std::vector<line_model>& models) {
     table t{{{"who", false}}, {}};
-    for (const term& one : terms)
-        for (const char* part : {"", " low", " high"}) t.columns.push_back({std::string(one.name) + part});
+    for (const term& cost : terms)
+        for (const char* part : {"", " low", " high"}) t.columns.push_back({std::string(cost.name) + part});
     for (const line_model& m : models) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{m.label});
         for (const estimate& cost : m.costs)
@@ -114,16 +114,16 @@ std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas, con
     std::vector<double> regrets;
     for (const atlas_scene& scene : atlas) {
         if (!scene.unseen) continue;
-        const atlas_line* taken = nullptr;
+        const atlas_line* chosen = nullptr;
         double least = std::numeric_limits<double>::infinity();
         for (const line_model& m : models) {
             const atlas_line* line = scene.find(m.label);
             const double ns = predicted(m.costs, scene.measures);
             if (!line || line->automatic || ns >= least) continue;
-            taken = line;
+            chosen = line;
             least = ns;
         }
-        if (taken) regrets.push_back(taken->ms(frame) / scene.fastest(frame).ms(frame));
+        if (chosen) regrets.push_back(chosen->ms(frame) / scene.fastest(frame).ms(frame));
     }
     return regrets;
 }

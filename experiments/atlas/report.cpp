@@ -12,15 +12,15 @@ namespace {
 struct section {
     std::string title;
     std::string text;
-    std::string file;  ///< of the table as CSV
+    std::string file;  ///< stem of the CSV file
     table content;
-    bool shown = true;  ///< in the page; else in its file alone
+    bool shown = true;  ///< in the page; otherwise only in its file
 };
 
 std::vector<atlas_scene> of_map(const std::vector<atlas_scene>& atlas, bool unseen) {
-    std::vector<atlas_scene> some;
-    std::ranges::copy_if(atlas, std::back_inserter(some), [&](const atlas_scene& s) { return s.unseen == unseen; });
-    return some;
+    std::vector<atlas_scene> selected;
+    std::ranges::copy_if(atlas, std::back_inserter(selected), [&](const atlas_scene& s) { return s.unseen == unseen; });
+    return selected;
 }
 
 std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
@@ -42,7 +42,7 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
     const std::vector<border> classic_borders = borders_of(classic);
     const std::vector<line_model> models = models_of(atlas);
     const std::vector<judged_statement> judged = judged_statements(atlas);
-    std::vector<section> all{
+    std::vector<section> sections{
         {"Who wins",
          "Of a frame after the first. Shown: the interval of the ratio of the next fastest lies above 1. As fast: not "
          "shown to be slower than the fastest.",
@@ -56,26 +56,28 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
          "Of all frames, as short as the scenes are; sorting by insertion takes quadratic time in the first.",
          "regrets_whole", regrets_table(atlas, span_of_time::whole)}};
     if (const auto unseen = of_map(atlas, true); !unseen.empty())
-        all.push_back({"The same of a frame, in the scenes that the map does not hold", "", "regrets_unseen",
-                       regrets_table(unseen, span_of_time::frame)});
-    all.push_back({"Borders",
-                   "Along one parameter, all others equal: where the fastest of one scene and that of the next take "
-                   "the same time, on a line between the logarithms of their ratios; the geometric mean, with an "
-                   "interval that widens where scenes disagree, the least and the greatest. Each border has its "
-                   "interval in borders.csv.",
-                   "borders_summary", borders_summary(borders)});
-    all.push_back({"Borders without columns", "", "borders_classic_summary", borders_summary(classic_borders)});
-    all.push_back({"", "", "borders", borders_table(borders), false});
-    all.push_back({"", "", "borders_classic", borders_table(classic_borders), false});
-    all.push_back({"Predicted times", models_text(atlas, models), "models", models_table(models)});
-    all.push_back({"", "", "costs", costs_table(models), false});
-    all.push_back({"", "", "cells", cells_table(atlas), false});
-    all.push_back({"Statements of others",
-                   "Judged as the paper's claims are: each ratio is a geometric mean over scenes, its interval widens "
-                   "where they disagree, and all are decided together. Below 1 favours the statement.",
-                   "statements", statements_table(judged)});
-    all.push_back({"Their ratios", "", "statement_ratios", ratios_table(judged)});
-    return all;
+        sections.push_back({"The same of a frame, in the scenes that the map does not hold", "", "regrets_unseen",
+                            regrets_table(unseen, span_of_time::frame)});
+    sections.push_back(
+        {"Borders",
+         "Along one parameter, all others equal: where the fastest of one scene and that of the next take "
+         "the same time, on a line between the logarithms of their ratios; the geometric mean, with an "
+         "interval that widens where scenes disagree, the least and the greatest. Each border has its "
+         "interval in borders.csv.",
+         "borders_summary", borders_summary(borders)});
+    sections.push_back({"Borders without columns", "", "borders_classic_summary", borders_summary(classic_borders)});
+    sections.push_back({"", "", "borders", borders_table(borders), false});
+    sections.push_back({"", "", "borders_classic", borders_table(classic_borders), false});
+    sections.push_back({"Predicted times", models_text(atlas, models), "models", models_table(models)});
+    sections.push_back({"", "", "costs", costs_table(models), false});
+    sections.push_back({"", "", "cells", cells_table(atlas), false});
+    sections.push_back(
+        {"Statements of others",
+         "Judged as the paper's claims are: each ratio is a geometric mean over scenes, its interval widens "
+         "where they disagree, and all are decided together. Below 1 favours the statement.",
+         "statements", statements_table(judged)});
+    sections.push_back({"Their ratios", "", "statement_ratios", ratios_table(judged)});
+    return sections;
 }
 
 std::string heading_of(const std::vector<atlas_scene>& atlas) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr span_of_time frame = span_of_time::frame;
 
-/// Who follows the fastest; none where nobody does.
+/// The second fastest line; null if there is none.
 const atlas_line* second_of(const atlas_scene& scene) {
     const atlas_line& best = scene.fastest(frame);
     const atlas_line* second = nullptr;
@@ -19,7 +19,7 @@ const atlas_line* second_of(const atlas_scene& scene) {
     return second;
 }
 
-/// Whether the interval of the ratio to the fastest lies above 1.
+/// True if the interval of the ratio to the fastest lies above 1.
 bool is_slower(const atlas_line& line, const atlas_line& best) {
     return log_ratio(line, best, frame).range().low > 0;
 }
@@ -32,30 +32,30 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
         std::string label;
         std::size_t scenes = 0, fastest = 0, shown = 0, as_fast = 0;
     };
-    std::vector<standing> all;
+    std::vector<standing> standings;
     for (const std::string& label : labels_of(atlas)) {
-        standing& one = all.emplace_back();
-        one.label = label;
+        standing& entry = standings.emplace_back();
+        entry.label = label;
         for (const atlas_scene& scene : atlas) {
             const atlas_line* line = scene.find(label);
             if (!line) continue;
-            ++one.scenes;
+            ++entry.scenes;
             const atlas_line& best = scene.fastest(frame);
             if (line != &best) {
-                if (!is_slower(*line, best)) ++one.as_fast;
+                if (!is_slower(*line, best)) ++entry.as_fast;
                 continue;
             }
-            ++one.fastest;
+            ++entry.fastest;
             const atlas_line* second = second_of(scene);
-            if (!second || is_slower(*second, best)) ++one.shown;
+            if (!second || is_slower(*second, best)) ++entry.shown;
         }
     }
-    std::ranges::stable_sort(all, [](const standing& a, const standing& b) {
+    std::ranges::stable_sort(standings, [](const standing& a, const standing& b) {
         return a.fastest > b.fastest || (a.fastest == b.fastest && a.as_fast > b.as_fast);
     });
-    for (const standing& one : all)
-        t.rows.push_back({std::to_string(t.rows.size() + 1), one.label, grouped(one.scenes), grouped(one.fastest),
-                          grouped(one.shown), grouped(one.as_fast)});
+    for (const standing& entry : standings)
+        t.rows.push_back({std::to_string(t.rows.size() + 1), entry.label, grouped(entry.scenes), grouped(entry.fastest),
+                          grouped(entry.shown), grouped(entry.as_fast)});
     return t;
 }
 
@@ -83,8 +83,8 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
                                        second ? second->label : ""};
         if (second) {
             const estimate ratio = log_ratio(*second, best, frame);
-            for (const double one : {ratio.value, ratio.range().low, ratio.range().high})
-                cells.push_back(text(std::exp(one)));
+            for (const double log : {ratio.value, ratio.range().low, ratio.range().high})
+                cells.push_back(text(std::exp(log)));
         } else {
             cells.resize(cells.size() + 3);
         }
@@ -101,21 +101,21 @@ table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of) {
         std::size_t beyond = 0;
         quartiles of{};
     };
-    std::vector<standing> all;
+    std::vector<standing> standings;
     for (const std::string& label : labels_of(atlas)) {
-        standing one{label, regrets_of(atlas, label, of), 0, {}};
-        one.beyond = static_cast<std::size_t>(std::ranges::count_if(one.regrets, [](double r) { return r > 1.3; }));
-        one.of = quartiles_of(one.regrets);
-        all.push_back(std::move(one));
+        standing entry{label, regrets_of(atlas, label, of), 0, {}};
+        entry.beyond = static_cast<std::size_t>(std::ranges::count_if(entry.regrets, [](double r) { return r > 1.3; }));
+        entry.of = quartiles_of(entry.regrets);
+        standings.push_back(std::move(entry));
     }
-    std::ranges::stable_sort(all, {}, [](const standing& one) { return one.of.median; });
+    std::ranges::stable_sort(standings, {}, [](const standing& entry) { return entry.of.median; });
     table t{{{row_number}, {"used everywhere", false}, {"scenes"}, {"median"}, {"9 of 10"}, {"worst"}, {"over 1.3"}},
             {}};
-    for (const standing& one : all)
-        t.rows.push_back({std::to_string(t.rows.size() + 1), one.label, grouped(one.regrets.size()),
-                          fmt::format("{:.2f}", one.of.median),
-                          fmt::format("{:.2f}", one.regrets[one.regrets.size() * 9 / 10]),
-                          fmt::format("{:.2f}", one.regrets.back()), grouped(one.beyond)});
+    for (const standing& entry : standings)
+        t.rows.push_back({std::to_string(t.rows.size() + 1), entry.label, grouped(entry.regrets.size()),
+                          fmt::format("{:.2f}", entry.of.median),
+                          fmt::format("{:.2f}", entry.regrets[entry.regrets.size() * 9 / 10]),
+                          fmt::format("{:.2f}", entry.regrets.back()), grouped(entry.beyond)});
     return t;
 }
 

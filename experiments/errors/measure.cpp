@@ -15,27 +15,27 @@ namespace aabblab {
 
 namespace {
 
-/// Triangle tests that take turns with batches of pairs: each batch is a round, so that none always finds the cache as
-/// the same one left it.
-/// @tparam Point what is found of a test
+/// Runs triangle tests alternately on batches of pairs. The order varies from batch to batch, so that no test always
+/// inherits the cache state of the same predecessor.
+/// @tparam Point the result of a test
 template <class Point>
 class tests_in_turn {
 public:
-    struct one {
+    struct entry {
         Point point;
         std::unique_ptr<aabb::triangle_test> test;
-        std::size_t share = 1;   ///< of how many batches it takes part in one
-        std::vector<double> ns;  ///< a pair, of each batch
+        std::size_t share = 1;   ///< runs on every `share`-th batch
+        std::vector<double> ns;  ///< per pair, for each batch
     };
 
-    void add(one added) { all_.push_back(std::move(added)); }
+    void add(entry added) { entries_.push_back(std::move(added)); }
 
-    /// @param pairs in the batch
+    /// @param pairs the number of pairs in the batch
     /// @param work is timed, for each test
-    /// @param judge follows it, untimed
+    /// @param judge compares the result with the ground truth, untimed
     template <class Work, class Judge>
     void play(std::size_t pairs, Work work, Judge judge) {
-        run_round(all_, batches_, [&](one& turn) {
+        run_round(entries_, batches_, [&](entry& turn) {
             if (batches_ % turn.share != 0) return;
             const double ms = milliseconds_of([&] { work(*turn.test); });
             turn.ns.push_back(ms * 1e6 / static_cast<double>(pairs));
@@ -44,28 +44,28 @@ public:
         ++batches_;
     }
 
-    /// @param time the member of a point that gets the quartiles of its times
+    /// @param time the member of a point that receives the quartiles of its times
     [[nodiscard]] std::vector<Point> points(quartiles Point::* time) {
         std::vector<Point> points;
-        for (one& o : all_) {
-            if (!o.ns.empty()) o.point.*time = quartiles_of(o.ns);
-            points.push_back(std::move(o.point));
+        for (entry& e : entries_) {
+            if (!e.ns.empty()) e.point.*time = quartiles_of(e.ns);
+            points.push_back(std::move(e.point));
         }
         return points;
     }
 
 private:
-    std::vector<one> all_;
+    std::vector<entry> entries_;
     std::size_t batches_ = 0;
 };
 
-/// As many pairs as stay in the processor's cache with their answers.
+/// A batch of this size stays in the cache, together with its results.
 constexpr std::size_t pairs_in_batch = 4096;
 
-/// The methods of a study on their way through one set of pairs.
-class one_set {
+/// Runs the methods of a study on one set of pairs.
+class set_run {
 public:
-    one_set(const error_study& study, const std::string& name, bool in_double) {
+    set_run(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
             for (const aabb::strategy_choice& choice : curve.triangles) {
                 std::unique_ptr<aabb::triangle_test> test = triangle_test_named(choice);
@@ -80,9 +80,9 @@ public:
         truth_.resize(batch.size());
         for (std::size_t i = 0; i < batch.size(); ++i)
             truth_[i] = static_cast<std::uint8_t>(aabb::exactly_intersect(batch[i].a, batch[i].b));
-        answers_.resize(batch.size());
+        results_.resize(batch.size());
         methods_.play(
-            batch.size(), [&](aabb::triangle_test& test) { test.intersect(batch, answers_); },
+            batch.size(), [&](aabb::triangle_test& test) { test.intersect(batch, results_); },
             [&](error_point& point) { count(point); });
     }
 
@@ -90,34 +90,34 @@ public:
 
 private:
     void count(error_point& point) const {
-        point.count += answers_.size();
-        for (std::size_t i = 0; i < answers_.size(); ++i) {
+        point.count += results_.size();
+        for (std::size_t i = 0; i < results_.size(); ++i) {
             point.intersecting += truth_[i];
-            point.false_negatives += static_cast<std::uint64_t>(truth_[i] > answers_[i]);
-            point.false_positives += static_cast<std::uint64_t>(truth_[i] < answers_[i]);
+            point.false_negatives += static_cast<std::uint64_t>(truth_[i] > results_[i]);
+            point.false_positives += static_cast<std::uint64_t>(truth_[i] < results_[i]);
         }
     }
 
     tests_in_turn<error_point> methods_;
     std::vector<std::uint8_t> truth_;
-    std::vector<std::uint8_t> answers_;
+    std::vector<std::uint8_t> results_;
 };
 
 template <class Real>
 std::vector<error_point> points_of(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
-    one_set all(study, set.pair_class, set.in_double);
+    set_run run(study, set.pair_class, set.in_double);
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<Real>> batch;
     for (std::uint64_t left = set.count; left > 0; left -= batch.size()) {
         batch.resize(std::min<std::uint64_t>(left, pairs_in_batch));
         source.next(batch);
-        all.play(std::span<const aabb::triangle_pair<Real>>(batch));
+        run.play(std::span<const aabb::triangle_pair<Real>>(batch));
         shown.at(done += batch.size());
     }
-    return all.points();
+    return run.points();
 }
 
-/// Appends the pairs of two objects.
+/// Appends the candidate pairs of two objects.
 void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
                     std::vector<aabb::triangle_pair<float>>& candidates) {
     const aabb::box bounds_b = aabb::bounds_of(b);
@@ -140,8 +140,8 @@ void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::m
             candidates.push_back({a.triangle(p.a), carried[p.b - a.triangle_count()]});
 }
 
-/// The pairs of triangles whose boxes overlap, of objects whose boxes do, over all frames: the second triangle carried
-/// into the frame of the first one's mesh, as a tree's leaves are.
+/// The pairs of triangles with overlapping boxes, of objects with overlapping boxes, over all frames. The second
+/// triangle is transformed into the frame of the first mesh, as in the leaves of a tree.
 std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& choice) {
     const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
     std::vector<aabb::triangle_pair<float>> candidates;
@@ -154,16 +154,16 @@ std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& 
 }
 
 std::vector<error_point> points_of(const error_study& study, const scene_choice& scene) {
-    one_set all(study, scene.kind + " " + parameters_text(scene), false);
+    set_run run(study, scene.kind + " " + parameters_text(scene), false);
     std::vector<aabb::triangle_pair<float>> pairs = candidate_triangles(scene);
     if (pairs.empty())
         throw aabb::input_error(scene.kind + " " + parameters_text(scene) + " has no triangles whose boxes overlap");
-    // A walk meets them in an order that no processor can guess; a search finds them row by row.
+    // A tree traversal yields pairs in an unpredictable order; this search yields them row by row.
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
     const std::span<const aabb::triangle_pair<float>> rest(pairs);
     for (std::size_t at = 0; at < pairs.size(); at += pairs_in_batch)
-        all.play(rest.subspan(at, std::min(pairs_in_batch, pairs.size() - at)));
-    return all.points();
+        run.play(rest.subspan(at, std::min(pairs_in_batch, pairs.size() - at)));
+    return run.points();
 }
 
 constexpr std::size_t hits_in_batch = 1024;
@@ -178,10 +178,10 @@ void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
     greatest.bound = errors.bound;
 }
 
-/// The tests that construct on their way through the hits of one class.
-class one_class {
+/// Runs the constructing tests on the hits of one class.
+class class_run {
 public:
-    explicit one_class(const pair_set& set) {
+    explicit class_run(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
             const bool of_library = std::ranges::find(strategies, name) == strategies.end();
@@ -195,14 +195,14 @@ public:
     void play(std::span<const aabb::triangle_pair<double>> hits) {
         std::deque<aabb::exact_intersection> exact;
         for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);
-        std::vector<aabb::triangle_intersection> made(hits.size());
+        std::vector<aabb::triangle_intersection> constructed(hits.size());
         const auto construct = [&](aabb::triangle_test& test) {
-            for (std::size_t k = 0; k < hits.size(); ++k) made[k] = test.intersection(hits[k].a, hits[k].b);
+            for (std::size_t k = 0; k < hits.size(); ++k) constructed[k] = test.intersection(hits[k].a, hits[k].b);
         };
         tests_.play(hits.size(), construct, [&](hit_point& point) {
             point.count += hits.size();
             for (std::size_t k = 0; k < hits.size(); ++k) {
-                const aabb::corner_errors errors = exact[k].errors_of(made[k]);
+                const aabb::corner_errors errors = exact[k].errors_of(constructed[k]);
                 ++point.kinds[static_cast<std::size_t>(exact[k].kind())];
                 point.different += static_cast<std::uint64_t>(!errors.same);
                 point.outside += static_cast<std::uint64_t>(errors.same && !errors.within);
@@ -223,13 +223,13 @@ private:
 
 template <class Real>
 std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint64_t done) {
-    one_class all(set);
+    class_run run(set);
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<double>> batch;
     std::uint64_t tried = 0;
     std::uint64_t hits = 0;
     const auto play = [&] {
-        all.play(batch);
+        run.play(batch);
         batch.clear();
         shown.at(done + hits);
     };
@@ -243,7 +243,7 @@ std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint
         if (batch.size() == hits_in_batch) play();
     }
     if (!batch.empty()) play();
-    return all.points(tried);
+    return run.points(tried);
 }
 
 /// "0", "0.53", "4.4e-16".
@@ -260,10 +260,10 @@ std::vector<error_point> measure_errors(const error_study& study,
         std::ranges::move(more, std::back_inserter(points));
         if (finished) finished(points);
     };
-    std::uint64_t all = 0;
-    for (const pair_set& set : study.pairs) all += set.count;
+    std::uint64_t count = 0;
+    for (const pair_set& set : study.pairs) count += set.count;
     {
-        progress shown("pairs of triangles", all);
+        progress shown("pairs of triangles", count);
         std::size_t done = 0;
         for (const pair_set& set : study.pairs)
             add(set.in_double ? points_of<double>(study, set, shown, done) : points_of<float>(study, set, shown, done));
@@ -278,9 +278,9 @@ std::vector<error_point> measure_errors(const error_study& study,
 
 std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
                                     const std::function<void(std::span<const hit_point>)>& finished) {
-    std::uint64_t all = 0;
-    for (const pair_set& set : sets) all += set.count;
-    progress shown("hits", all);
+    std::uint64_t count = 0;
+    for (const pair_set& set : sets) count += set.count;
+    progress shown("hits", count);
     std::vector<hit_point> points;
     std::uint64_t done = 0;
     for (const pair_set& set : sets) {

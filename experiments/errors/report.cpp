@@ -14,8 +14,8 @@ namespace {
 /// Two numbers of a method; less is better in both.
 using cost = std::array<double, 2>;
 
-/// Those that nothing else is better than in one number and at least as good in the other, by the first; of equal ones
-/// one.
+/// The Pareto front: the indices of the costs that no other cost dominates, in ascending order of the first number; of
+/// equal costs only one.
 std::vector<std::size_t> front_of(std::span<const cost> costs) {
     std::vector<std::size_t> order(costs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -26,14 +26,14 @@ std::vector<std::size_t> front_of(std::span<const cost> costs) {
     return front;
 }
 
-/// A text as part of the name of a file.
+/// Replaces characters that are unsafe in file names.
 std::string file_name(std::string text) {
     for (char& c : text)
         if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '_') c = '-';
     return text.substr(0, 100);
 }
 
-/// A method over several sets of pairs.
+/// The results of a method summed over several sets of pairs.
 struct pooled : error_point {
     double ns_of_sets = 0;  ///< sum of medians
     std::size_t sets = 0;
@@ -42,25 +42,25 @@ struct pooled : error_point {
     [[nodiscard]] double ns() const { return ns_of_sets / static_cast<double>(sets); }
 };
 
-/// In the order of the methods.
+/// One entry per method, in order of appearance.
 std::vector<pooled> pooled_over(std::span<const error_point> points) {
-    std::vector<pooled> all;
+    std::vector<pooled> methods;
     for (const error_point& p : points) {
-        auto found =
-            std::ranges::find_if(all, [&](const pooled& m) { return m.curve == p.curve && m.triangle == p.triangle; });
-        if (found == all.end()) {
-            found = all.emplace(found);
-            found->curve = p.curve;
-            found->triangle = p.triangle;
+        auto method = std::ranges::find_if(
+            methods, [&](const pooled& m) { return m.curve == p.curve && m.triangle == p.triangle; });
+        if (method == methods.end()) {
+            method = methods.emplace(method);
+            method->curve = p.curve;
+            method->triangle = p.triangle;
         }
-        found->count += p.count;
-        found->intersecting += p.intersecting;
-        found->false_negatives += p.false_negatives;
-        found->false_positives += p.false_positives;
-        found->ns_of_sets += p.ns_a_pair.median;
-        ++found->sets;
+        method->count += p.count;
+        method->intersecting += p.intersecting;
+        method->false_negatives += p.false_negatives;
+        method->false_positives += p.false_positives;
+        method->ns_of_sets += p.ns_a_pair.median;
+        ++method->sets;
     }
-    return all;
+    return methods;
 }
 
 pair_group group_of(const error_point& p) {
@@ -70,9 +70,10 @@ pair_group group_of(const error_point& p) {
 }
 
 std::vector<error_point> of_group(std::span<const error_point> points, pair_group group) {
-    std::vector<error_point> some;
-    std::ranges::copy_if(points, std::back_inserter(some), [&](const error_point& p) { return group_of(p) == group; });
-    return some;
+    std::vector<error_point> subset;
+    std::ranges::copy_if(points, std::back_inserter(subset),
+                         [&](const error_point& p) { return group_of(p) == group; });
+    return subset;
 }
 
 /// "0", "1.2e-05", "0.31": a share of the pairs.
@@ -117,13 +118,13 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
     std::vector<cost> costs;
     for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
     for (const std::size_t i : front_of(costs)) front.points.push_back(point_of(methods[i]));
-    // Below the curves.
+    // Drawn first, below the curves.
     f.lines.insert(f.lines.begin(), front);
     f.lines.push_back({"nothing wrong (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
     return f;
 }
 
-/// Where a composition stands in a plot.
+/// The position of a composition in a plot.
 struct place {
     std::string label;
     double x;
@@ -135,20 +136,20 @@ public:
     plotted_scene(const scene_summary& scene, const metric_plot& plot)
         : scene_(scene), x_(metric_named(plot.x)), y_(metric_named(plot.y)) {}
 
-    /// Empty where there is nothing to choose from.
+    /// Empty if there is no trade-off.
     [[nodiscard]] std::string statement_of(std::span<const error_curve> curves) const {
-        std::vector<place> all;
+        std::vector<place> positions;
         for (const error_curve& curve : curves)
             for (const aabb::composition& c : curve.compositions)
                 if (std::optional<place> at = place_of(c)) {
                     // A curve of one composition is named as its config names it.
                     if (curve.compositions.size() == 1) at->label = curve.label;
-                    all.push_back(*std::move(at));
+                    positions.push_back(*std::move(at));
                 }
-        const std::vector<std::size_t> front = front_of(costs_of(all));
+        const std::vector<std::size_t> front = front_of(costs_of(positions));
         if (front.size() < 2 || !has_front()) return {};
-        const place& first = all[front.front()];
-        const place& last = all[front.back()];
+        const place& first = positions[front.front()];
+        const place& last = positions[front.back()];
         return fmt::format("In {}, {} has the best {}, {}, with a {} of {}; {} has the best {}, {}, with a {} of {}.",
                            title(), first.label, x_.name, value_text(x_, first.x), y_.name, value_text(y_, first.y),
                            last.label, y_.name, value_text(y_, last.y), x_.name, value_text(x_, last.x));
@@ -159,22 +160,22 @@ public:
                  .caption = fmt::format("{} over {} in {}: each method over its knob.", y_.name, x_.name, title()),
                  .x = {label_of(x_), false},
                  .y = {label_of(y_), false}};
-        std::vector<place> all;
+        std::vector<place> positions;
         for (const error_curve& curve : curves) {
             series line{curve.label};
             for (const aabb::composition& c : curve.compositions)
                 if (const std::optional<place> at = place_of(c)) {
                     line.points.push_back(point_of(*at));
-                    all.push_back(*at);
+                    positions.push_back(*at);
                 }
             f.lines.push_back(std::move(line));
         }
-        // No logarithm shows a zero.
-        f.x.logarithmic = std::ranges::all_of(all, [](const place& at) { return at.x > 0; });
-        f.y.logarithmic = has_floor() || std::ranges::all_of(all, [](const place& at) { return at.y > 0; });
+        // A logarithmic axis cannot show zero.
+        f.x.logarithmic = std::ranges::all_of(positions, [](const place& at) { return at.x > 0; });
+        f.y.logarithmic = has_floor() || std::ranges::all_of(positions, [](const place& at) { return at.y > 0; });
         if (has_front()) {
-            // Below the curves.
-            f.lines.insert(f.lines.begin(), front(all));
+            // Drawn first, below the curves.
+            f.lines.insert(f.lines.begin(), front(positions));
             f.caption += " What no other is better than in both is joined by a line.";
         }
         if (has_floor()) {
@@ -200,8 +201,8 @@ private:
         const auto line = std::ranges::find(scene_.lines, name, &summary_line::name);
         if (line == scene_.lines.end()) return std::nullopt;
         const auto value_of = [&](const metric& m) {
-            const auto all = metrics();
-            return line->metrics[static_cast<std::size_t>(std::ranges::find(all, m.name, &metric::name) - all.begin())];
+            const auto ms = metrics();
+            return line->metrics[static_cast<std::size_t>(std::ranges::find(ms, m.name, &metric::name) - ms.begin())];
         };
         const std::optional<double> x = value_of(x_);
         const std::optional<double> y = value_of(y_);
@@ -225,16 +226,16 @@ private:
         return {at.x, y};
     }
 
-    [[nodiscard]] std::vector<cost> costs_of(std::span<const place> all) const {
+    [[nodiscard]] std::vector<cost> costs_of(std::span<const place> positions) const {
         const auto cost_of = [](const metric& m, double value) { return m.direction == better::more ? -value : value; };
         std::vector<cost> costs;
-        for (const place& at : all) costs.push_back({cost_of(x_, at.x), cost_of(y_, at.y)});
+        for (const place& at : positions) costs.push_back({cost_of(x_, at.x), cost_of(y_, at.y)});
         return costs;
     }
 
-    [[nodiscard]] series front(std::span<const place> all) const {
+    [[nodiscard]] series front(std::span<const place> positions) const {
         series line{"not dominated"};
-        for (const std::size_t i : front_of(costs_of(all))) line.points.push_back(point_of(all[i]));
+        for (const std::size_t i : front_of(costs_of(positions))) line.points.push_back(point_of(positions[i]));
         return line;
     }
 
@@ -270,31 +271,31 @@ table error_summary(std::span<const error_point> points, pair_group group) {
 }
 
 table errors_by_set(std::span<const error_point> points, pair_group group) {
-    const std::vector<error_point> some = of_group(points, group);
+    const std::vector<error_point> subset = of_group(points, group);
     table t{{{"triangle", false}}, {}};
-    const std::vector<std::string> sets = sets_in(some);
+    const std::vector<std::string> sets = sets_in(subset);
     // Scenes of meshes have long names.
     for (const std::string& set : sets)
         t.columns.push_back({group == pair_group::of_meshes ? fmt::format("scene {}", &set - sets.data() + 1) : set});
-    for (const pooled& m : pooled_over(some)) {
+    for (const pooled& m : pooled_over(subset)) {
         std::vector<std::string>& row = t.rows.emplace_back();
         row.push_back(to_text(m.triangle));
         for (const std::string& set : sets) {
-            const auto found = std::ranges::find_if(some, [&](const error_point& p) {
+            const auto point = std::ranges::find_if(subset, [&](const error_point& p) {
                 return p.pairs == set && p.curve == m.curve && p.triangle == m.triangle;
             });
-            row.push_back(found->wrong() == 0 ? "0"
-                                              : fmt::format("{}+{}", share_text(found->false_negatives, found->count),
-                                                            share_text(found->false_positives, found->count)));
+            row.push_back(point->wrong() == 0 ? "0"
+                                              : fmt::format("{}+{}", share_text(point->false_negatives, point->count),
+                                                            share_text(point->false_positives, point->count)));
         }
     }
     return t;
 }
 
 figure group_figure(std::span<const error_point> points, pair_group group) {
-    const std::vector<error_point> some = of_group(points, group);
-    return figure_of("errors_" + name_of(group), fmt::format("{} sets of {}", sets_in(some).size(), title_of(group)),
-                     some);
+    const std::vector<error_point> subset = of_group(points, group);
+    return figure_of("errors_" + name_of(group), fmt::format("{} sets of {}", sets_in(subset).size(), title_of(group)),
+                     subset);
 }
 
 std::string group_statement(std::span<const error_point> points, pair_group group) {
@@ -319,10 +320,10 @@ std::vector<figure> error_figures(std::span<const error_point> points) {
     std::vector<figure> figures;
     for (const pair_group group : groups_in(points)) {
         figures.push_back(group_figure(points, group));
-        const std::vector<error_point> some = of_group(points, group);
-        for (const std::string& set : sets_in(some)) {
+        const std::vector<error_point> subset = of_group(points, group);
+        for (const std::string& set : sets_in(subset)) {
             std::vector<error_point> own;
-            std::ranges::copy_if(some, std::back_inserter(own), [&](const error_point& p) { return p.pairs == set; });
+            std::ranges::copy_if(subset, std::back_inserter(own), [&](const error_point& p) { return p.pairs == set; });
             std::string name = "errors_" + name_of(group) + "_" + file_name(set);
             while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
             figures.push_back(figure_of(name, fmt::format("{}, {}", set, title_of(group)), own));

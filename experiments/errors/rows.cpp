@@ -13,8 +13,8 @@ struct written_choice {
     Choice& choice;
 };
 template <class Choice>
-std::string written(const written_choice<Choice>& one) {
-    return to_text(one.choice);
+std::string written(const written_choice<Choice>& from) {
+    return to_text(from.choice);
 }
 bool taken(const written_choice<aabb::strategy_choice>& to, const std::string& text) {
     to.choice = aabb::parse_strategy(text);

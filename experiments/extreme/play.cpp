@@ -10,64 +10,64 @@ namespace aabblab {
 
 namespace {
 
-/// With each named value of each parameter; a default is not written.
+/// The strategy with each combination of named values of its parameters; defaults are omitted.
 std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, const std::string& name) {
     const auto info = std::ranges::find(aabb::strategies(kind), name, &aabb::strategy_info::name);
-    std::vector<aabb::strategy_choice> all{{name, {}}};
+    std::vector<aabb::strategy_choice> choices{{name, {}}};
     for (const aabb::parameter_info& parameter : info->parameters) {
         const auto* const named = std::get_if<aabb::name_values>(&parameter.values);
         if (!named) continue;
         std::vector<aabb::strategy_choice> more;
         for (const std::string& value : named->names) {
             if (value == parameter.fallback) continue;
-            for (aabb::strategy_choice choice : all) {
+            for (aabb::strategy_choice choice : choices) {
                 choice.settings.push_back({parameter.name, value});
                 more.push_back(std::move(choice));
             }
         }
-        all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+        choices.insert(choices.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
     }
-    return all;
+    return choices;
 }
 
 std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
-    std::vector<aabb::composition> all{c};
+    std::vector<aabb::composition> compositions{c};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (info_of(kind).stage != stage) continue;
         std::vector<aabb::composition> longer;
-        for (const aabb::composition& shorter : all)
+        for (const aabb::composition& shorter : compositions)
             for (const aabb::strategy_choice& choice : with_named_values(kind, c[kind].name))
                 longer.emplace_back(shorter)[kind] = choice;
-        all = std::move(longer);
+        compositions = std::move(longer);
     }
-    return all;
+    return compositions;
 }
 
-/// Every combination of a stage that makes sense, exact ones only; with each value of those parameters that have names
-/// for their values, where that is asked for.
+/// The valid, exact compositions of a stage, on request with every combination of named parameter values.
 std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_values) {
-    std::vector<aabb::composition> all = aabb::every_composition(stage);
+    std::vector<aabb::composition> compositions = aabb::every_composition(stage);
     if (named_values) {
         std::vector<aabb::composition> more;
-        for (const aabb::composition& c : all) std::ranges::move(with_named_values(c, stage), std::back_inserter(more));
-        all = std::move(more);
+        for (const aabb::composition& c : compositions)
+            std::ranges::move(with_named_values(c, stage), std::back_inserter(more));
+        compositions = std::move(more);
     }
     // Scenes of meshes have a global search of their own.
-    std::erase_if(all, [&](const aabb::composition& c) {
+    std::erase_if(compositions, [&](const aabb::composition& c) {
         return !is_exact(c, stage) || !refusal_of(c, stage).empty() || !needs_meshes(c).empty();
     });
-    return all;
+    return compositions;
 }
 
-/// The usual local detection with each triangle test that is inexact.
+/// The default narrow phase with each inexact triangle test.
 std::vector<aabb::composition> inexact_compositions() {
-    std::vector<aabb::composition> all;
+    std::vector<aabb::composition> compositions;
     for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle)) {
         aabb::composition c;
         c[aabb::strategy_kind::triangle] = {info.name, {}};
-        if (!is_exact(c, aabb::stage::local_detection)) all.push_back(std::move(c));
+        if (!is_exact(c, aabb::stage::local_detection)) compositions.push_back(std::move(c));
     }
-    return all;
+    return compositions;
 }
 
 struct named_test {
@@ -76,28 +76,28 @@ struct named_test {
     std::unique_ptr<aabb::triangle_test> test;
 };
 
-/// Strategies with each named value of their parameters, and tests of libraries.
+/// Strategies with each combination of named values of their parameters, then tests of libraries.
 std::vector<named_test> all_triangle_tests() {
-    std::vector<named_test> all;
+    std::vector<named_test> tests;
     for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle))
         for (const aabb::strategy_choice& choice : with_named_values(aabb::strategy_kind::triangle, info.name)) {
             aabb::composition c;
             c[aabb::strategy_kind::triangle] = choice;
-            all.push_back(
+            tests.push_back(
                 {to_text(choice), is_exact(c, aabb::stage::local_detection), aabb::make_triangle_test(choice)});
         }
     for (const aabb::library_test_info& info : aabb::library_tests())
-        all.push_back({info.name, info.exact, aabb::make_library_test({info.name, {}})});
-    return all;
+        tests.push_back({info.name, info.exact, aabb::make_library_test({info.name, {}})});
+    return tests;
 }
 
-extreme_row row_of(const aabb::triangle_case& one, const std::string& name, contender_role role, bool must_be_exact) {
-    return {row_group::cases, one.name, one.about, one.kind, name, {}, role, must_be_exact};
+extreme_row row_of(const aabb::triangle_case& of, const std::string& name, contender_role role, bool must_be_exact) {
+    return {row_group::cases, of.name, of.about, of.kind, name, {}, role, must_be_exact};
 }
 
-/// Counts an answer that is not the true one.
-void hold(bool answer, bool truth, extreme_row& row) {
-    if (answer == truth) return;
+/// Compares a result with the ground truth, and counts errors.
+void check(bool result, bool truth, extreme_row& row) {
+    if (result == truth) return;
     ++(truth ? row.made.missing : row.made.invented);
     row.made.said = aabb::verdict::wrong;
     row.made.reason = truth ? "says that they do not intersect" : "says that they intersect";
@@ -105,91 +105,91 @@ void hold(bool answer, bool truth, extreme_row& row) {
 }
 
 template <class Real>
-extreme_row played(const aabb::triangle_case& one, const named_test& test, bool truth, const char* precision) {
-    extreme_row row = row_of(one, test.name, contender_role::triangle_test, test.exact);
+extreme_row row_of_test(const aabb::triangle_case& of, const named_test& test, bool truth, const char* precision) {
+    extreme_row row = row_of(of, test.name, contender_role::triangle_test, test.exact);
     row.precision = precision;
-    for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(one))
-        hold(test.test->intersects(pair.a, pair.b), truth, row);
+    for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(of))
+        check(test.test->intersects(pair.a, pair.b), truth, row);
     return row;
 }
 
 void play_tests(std::span<const aabb::triangle_case> cases, std::vector<extreme_row>& rows) {
     for (const named_test& test : all_triangle_tests())
-        for (const aabb::triangle_case& one : cases) {
-            rows.push_back(played<float>(one, test, one.intersect, "float"));
-            if (test.test->takes_double()) rows.push_back(played<double>(one, test, one.intersect_double, "double"));
+        for (const aabb::triangle_case& c : cases) {
+            rows.push_back(row_of_test<float>(c, test, c.intersect, "float"));
+            if (test.test->takes_double()) rows.push_back(row_of_test<double>(c, test, c.intersect_double, "double"));
         }
 }
 
-/// The first triangle of each case, then the second, a mesh each.
+/// Two meshes per case, one for each triangle.
 std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
-    std::vector<aabb::mesh> all;
-    for (const aabb::triangle_case& one : cases)
-        for (const aabb::triangle3d* t : {&one.first, &one.second}) {
+    std::vector<aabb::mesh> meshes;
+    for (const aabb::triangle_case& c : cases)
+        for (const aabb::triangle3d* t : {&c.first, &c.second}) {
             const aabb::triangle3f corners = aabb::in_float(*t);
-            all.push_back({{corners[0], corners[1], corners[2]}, {{0, 1, 2}}});
+            meshes.push_back({{corners[0], corners[1], corners[2]}, {{0, 1, 2}}});
         }
-    return all;
+    return meshes;
 }
 
 constexpr auto uncounted = aabb::instrumentation::none;
 
-/// Who plays, under the name that reports have.
+/// A composition, an engine or a triangle test, with its name in reports.
 struct candidate {
     std::string name;
     contender_role role;
-    contender who;
+    contender implementation;
 };
 
-/// Of scenes of boxes, or of meshes.
+/// The candidates for scenes of boxes, or of meshes.
 std::vector<candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
-    std::vector<candidate> all;
+    std::vector<candidate> list;
     for (const aabb::composition& c : exact_compositions(stage, named_values))
-        all.push_back({to_text(c, stage), contender_role::composition, contender_of(c, meshes)});
+        list.push_back({to_text(c, stage), contender_role::composition, contender_of(c, meshes)});
     for (const aabb::engine_info& engine : aabb::engines())
         if (meshes ? engine.collides_meshes : engine.searches_boxes)
-            all.push_back({engine.name, contender_role::engine, contender_of(engine, meshes).value()});
-    if (!meshes) return all;
+            list.push_back({engine.name, contender_role::engine, contender_of(engine, meshes).value()});
+    if (!meshes) return list;
     for (const aabb::composition& c : inexact_compositions())
-        all.push_back(
+        list.push_back(
             {to_text(c[aabb::strategy_kind::triangle]), contender_role::triangle_test, contender_of(c, true)});
-    return all;
+    return list;
 }
 
-/// Either triangle against the other, by every query.
+/// Tests the two triangles in both orders, with every query.
 void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes, const candidate& of,
                 std::vector<extreme_row>& rows) {
-    const std::unique_ptr<aabb::local_stage> stage = of.who.make_local(uncounted);
+    const std::unique_ptr<aabb::local_stage> stage = of.implementation.make_local(uncounted);
     for (const aabb::mesh& m : meshes) stage->add_model(m);
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        extreme_row row = row_of(cases[i], of.name, of.role, of.who.exact);
+        extreme_row row = row_of(cases[i], of.name, of.role, of.implementation.exact);
         const auto first = static_cast<std::uint32_t>(2 * i);
         for (const auto [a, b] : {std::array{first, first + 1}, std::array{first + 1, first}}) {
             std::vector<aabb::index_pair> pairs;
             stage->all_pairs(a, {}, b, {}, pairs);
-            hold(!pairs.empty(), cases[i].intersect, row);
-            hold(stage->first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
-            hold(stage->count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
+            check(!pairs.empty(), cases[i].intersect, row);
+            check(stage->first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
+            check(stage->count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
         }
         rows.push_back(std::move(row));
     }
 }
 
-void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> all, std::vector<extreme_row>& rows) {
+void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> list, std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
     const bool boxes = static_cast<bool>(scene.make_boxes);
-    for (const candidate& one : all) {
-        // Engines list all candidates before they decide on the first.
-        if (one.role == contender_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
+    for (const candidate& c : list) {
+        // Engines always list all pairs before they return the first.
+        if (c.role == contender_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
         extreme_row row{
-            boxes ? row_group::boxes : row_group::meshes, scene.name, scene.summary, {}, one.name, {}, one.role};
-        // Boxes are compared, not computed with: every engine must be exact.
-        row.must_be_exact = boxes ? one.who.exact_boxes : one.who.exact;
+            boxes ? row_group::boxes : row_group::meshes, scene.name, scene.summary, {}, c.name, {}, c.role};
+        // Box tests only compare coordinates, without rounding, so every engine must be exact.
+        row.must_be_exact = boxes ? c.implementation.exact_boxes : c.implementation.exact;
         row.stated_bytes = scene.most_bytes;
-        row.made = boxes ? judge.judge([&] { return one.who.make_global(uncounted); })
-                         : judge.judge([&] { return one.who.make_local(uncounted); });
-        if (one.role == contender_role::composition) require_stated_memory(scene, row.made);
+        row.made = boxes ? judge.judge([&] { return c.implementation.make_global(uncounted); })
+                         : judge.judge([&] { return c.implementation.make_local(uncounted); });
+        if (c.role == contender_role::composition) require_stated_memory(scene, row.made);
         row.as_expected = is_as_expected(scene, row.made, row.must_be_exact);
         rows.push_back(std::move(row));
     }
@@ -201,8 +201,8 @@ std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases) 
     std::vector<extreme_row> rows;
     play_tests(cases, rows);
     const std::vector<aabb::mesh> meshes = meshes_of(cases);
-    for (const candidate& one : candidates(aabb::stage::local_detection, true))
-        if (one.role != contender_role::triangle_test) play_stage(cases, meshes, one, rows);
+    for (const candidate& c : candidates(aabb::stage::local_detection, true))
+        if (c.role != contender_role::triangle_test) play_stage(cases, meshes, c, rows);
     return rows;
 }
 
@@ -210,7 +210,7 @@ std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes
     const bool named_values = size == aabb::extreme_size::full;
     const auto of_boxes = candidates(aabb::stage::global_search, named_values);
     const auto of_meshes = candidates(aabb::stage::local_detection, named_values);
-    // Of as many triangles, parameters would show nothing new and take minutes.
+    // Parameters would add minutes but no insight in scenes with so large meshes.
     const auto of_many = candidates(aabb::stage::local_detection, false);
     std::vector<extreme_row> rows;
     progress shown("extreme scenes", scenes.size());

@@ -12,27 +12,27 @@ namespace {
 
 using row_list = std::vector<const extreme_row*>;
 
-/// The rows that have the same text there, in the order in which the texts come first.
+/// Groups rows by a text, in order of first appearance.
 template <class Text>
 std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> rows, Text text) {
-    std::vector<std::pair<std::string, row_list>> all;
+    std::vector<std::pair<std::string, row_list>> groups;
     for (const extreme_row& row : rows) {
-        auto found = std::ranges::find(all, std::invoke(text, row), &std::pair<std::string, row_list>::first);
-        if (found == all.end()) found = all.insert(all.end(), {std::invoke(text, row), {}});
-        found->second.push_back(&row);
+        auto group = std::ranges::find(groups, std::invoke(text, row), &std::pair<std::string, row_list>::first);
+        if (group == groups.end()) group = groups.insert(groups.end(), {std::invoke(text, row), {}});
+        group->second.push_back(&row);
     }
-    return all;
+    return groups;
 }
 
-/// Those that have this value there.
+/// The rows in which the member has this value.
 template <class Value>
 row_list with(const row_list& rows, Value extreme_row::* member, const Value& value) {
-    row_list all = rows;
-    std::erase_if(all, [&](const extreme_row* row) { return row->*member != value; });
-    return all;
+    row_list selected = rows;
+    std::erase_if(selected, [&](const extreme_row* row) { return row->*member != value; });
+    return selected;
 }
 
-/// Each once.
+/// The distinct names with this role.
 std::vector<std::string> contenders_in(std::span<const extreme_row> rows, contender_role role) {
     std::vector<std::string> names;
     for (const auto& [name, of_contender] : by(rows, &extreme_row::contender))
@@ -40,14 +40,14 @@ std::vector<std::string> contenders_in(std::span<const extreme_row> rows, conten
     return names;
 }
 
-/// "-12 +3" are missing and invented; "-" where nothing is.
+/// "-12 +3" are false negatives and false positives; "-" if there are none.
 std::string counts(std::uint64_t missing, std::uint64_t invented) {
     std::string text = missing > 0 ? "-" + std::to_string(missing) : "";
     if (invented > 0) text += (text.empty() ? "+" : " +") + std::to_string(invented);
     return text.empty() ? "-" : text;
 }
 
-/// Of those that must be exact: "312 exact", "312 refused", "3 WRONG"; the number is of contenders.
+/// Sums up candidates that must be exact: "312 exact", "312 refused", or "3 WRONG".
 std::string sum_cell(const row_list& rows) {
     if (rows.empty()) return "-";
     std::set<std::string> contenders;
@@ -62,8 +62,8 @@ std::string sum_cell(const row_list& rows) {
     return std::to_string(contenders.size()) + (refused ? " refused" : " exact");
 }
 
-/// Of one contender: "exact", "refused", "WRONG", or what it misses and invents where that is allowed; "-" where it has
-/// no part.
+/// The cell of one candidate: "exact", "refused", "WRONG", or its counts of errors if it may be inexact; "-" if it was
+/// not run.
 std::string cell(const row_list& rows) {
     if (rows.empty()) return "-";
     std::uint64_t missing = 0;
@@ -81,7 +81,7 @@ std::string cell(const row_list& rows) {
     return refused ? "refused" : wrong ? "wrong" : "exact";
 }
 
-/// A row for each text: the first columns summarise its rows, then each name has a column.
+/// One row per text: the first columns summarise its rows, then there is one column per name.
 template <class First>
 table contender_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
                       const std::vector<std::string>& names, First first) {
@@ -96,18 +96,18 @@ table contender_table(std::vector<column> columns, std::span<const extreme_row> 
 }
 
 template <class Wanted>
-std::vector<extreme_row> those(std::span<const extreme_row> rows, Wanted wanted) {
-    std::vector<extreme_row> all;
-    std::ranges::copy_if(rows, std::back_inserter(all), wanted);
-    return all;
+std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted wanted) {
+    std::vector<extreme_row> selected;
+    std::ranges::copy_if(rows, std::back_inserter(selected), wanted);
+    return selected;
 }
 
-/// Rows that all get right are left out.
+/// Omits rows without errors.
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
     std::set<std::string> wrong;
     for (const extreme_row& row : rows)
         if (row.made.said == aabb::verdict::wrong) wrong.insert(row.*text);
-    const auto shown = those(rows, [&](const extreme_row& row) { return wrong.contains(row.*text); });
+    const auto shown = filtered(rows, [&](const extreme_row& row) { return wrong.contains(row.*text); });
     return contender_table({{title, false}}, shown, text, contenders_in(rows, contender_role::triangle_test),
                            [](const row_list&) { return std::vector<std::string>(); });
 }
@@ -142,7 +142,7 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 }  // namespace
 
 table case_table(std::span<const extreme_row> rows) {
-    const auto shown = those(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
+    const auto shown = filtered(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
     const auto sums_of = [](const row_list& same) {
         std::set<std::string> cases;
         for (const extreme_row* row : same) cases.insert(row->scene);
@@ -155,8 +155,8 @@ table case_table(std::span<const extreme_row> rows) {
 }
 
 table inexact_case_table(std::span<const extreme_row> rows) {
-    // Those with settings are in the file.
-    const auto shown = those(rows, [](const extreme_row& row) {
+    // Tests with non-default parameters are in the CSV file only.
+    const auto shown = filtered(rows, [](const extreme_row& row) {
         return row.group == row_group::cases && row.role == contender_role::triangle_test && !row.must_be_exact &&
                aabb::parse_strategy(row.contender).settings.empty();
     });
@@ -164,7 +164,7 @@ table inexact_case_table(std::span<const extreme_row> rows) {
 }
 
 table scene_table(std::span<const extreme_row> rows, row_group group) {
-    const auto shown = those(
+    const auto shown = filtered(
         rows, [&](const extreme_row& row) { return row.group == group && row.role != contender_role::triangle_test; });
     return contender_table(
         {{"scene", false}, {"compositions"}}, shown, &extreme_row::scene, contenders_in(shown, contender_role::engine),
@@ -174,7 +174,7 @@ table scene_table(std::span<const extreme_row> rows, row_group group) {
 }
 
 table inexact_scene_table(std::span<const extreme_row> rows) {
-    const auto shown = those(rows, [](const extreme_row& row) {
+    const auto shown = filtered(rows, [](const extreme_row& row) {
         return row.group == row_group::meshes && row.role == contender_role::triangle_test;
     });
     return wrong_table("scene", shown, &extreme_row::scene);
@@ -184,7 +184,7 @@ table class_table(std::span<const extreme_row> rows) {
     table t{{{"may be inexact", false}}, {}};
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
     const auto shown =
-        those(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });
+        filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });
     for (const auto& [name, of_contender] : by(shown, &extreme_row::contender)) {
         aabb::differences sum;
         for (const extreme_row* row : of_contender) sum += row->made.classes;
@@ -196,16 +196,16 @@ table class_table(std::span<const extreme_row> rows) {
 }
 
 std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
-    std::vector<std::string> all;
-    const auto limited = those(
+    std::vector<std::string> sentences;
+    const auto limited = filtered(
         rows, [](const extreme_row& row) { return row.stated_bytes > 0 && row.role == contender_role::composition; });
     for (const auto& [scene, of_scene] : by(limited, &extreme_row::scene)) {
         std::size_t most = 0;
         for (const extreme_row* row : of_scene) most = std::max(most, row->made.bytes);
-        all.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
-                      " bytes, of " + grouped(of_scene.front()->stated_bytes) + " stated");
+        sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
+                            " bytes, of " + grouped(of_scene.front()->stated_bytes) + " stated");
     }
-    return all;
+    return sentences;
 }
 
 std::string csv_of(std::span<const extreme_row> rows) {
@@ -218,24 +218,24 @@ std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {
-    std::vector<std::string> all;
-    const auto refused = those(rows, [](const extreme_row& row) { return row.made.said == aabb::verdict::refused; });
+    std::vector<std::string> sentences;
+    const auto refused = filtered(rows, [](const extreme_row& row) { return row.made.said == aabb::verdict::refused; });
     for (const auto& [sentence, same] : by(refused, [](const extreme_row& row) { return row.made.reason; })) {
         std::vector<std::string> scenes;
         for (const extreme_row* row : same)
             if (std::ranges::find(scenes, row->scene) == scenes.end()) scenes.push_back(row->scene);
-        all.push_back(fmt::format("{}: {}", fmt::join(scenes, ", "), sentence));
+        sentences.push_back(fmt::format("{}: {}", fmt::join(scenes, ", "), sentence));
     }
-    return all;
+    return sentences;
 }
 
 std::vector<std::string> failures_in(std::span<const extreme_row> rows) {
-    std::vector<std::string> all;
+    std::vector<std::string> sentences;
     for (const extreme_row& row : rows)
         if (!row.as_expected)
-            all.push_back(row.full_name() + " on " + row.scene + ": " +
-                          (row.made.said == aabb::verdict::refused ? "refuses: " : "") + row.made.reason);
-    return all;
+            sentences.push_back(row.full_name() + " on " + row.scene + ": " +
+                                (row.made.said == aabb::verdict::refused ? "refuses: " : "") + row.made.reason);
+    return sentences;
 }
 
 }  // namespace aabblab

@@ -7,10 +7,10 @@ namespace aabblab {
 
 namespace {
 
-/// Meshes of `aabblab data` with triangles of zero area.
+/// Meshes of `aabblab data` that have triangles of zero area.
 constexpr std::array<const char*, 2> degenerate_meshes = {"degtri_sliding.off", "mpi.off"};
 
-/// Pairs of a class: the first triangles are one mesh, the second the other, all in place.
+/// Pairs of a class: the first triangles form one mesh, the second triangles the other, in their original positions.
 aabb::extreme_scene scene_of(const pair_class_info& info) {
     constexpr std::size_t count = 40;
     aabb::extreme_scene scene{.name = "pairs_" + std::string(info.name), .summary = std::string(info.summary)};
@@ -32,7 +32,7 @@ aabb::extreme_scene scene_of(const pair_class_info& info) {
     return scene;
 }
 
-/// A mesh in the place of its twin, then a hundredth of its extent beside it.
+/// Two copies of a mesh: first in the same place, then displaced by a hundredth of its extent.
 aabb::extreme_scene scene_of(const std::string& file) {
     aabb::extreme_scene scene{.name = file, .summary = "a real mesh with zero-area triangles, against itself"};
     scene.make_meshes = [file]() -> std::unique_ptr<aabb::mesh_scene> {
@@ -50,18 +50,18 @@ aabb::extreme_scene scene_of(const std::string& file) {
 }  // namespace
 
 extreme_list all_extreme_scenes(aabb::extreme_size size) {
-    extreme_list all{aabb::extreme_scenes(size), {}};
-    for (const pair_class_info& info : pair_classes()) all.scenes.push_back(scene_of(info));
+    extreme_list list{aabb::extreme_scenes(size), {}};
+    for (const pair_class_info& info : pair_classes()) list.scenes.push_back(scene_of(info));
     std::string missing;
     for (const std::string file : degenerate_meshes)
         if (is_mesh(file, {}))
-            all.scenes.push_back(scene_of(file));
+            list.scenes.push_back(scene_of(file));
         else
             missing += (missing.empty() ? "" : " and ") + file;
-    if (!missing.empty()) all.notes.push_back("left out are " + missing + ", which ./aabblab data fetches");
+    if (!missing.empty()) list.notes.push_back("left out are " + missing + ", which ./aabblab data fetches");
     if (!aabb::can_flush_denormals())
-        all.notes.emplace_back("left out are threads that flush denormals, which are not known on this processor");
-    return all;
+        list.notes.emplace_back("left out are threads that flush denormals, which are not known on this processor");
+    return list;
 }
 
 }  // namespace aabblab

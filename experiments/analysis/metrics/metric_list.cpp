@@ -10,7 +10,7 @@ namespace {
 using number = std::optional<double>;
 using member = number row::*;
 
-/// What one clock measured of a row.
+/// The columns of one clock.
 struct times {
     member build, first, update, search, detect;
 };
@@ -26,12 +26,12 @@ metric error_of(std::string name, std::string summary, row_value of) {
     return {std::move(name), "", std::move(summary), metric_group::error, better::less, std::move(of)};
 }
 
-/// Frames after the first one; 1 where there is no other.
+/// The number of frames after frame 0; 1 if there is only that one.
 double frames_after_first(const row& r) {
     return r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
 }
 
-/// A sum over those frames, a frame; empty where there are none.
+/// The mean of a sum per frame after frame 0; empty if there is no such frame.
 row_value a_frame(std::optional<double> row::* sum) {
     return [sum](const row& r) -> std::optional<double> {
         return r.*sum && r.frames > 1 ? std::optional(*(r.*sum) / frames_after_first(r)) : std::nullopt;
@@ -65,20 +65,20 @@ number global_share(const row& r) {
 
 number waiting(const row& r) {
     if (!r.update_cpu_ms || !r.update_ms) return std::nullopt;
-    const double all = *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
-    const double cpu = *r.first_cpu_ms + *r.update_cpu_ms + *r.search_cpu_ms + *r.detect_cpu_ms;
-    return all > 0 ? number(100 * std::max(0.0, 1 - cpu / all)) : std::nullopt;
+    const double wall_ms = *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
+    const double cpu_ms = *r.first_cpu_ms + *r.update_cpu_ms + *r.search_cpu_ms + *r.detect_cpu_ms;
+    return wall_ms > 0 ? number(100 * std::max(0.0, 1 - cpu_ms / wall_ms)) : std::nullopt;
 }
 
 number all_bytes(const row& r) {
-    std::uint64_t all = 0;
+    std::uint64_t sum = 0;
     for (std::size_t i = 0; i < byte_columns.size(); ++i)
-        if (byte_columns[i] != "triangles" && byte_columns[i] != "vertices") all += r.bytes[i].value_or(0);
-    // An engine need not say.
-    return all > 0 ? number(static_cast<double>(all)) : std::nullopt;
+        if (byte_columns[i] != "triangles" && byte_columns[i] != "vertices") sum += r.bytes[i].value_or(0);
+    // Engines need not report bytes.
+    return sum > 0 ? number(static_cast<double>(sum)) : std::nullopt;
 }
 
-/// What of an engine's bytes is its tree is not known.
+/// Empty for engines, because the share of the tree in their bytes is unknown.
 number tree_bytes(const row& r) {
     static const row_value ours = a_triangle(bytes_of({"nodes", "indices"}));
     return r.name.is_reference() ? std::nullopt : ours(r);
@@ -86,10 +86,10 @@ number tree_bytes(const row& r) {
 
 number wrong_share(const row& r) {
     if (!r.missing) return std::nullopt;
-    const auto found = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
+    const auto reported = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
     const auto missing = static_cast<double>(*r.missing);
     const auto invented = static_cast<double>(*r.invented);
-    return (missing + invented) / std::max(found - invented + missing, 1.0);
+    return (missing + invented) / std::max(reported - invented + missing, 1.0);
 }
 
 std::vector<metric> listed() {
@@ -133,38 +133,38 @@ std::vector<metric> listed() {
     };
 }
 
-// What is no work but says how the input, or its cut, was.
+// Counters that describe the input or its partition rather than work.
 bool describes(aabb::work counted) {
     using enum aabb::work;
     return counted == inversions || counted == subsets || counted == segments_wanted || counted == segments_got ||
            counted == pieces;
 }
 
-/// The work of a frame, of every kind that is counted.
+/// One metric per work counter: its value per frame.
 std::vector<metric> work_metrics() {
-    std::vector<metric> all;
+    std::vector<metric> list;
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         std::string spaced(aabb::work_names[i]);
         std::ranges::replace(spaced, '_', ' ');
-        all.push_back({std::string(aabb::work_names[i]), "", spaced + " a frame after frame 0", metric_group::counts,
-                       describes(static_cast<aabb::work>(i)) ? better::neither : better::less,
-                       [i](const row& r) -> std::optional<double> {
-                           if (!r.counts[i]) return std::nullopt;
-                           return static_cast<double>(*r.counts[i]) / frames_after_first(r);
-                       }});
+        list.push_back({std::string(aabb::work_names[i]), "", spaced + " a frame after frame 0", metric_group::counts,
+                        describes(static_cast<aabb::work>(i)) ? better::neither : better::less,
+                        [i](const row& r) -> std::optional<double> {
+                            if (!r.counts[i]) return std::nullopt;
+                            return static_cast<double>(*r.counts[i]) / frames_after_first(r);
+                        }});
     }
-    return all;
+    return list;
 }
 
 }  // namespace
 
 std::span<const metric> metrics() {
-    static const std::vector<metric> all = [] {
-        std::vector<metric> made = listed();
-        for (const metric& counted : work_metrics()) made.push_back(counted);
-        return made;
+    static const std::vector<metric> registered = [] {
+        std::vector<metric> list = listed();
+        for (const metric& counted : work_metrics()) list.push_back(counted);
+        return list;
     }();
-    return all;
+    return registered;
 }
 
 std::vector<std::string> metric_names() {
@@ -174,9 +174,9 @@ std::vector<std::string> metric_names() {
 }
 
 const metric& metric_named(std::string_view name) {
-    const auto found = std::ranges::find(metrics(), name, &metric::name);
-    if (found == metrics().end()) throw aabb::input_error(aabb::unknown_name("metric", name, metric_names()));
-    return *found;
+    const auto match = std::ranges::find(metrics(), name, &metric::name);
+    if (match == metrics().end()) throw aabb::input_error(aabb::unknown_name("metric", name, metric_names()));
+    return *match;
 }
 
 const row_value& measured(std::string_view name) {
@@ -209,16 +209,16 @@ row_value sum_of(const std::vector<std::string>& names) {
 
 row_value an_object(row_value of) {
     return [of = std::move(of)](const row& r) -> std::optional<double> {
-        const std::optional<double> all = of(r);
-        return all ? std::optional(*all / static_cast<double>(r.objects)) : std::nullopt;
+        const std::optional<double> value = of(r);
+        return value ? std::optional(*value / static_cast<double>(r.objects)) : std::nullopt;
     };
 }
 
 row_value a_triangle(row_value of) {
     return [of = std::move(of)](const row& r) -> std::optional<double> {
-        const std::optional<double> all = of(r);
-        return all && r.triangles.value_or(0) > 0 ? std::optional(*all / static_cast<double>(*r.triangles))
-                                                  : std::nullopt;
+        const std::optional<double> value = of(r);
+        return value && r.triangles.value_or(0) > 0 ? std::optional(*value / static_cast<double>(*r.triangles))
+                                                    : std::nullopt;
     };
 }
 

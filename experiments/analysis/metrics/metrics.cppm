@@ -1,5 +1,4 @@
-/// Metrics: numbers computed from the rows of results, after the run that wrote them. They stand
-/// in metric_list.cpp.
+/// Metrics: numbers computed from the rows of results after the run. metric_list.cpp defines them.
 export module aabblab.metrics;
 
 import aabb.std;
@@ -21,14 +20,14 @@ inline constexpr std::array<metric_group_info, 4> metric_groups = {{
     {"error", "pairs missed and invented against the exact answer"},
 }};
 
-/// `neither` where a number describes what was played.
+/// `neither` if a number describes the input.
 enum class better : std::uint8_t { less, more, neither };
 
-/// One number of a row; empty where it has none.
+/// A number of a row; empty if the row has none.
 using row_value = std::function<std::optional<double>(const row&)>;
 
 struct metric {
-    std::string name;  ///< as configs and columns have it
+    std::string name;  ///< in configs and columns
     std::string unit;  ///< "ms", "bytes"; empty for plain numbers
     std::string summary;
     metric_group group;
@@ -36,23 +35,23 @@ struct metric {
     row_value of;
 };
 
-/// All of them, work counters too, in the order of that list.
+/// All metrics in the order of that list, then the work counters.
 [[nodiscard]] std::span<const metric> metrics();
 [[nodiscard]] std::vector<std::string> metric_names();
 
-/// @throws aabb::input_error on an unknown name, with the nearest one.
+/// @throws aabb::input_error on an unknown name, suggesting the nearest one.
 [[nodiscard]] const metric& metric_named(std::string_view name);
 
-/// Its function.
+/// The function of a metric.
 [[nodiscard]] const row_value& measured(std::string_view name);
 
-// What no metric has, from what some have.
+// Functions for values that no single metric provides.
 
-/// Bytes of these parts together.
+/// The total bytes of these parts.
 [[nodiscard]] row_value bytes_of(std::vector<std::string> parts);
-/// Of metrics by name; those that a row has not count as 0 beside the first.
+/// The sum of the named metrics: empty if the first is missing from a row; other missing ones count as 0.
 [[nodiscard]] row_value sum_of(const std::vector<std::string>& names);
-/// Over the number of objects, or of triangles of the scene's meshes.
+/// The value divided by the number of objects, or by the number of triangles of the scene's meshes.
 [[nodiscard]] row_value an_object(row_value of);
 [[nodiscard]] row_value a_triangle(row_value of);
 

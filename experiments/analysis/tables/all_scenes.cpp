@@ -14,13 +14,13 @@ std::optional<double> least_ratio_of(const scene_summary& scene) {
     return least;
 }
 
-/// Ratios of one composition or engine, over scenes.
+/// The ratios of one composition or engine over the scenes.
 struct standing {
     contender_name name;
-    std::size_t wins = 0;  ///< scenes in which it is the fastest of the exact ones
+    std::size_t wins = 0;  ///< scenes in which it is the fastest exact line
     bool exact = true;
     std::vector<double> ratios;
-    std::vector<double> regrets;  ///< ratios over that of the fastest of the exact ones
+    std::vector<double> regrets;  ///< ratios relative to the fastest exact line
 
     void add(const summary_line& line, bool wins_here, std::optional<double> least_ratio) {
         if (least_ratio) regrets.push_back(*line.ratio / *least_ratio);
@@ -30,7 +30,7 @@ struct standing {
     }
     [[nodiscard]] double ratio() const {
         double log_sum = 0;
-        for (const double one : ratios) log_sum += std::log(one);
+        for (const double value : ratios) log_sum += std::log(value);
         return std::exp(log_sum / static_cast<double>(ratios.size()));
     }
 };
@@ -39,7 +39,7 @@ std::string text_of(const std::optional<std::uint64_t>& value) {
     return value ? fmt::format("{}", *value) : "";
 }
 
-/// Those that are more than a median of rows.
+/// Metrics that the table shows with more than a median, in columns of their own.
 bool has_own_column(const metric& m) {
     constexpr std::array<std::string_view, 5> own{"frame_ms", "build_ms", "all_bytes", "missing", "invented"};
     return std::ranges::find(own, m.name) != own.end();
@@ -72,39 +72,39 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
 }  // namespace
 
 table overall_table_of(std::span<const scene_summary> scenes) {
-    std::vector<standing> all;
+    std::vector<standing> standings;
     std::map<contender_name, std::size_t> places;
     for (const scene_summary& scene : scenes) {
         const summary_line* const fastest = ranking_of(scene).front();
         const std::optional<double> least_ratio = least_ratio_of(scene);
         for (const summary_line& line : scene.lines) {
             if (!line.ratio) continue;
-            const auto [place, is_new] = places.emplace(line.name, all.size());
-            if (is_new) all.emplace_back().name = line.name;
-            all[place->second].add(line, &line == fastest, least_ratio);
+            const auto [place, is_new] = places.emplace(line.name, standings.size());
+            if (is_new) standings.emplace_back().name = line.name;
+            standings[place->second].add(line, &line == fastest, least_ratio);
         }
     }
     std::vector<contender_name> names;
-    for (const standing& one : all) names.push_back(one.name);
+    for (const standing& entry : standings) names.push_back(entry.name);
     const std::vector<aabb::strategy_kind> differing = differing_kinds(names);
-    std::ranges::sort(all, {}, [](const standing& one) { return std::tuple(!one.exact, one.ratio(), one.name); });
-    const bool inexact = std::ranges::any_of(all, [](const standing& one) { return !one.exact; });
+    std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.exact, s.ratio(), s.name); });
+    const bool inexact = std::ranges::any_of(standings, [](const standing& entry) { return !entry.exact; });
     table t{name_columns_of(differing), {}};
     if (inexact) t.columns.push_back({"answer"});
     t.columns.insert(t.columns.end(),
                      {{"ratio"}, {"least", true, 2}, {"greatest", true, 1}, {"scenes"}, {"fastest in"}});
-    const bool regretted = std::ranges::all_of(all, [](const standing& one) { return !one.regrets.empty(); });
+    const bool regretted = std::ranges::all_of(standings, [](const standing& entry) { return !entry.regrets.empty(); });
     if (regretted) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
-    for (const standing& one : all) {
-        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, one.name, t.rows.size() + 1));
-        if (inexact) cells.emplace_back(one.exact ? "exact" : "inexact");
-        const auto [least, greatest] = std::ranges::minmax(one.ratios);
-        for (const double ratio : {one.ratio(), least, greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
-        cells.push_back(grouped(one.ratios.size()));
-        cells.push_back(grouped(one.wins));
+    for (const standing& entry : standings) {
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, entry.name, t.rows.size() + 1));
+        if (inexact) cells.emplace_back(entry.exact ? "exact" : "inexact");
+        const auto [least, greatest] = std::ranges::minmax(entry.ratios);
+        for (const double ratio : {entry.ratio(), least, greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
+        cells.push_back(grouped(entry.ratios.size()));
+        cells.push_back(grouped(entry.wins));
         if (!regretted) continue;
-        cells.push_back(fmt::format("{:.2f}", quartiles_of(one.regrets).median));
-        cells.push_back(fmt::format("{:.2f}", std::ranges::max(one.regrets)));
+        cells.push_back(fmt::format("{:.2f}", quartiles_of(entry.regrets).median));
+        cells.push_back(fmt::format("{:.2f}", std::ranges::max(entry.regrets)));
     }
     return t;
 }

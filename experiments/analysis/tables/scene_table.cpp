@@ -7,7 +7,7 @@ namespace aabblab {
 
 namespace {
 
-/// Bytes as KiB, with three digits that count.
+/// Bytes in KiB, with three significant digits.
 std::string kib_text(std::uint64_t bytes) {
     const double kib = static_cast<double>(bytes) / 1024;
     return kib < 100 ? fmt::format("{:.1f}", kib) : grouped(static_cast<std::uint64_t>(std::llround(kib)));
@@ -17,7 +17,7 @@ std::string text_or_dash(const std::optional<double>& value, int decimals) {
     return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
-/// "0.98-1.02", or "-" where there is none.
+/// "0.98-1.02", or "-" if there is none.
 std::string interval_text(const std::optional<interval>& around) {
     return around ? fmt::format("{:.2f}-{:.2f}", around->low, around->high) : "-";
 }
@@ -27,7 +27,7 @@ std::string answer_of(const summary_line& line) {
     return fmt::format("-{} +{}", *line.missing, *line.invented);
 }
 
-/// Decimals that leave the fastest line of a scene three digits or more.
+/// The decimals that show at least three digits of the fastest line of a scene.
 int decimals_of(const scene_summary& scene) {
     double least = 100;
     for (const summary_line& line : scene.lines)
@@ -35,7 +35,7 @@ int decimals_of(const scene_summary& scene) {
     return least < 1 ? 4 : least < 10 ? 3 : 2;
 }
 
-/// The cells of a line from its times, "-" for what was not timed.
+/// The timing cells of a line; "-" if it was not timed.
 std::vector<std::string> time_cells(const summary_line& line, int decimals) {
     if (!line.ms_a_frame) return {"-", "-", "-", "-"};
     const auto [low, median, high] = *line.ms_a_frame;
@@ -43,7 +43,7 @@ std::vector<std::string> time_cells(const summary_line& line, int decimals) {
             text_or_dash(line.ratio, 2), interval_text(line.ratio_interval)};
 }
 
-/// A column that stands above the table where all lines have the same in it.
+/// A column that moves above the table if it is constant.
 struct shared_column {
     column shown;
     std::string above;  ///< "{} pairs"
@@ -54,7 +54,7 @@ struct shared_column {
     }
 };
 
-/// The answers, which are the same for all exact lines, and the bytes.
+/// The columns of results, which are equal for all exact lines, and of bytes.
 std::vector<shared_column> shared_columns(std::span<const summary_line* const> ranking) {
     shared_column answer{{"answer"}, "answer {}", {}};
     shared_column pairs{{"pairs"}, "{} pairs", {}};
@@ -76,7 +76,7 @@ std::vector<shared_column> shared_columns(std::span<const summary_line* const> r
     return columns;
 }
 
-/// Whether any composition has a number other than 0 in this place.
+/// True if any composition has a value other than 0 at this index.
 template <class Numbers>
 bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t place) {
     return std::ranges::any_of(scene.lines, [&](const summary_line& line) {
@@ -115,10 +115,10 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
             if (meshes) cells.push_back(text_or_dash(line->build_ms, 2));
         }
     }
-    for (const shared_column& one : shared_columns(ranking)) {
-        if (one.is_constant()) continue;
-        t.columns.push_back(one.shown);
-        for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(one.cells[i]);
+    for (const shared_column& c : shared_columns(ranking)) {
+        if (c.is_constant()) continue;
+        t.columns.push_back(c.shown);
+        for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(c.cells[i]);
     }
     for (const std::string& name : shown) {
         const metric& m = metric_named(name);
@@ -150,8 +150,8 @@ std::string heading_of(const scene_summary& scene) {
                 scene.common + "\n";
     std::string same;
     const std::vector<const summary_line*> ranking = ranking_of(scene);
-    for (const shared_column& one : shared_columns(ranking))
-        if (one.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(one.above), one.cells[0]);
+    for (const shared_column& c : shared_columns(ranking))
+        if (c.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
     if (!same.empty()) text += "all lines: " + same + "\n";
     if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
@@ -189,7 +189,7 @@ table counts_table_of(const scene_summary& scene) {
         if (i == copies) t.columns.push_back({"copies an object"});
     }
     for (std::size_t i = 0; i < byte_columns.size(); ++i) {
-        // The meshes are the same for all.
+        // The meshes are the same for all compositions.
         if (byte_columns[i] == "triangles" || byte_columns[i] == "vertices") continue;
         if (!is_used(scene, &summary_line::bytes_by_part, i)) continue;
         parts.push_back(i);

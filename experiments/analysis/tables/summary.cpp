@@ -18,7 +18,7 @@ void add(std::optional<Number>& sum, const std::optional<Number>& more) {
     if (more) sum = sum.value_or(0) + *more;
 }
 
-/// What does not vary between the repeats of a seed.
+/// Adds the values that do not vary between the repeats of a seed.
 void add_seed(const row& r, double share, summary_line& line) {
     line.pairs += r.candidates;
     add(line.contacts, r.contacts);
@@ -54,7 +54,7 @@ summary_line line_of(std::span<const row* const> repeats) {
         std::vector<double> values;
         for (const row* r : repeats)
             if (const std::optional<double> value = m.of(*r)) values.push_back(*value);
-        // The median over seeds would hide the one in which something is wrong.
+        // A median over seeds would hide errors that occur in a single seed.
         line.metrics.push_back(
             values.empty() ? std::nullopt
             : m.group == metric_group::error
@@ -67,7 +67,7 @@ summary_line line_of(std::span<const row* const> repeats) {
     return line;
 }
 
-/// The line's times over those of another in the same repeats of the same seeds.
+/// Sets the ratio of the line's times to the baseline's in the same repeats of the same seeds.
 void set_ratio(summary_line& line, std::span<const row* const> repeats, std::span<const row* const> base) {
     std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : base)
@@ -89,13 +89,13 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
     if (count == 0) return;
     const estimate log_ratio = bootstrap(ratios);
     line.ratio = std::exp(log_ratio.value);
-    // Student's t has a variance with more than two degrees of freedom only: an interval of fewer says nothing.
+    // Student's t has infinite variance with two degrees of freedom or fewer: such an interval is useless.
     if (count == 1 || (log_ratio.error > 0 && log_ratio.degrees <= 2)) return;
     const auto [low, high] = log_ratio.range();
     line.ratio_interval = {std::exp(low), std::exp(high)};
 }
 
-/// Finds what differs between the compositions and what they share, and names the lines by what differs.
+/// Splits the strategies into those that differ and those that all share; labels consist of the former.
 void set_labels(scene_summary& scene) {
     std::vector<contender_name> names;
     for (const summary_line& line : scene.lines) names.push_back(line.name);
@@ -112,7 +112,7 @@ void set_labels(scene_summary& scene) {
     }
 }
 
-/// The rows of a scene, whatever its seeds, by who played.
+/// The rows of a scene over all its seeds, by composition or engine.
 struct rows_of_scene {
     scene_summary scene;
     std::vector<repeats_of_line> lines;
@@ -131,28 +131,28 @@ struct rows_of_scene {
 }  // namespace
 
 std::vector<scene_summary> summarise(std::span<const row> rows) {
-    std::vector<rows_of_scene> all;
+    std::vector<rows_of_scene> groups;
     std::map<std::pair<std::string, scene_choice>, std::size_t> places;
     for (const row& r : rows) {
-        const auto [place, is_new] = places.emplace(std::pair(r.experiment, whatever_seed(r.scene)), all.size());
+        const auto [place, is_new] = places.emplace(std::pair(r.experiment, whatever_seed(r.scene)), groups.size());
         if (is_new) {
-            scene_summary& scene = all.emplace_back().scene;
+            scene_summary& scene = groups.emplace_back().scene;
             scene.experiment = r.experiment;
             scene.scene = whatever_seed(r.scene);
             scene.objects = r.objects;
             scene.frames = r.frames;
         }
-        all[place->second].add(r);
+        groups[place->second].add(r);
     }
     std::vector<scene_summary> scenes;
-    for (rows_of_scene& one : all) {
-        for (const repeats_of_line& repeats : one.lines) {
-            one.scene.lines.push_back(line_of(repeats));
-            set_ratio(one.scene.lines.back(), repeats, one.lines[0]);
+    for (rows_of_scene& group : groups) {
+        for (const repeats_of_line& repeats : group.lines) {
+            group.scene.lines.push_back(line_of(repeats));
+            set_ratio(group.scene.lines.back(), repeats, group.lines[0]);
         }
-        if (one.scene.seeds.size() > 1) one.scene.digest.clear();
-        set_labels(one.scene);
-        scenes.push_back(std::move(one.scene));
+        if (group.scene.seeds.size() > 1) group.scene.digest.clear();
+        set_labels(group.scene);
+        scenes.push_back(std::move(group.scene));
     }
     return scenes;
 }

@@ -18,7 +18,7 @@ bool has_numbered_rows(const table& t) {
     return !t.columns.empty() && t.columns[0].name == row_number;
 }
 
-/// The columns before the first value: a number, and what names a row.
+/// The number of columns before the first value: the row number and the names.
 std::size_t name_count(const table& t) {
     const auto names = t.columns.begin() + (has_numbered_rows(t) ? 1 : 0);
     return static_cast<std::size_t>(std::ranges::find(names, t.columns.end(), true, &column::is_number) -
@@ -31,7 +31,7 @@ std::size_t width_of(const table& t, std::size_t k) {
     return width;
 }
 
-/// Of columns from `begin` to before `end`, with a gap after each but the last.
+/// The width of the columns [begin, end), with gaps between them.
 std::size_t width_of(const table& t, std::size_t begin, std::size_t end) {
     std::size_t width = 0;
     for (std::size_t k = begin; k < end; ++k) width += width_of(t, k) + (k > begin ? gap : 0);
@@ -43,14 +43,14 @@ bool fits(const table& t, std::size_t width) {
 }
 
 void remove_columns(table& t, std::size_t begin, std::size_t end) {
-    const auto remove = [&](auto& all) {
-        all.erase(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end));
+    const auto remove = [&](auto& list) {
+        list.erase(list.begin() + static_cast<std::ptrdiff_t>(begin), list.begin() + static_cast<std::ptrdiff_t>(end));
     };
     remove(t.columns);
     for (auto& cells : t.rows) remove(cells);
 }
 
-/// Removes spare columns until the table fits, as far as there are any, and says which.
+/// Removes spare columns until the table fits or none is left, and returns a line that lists them.
 std::string leave_out(table& t, std::size_t width) {
     std::string names;
     while (!fits(t, width)) {
@@ -63,7 +63,7 @@ std::string leave_out(table& t, std::size_t width) {
     return names.empty() ? "" : "left out, for want of room: " + names + "\n";
 }
 
-/// "a + b + c" after a number, in lines of at most `width` characters where a part is not longer.
+/// "a + b + c" after a number, in lines of at most `width` characters unless a single part is longer.
 std::string legend_of(const std::string& number, const std::vector<std::string>& parts, std::size_t width) {
     std::string text;
     std::string line = number + std::string(gap, ' ');
@@ -82,7 +82,7 @@ std::string legend_of(const std::string& number, const std::vector<std::string>&
     return text + line + "\n";
 }
 
-/// Leaves a number in the place of what names a row, and returns what the numbers stand for.
+/// Replaces the names of the rows by numbers, and returns the legend.
 std::string number_rows(table& t, std::size_t width) {
     if (!has_numbered_rows(t)) {
         t.columns.insert(t.columns.begin(), {row_number});
@@ -98,7 +98,7 @@ std::string number_rows(table& t, std::size_t width) {
     return legend;
 }
 
-/// The names of the rows with columns from `begin` to before `end`.
+/// The names of the rows with the columns [begin, end).
 table block_of(table t, std::size_t names, std::size_t begin, std::size_t end) {
     remove_columns(t, end, t.columns.size());
     remove_columns(t, names, begin);
@@ -162,7 +162,7 @@ std::string to_text(table t, std::size_t width) {
     if (name_count(t) == t.columns.size()) return to_text(t);
     table fewer = t;
     std::string left_out = leave_out(fewer, width);
-    // Names that leave half of the width stay; longer ones would be repeated in every block.
+    // Names up to half of the width stay; longer ones would take too much room in every block.
     const bool long_names = !fits(fewer, width) && width_of(t, 0, name_count(t)) > width / 2;
     const std::string legend = long_names ? number_rows(t, width) : "";
     if (long_names)

@@ -7,11 +7,11 @@ namespace aabblab {
 
 namespace {
 
-/// Longer texts stand in columns that break lines.
+/// Columns with longer texts break lines.
 constexpr std::size_t longest_unbroken = 20;
-/// Of the width, for all columns that do; numbers need the rest.
+/// The share of the page width for all columns that break lines; numbers need the rest.
 constexpr double share_of_text = 0.7;
-/// What a letter takes of the width of a page, in small print.
+/// The share of the page width of a letter in small print.
 constexpr double share_of_letter = 0.0095;
 
 std::size_t longest_cell(const table& t, std::size_t column) {
@@ -22,16 +22,16 @@ std::size_t longest_cell(const table& t, std::size_t column) {
 
 /// `P{share}` is a column type of paper/tex/layout.tex.
 std::string columns_of(const table& t) {
-    double all = 0;
+    double sum = 0;
     double letters = 0;
     const auto weight = [&](std::size_t k) {
         const std::size_t longest = longest_cell(t, k);
         if (t.columns[k].is_number || longest <= longest_unbroken) return 0.0;
-        // Neither so narrow that a word does not fit, nor so wide that the others are.
+        // Clamped so that every word fits and no column squeezes the others.
         return std::sqrt(static_cast<double>(std::clamp<std::size_t>(longest, 80, 300)));
     };
     for (std::size_t k = 0; k < t.columns.size(); ++k) {
-        all += weight(k);
+        sum += weight(k);
         if (weight(k) > 0) letters += static_cast<double>(longest_cell(t, k));
     }
     const double share = std::min(share_of_text, share_of_letter * letters);
@@ -40,7 +40,7 @@ std::string columns_of(const table& t) {
         if (t.columns[k].is_number)
             spec += 'r';
         else
-            spec += weight(k) > 0 ? fmt::format("P{{{:.3f}}}", share * weight(k) / all) : "l";
+            spec += weight(k) > 0 ? fmt::format("P{{{:.3f}}}", share * weight(k) / sum) : "l";
     }
     return spec;
 }
@@ -50,7 +50,7 @@ std::string line_of(std::vector<std::string> cells) {
     return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
 }
 
-/// A head in lines, so that no column of numbers is wider than its numbers need.
+/// Breaks a head into lines so that it does not widen a column of numbers.
 std::string head_of(const column& c) {
     constexpr std::size_t longest_line = 14;
     std::vector<std::string> lines = lines_of(c.name, longest_line);
