@@ -1,6 +1,6 @@
-/// Comma-separated values as RFC 4180 says, except that lines end in a line feed alone: a field with a comma, a quote
-/// or the end of a line stands in quotes, and a quote in it is doubled. Tables of rows of one type, written and read by
-/// a function that calls `field(name, member)` for each column.
+/// Comma-separated values after RFC 4180, but with lines that end in a line feed alone: a field with a comma, a quote
+/// or a line break is quoted, and quotes in it are doubled. A table of rows of one type is defined by a function that
+/// calls `field(name, member)` for each column, both for writing and for reading.
 export module aabblab.results:columns;
 
 import aabb.base;
@@ -9,12 +9,12 @@ import aabblab.files;
 
 export namespace aabblab {
 
-/// With the line feed.
+/// One record, including the line feed.
 [[nodiscard]] std::string csv_line(std::span<const std::string> fields);
 
 struct csv_record {
     std::vector<std::string> fields;
-    std::size_t line;  ///< in which it begins, from 1
+    std::size_t line;  ///< the line at which it begins, from 1
 };
 
 struct csv_text {
@@ -22,29 +22,29 @@ struct csv_text {
     std::size_t bytes = 0;  ///< of the text up to the end of the last record
 };
 
-/// The inverse, also of lines that end in carriage return and line feed. A last record that was cut off is left out.
-/// @param file for messages
-/// @throws aabb::input_error with file and line where quotes are not as above.
+/// Parses records; lines may also end in carriage return and line feed. A truncated last record is dropped.
+/// @param file the name in messages
+/// @throws aabb::input_error with file and line if quoting is invalid.
 [[nodiscard]] csv_text read_csv(std::string_view text, const std::string& file);
 
-/// The same of a file that is complete.
-/// @throws aabb::input_error on a last record that was cut off, too.
+/// Parses a file that must be complete.
+/// @throws aabb::input_error also if the last record is truncated.
 [[nodiscard]] std::vector<csv_record> whole_records_of(std::string_view text, const std::string& file);
 
-/// A column of words, each for a value of an enumeration or of a flag, by number.
+/// A column of words that represent the values of an enumeration or a flag, indexed by value.
 template <class Value>
 struct one_of_words {
     Value& value;
     std::span<const std::string_view> words;
 };
 
-/// A column of numbers with all their digits; those that are read are above 0, as logarithmic axes have them.
+/// A column of numbers with all digits; reading accepts positive ones only, because they go on logarithmic axes.
 template <class Number>
 struct all_digits {
     Number& value;
 };
 
-// How a value stands in its field; types of a table's own add theirs beside them.
+// Formatting of fields; a table adds overloads for types of its own.
 
 [[nodiscard]] inline std::string written(const std::string& text) {
     return text;
@@ -71,7 +71,7 @@ template <class T>
     return value ? written(*value) : "";
 }
 
-/// @returns whether the field is such a value
+/// @returns false if the field is not a valid value
 [[nodiscard]] inline bool taken(std::string& to, const std::string& text) {
     to = text;
     return true;
@@ -90,9 +90,9 @@ template <class Number>
 }
 template <class Value>
 [[nodiscard]] bool taken(const one_of_words<Value>& to, const std::string& text) {
-    const auto found = std::ranges::find(to.words, text);
-    if (found == to.words.end()) return false;
-    to.value = static_cast<Value>(found - to.words.begin());
+    const auto match = std::ranges::find(to.words, text);
+    if (match == to.words.end()) return false;
+    to.value = static_cast<Value>(match - to.words.begin());
     return true;
 }
 template <class Number>
@@ -105,14 +105,14 @@ template <class T>
     return text.empty() || taken(to.emplace(), text);
 }
 
-/// For messages.
+/// The description of valid values in messages.
 [[nodiscard]] std::string expected_of(const auto&) {
     return "a number";
 }
 template <class Value>
 [[nodiscard]] std::string expected_of(const one_of_words<Value>& word) {
     std::string text;
-    for (const std::string_view one : word.words) text += (text.empty() ? "" : " or ") + std::string(one);
+    for (const std::string_view option : word.words) text += (text.empty() ? "" : " or ") + std::string(option);
     return text;
 }
 
@@ -141,12 +141,12 @@ template <class Row, class Columns>
     return text;
 }
 
-/// Refuses records that do not begin with the names of the columns.
-void require_header(const std::string& file, const csv_record& found, const std::vector<std::string>& expected);
+/// Rejects tables whose header differs from the names of the columns.
+void require_header(const std::string& file, const csv_record& header, const std::vector<std::string>& expected);
 
-/// @param later columns that files of earlier versions do not have
-/// @param seen sees each row and the line that it begins in
-/// @throws aabb::input_error with file and line where the records are not such rows.
+/// @param later columns that may be absent, since files of earlier versions lack them
+/// @param seen is called with each row and the line at which it begins
+/// @throws aabb::input_error with file and line if the records are not valid rows.
 template <class Row, class Columns, class Seen>
 [[nodiscard]] std::vector<Row> rows_in(std::span<const csv_record> records, const std::string& file, Columns columns,
                                        std::span<const std::string_view> later, Seen seen) {
@@ -175,7 +175,7 @@ template <class Row, class Columns, class Seen>
     return rows;
 }
 
-/// Of a file that is complete, as `csv_of` writes it.
+/// The rows of a complete file, as `csv_of` writes it.
 template <class Row, class Columns>
 [[nodiscard]] std::vector<Row> rows_of_file(const std::filesystem::path& file, Columns columns,
                                             std::span<const std::string_view> later = {}) {

@@ -10,7 +10,7 @@ class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-    /// False where the text ends before the record does.
+    /// False if the text ends before the record does.
     bool take(csv_record& record) {
         record.line = line_;
         do {
@@ -32,7 +32,7 @@ public:
 
 private:
     [[nodiscard]] bool next_is(std::string_view what) const { return text_.substr(at_).starts_with(what); }
-    /// At a line feed, perhaps with carriage returns before it.
+    /// True at a line feed, with or without carriage returns before it.
     [[nodiscard]] bool is_at_line_end() const {
         const std::size_t end = text_.find_first_not_of('\r', at_);
         return end != std::string_view::npos && text_[end] == '\n';
@@ -54,7 +54,7 @@ private:
 
     bool take_quoted(std::string& field) {
         for (++at_; at_ < text_.size(); ++at_) {
-            if (skip("\"") && !next_is("\"")) return true;  // of two, the second is the field's
+            if (skip("\"") && !next_is("\"")) return true;  // a doubled quote stands for one
             if (text_[at_] == '\n') ++line_;
             field += text_[at_];
         }
@@ -89,20 +89,20 @@ std::string csv_line(std::span<const std::string> fields) {
 }
 
 csv_text read_csv(std::string_view text, const std::string& file) {
-    csv_text all;
+    csv_text table;
     csv_reader reader(text, file);
     for (csv_record record; reader.take(record); record = {}) {
-        all.records.push_back(std::move(record));
-        all.bytes = reader.at();
+        table.records.push_back(std::move(record));
+        table.bytes = reader.at();
     }
-    return all;
+    return table;
 }
 
 std::vector<csv_record> whole_records_of(std::string_view text, const std::string& file) {
-    csv_text all = read_csv(text, file);
-    if (all.bytes < text.size())
+    csv_text table = read_csv(text, file);
+    if (table.bytes < text.size())
         throw aabb::input_error(file + ": its last row is cut off: expected a line feed behind it");
-    return std::move(all.records);
+    return std::move(table.records);
 }
 
 }  // namespace aabblab

@@ -15,7 +15,7 @@ namespace aabblab {
 
 namespace {
 
-/// So that rows can be appended, one that was cut off goes, and so does what another program made of the text.
+/// Prepares the file for appending: drops a truncated last row, and line endings of other programs.
 void drop_torn_row(const std::filesystem::path& file) {
     const std::string text = text_of_file(file);
     const std::string complete = text.substr(0, read_csv(text, file.string()).bytes);
@@ -33,11 +33,11 @@ void make_folder(const std::filesystem::path& folder) {
 
 folder_lock::folder_lock(const std::filesystem::path& folder) {
     make_folder(folder);
-    // Processes that this one starts keep it too (no O_CLOEXEC): what they do must end before another begins.
+    // Child processes inherit the lock (no O_CLOEXEC), so that it lasts until they have finished their work.
     descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
-    // A process that was killed leaves others that are about to end.
+    // Retry, because children of a process that was killed may still be about to end.
     for (int attempt = 0; attempt < 20; ++attempt) {
-        // A file system that locks no folders cannot tell.
+        // Some file systems cannot lock folders; then run without a lock.
         if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
         usleep(50'000);
     }
@@ -57,7 +57,7 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
         replaced_ = refusal_to_resume(manifest, experiment_);
-        // Hours may be in them, so they are set aside; the table last, by which the next run finds all to replace.
+        // Renamed, not deleted: results may have taken hours. The table comes last, because its presence triggers this.
         if (!replaced_.empty())
             for (const char* name : {"differences.csv", "results.csv"})
                 if (std::filesystem::exists(folder_ / name))
@@ -127,20 +127,20 @@ void results_folder::set_digest(const scene_choice& scene, const std::string& di
 }
 
 void results_folder::set_differences(const scene_choice& scene, std::span<const contender_name> of,
-                                     std::span<const difference> found) {
+                                     std::span<const difference> differences) {
     std::erase_if(differences_,
                   [&](const difference& d) { return d.scene == scene && std::ranges::find(of, d.name) != of.end(); });
-    differences_.insert(differences_.end(), found.begin(), found.end());
+    differences_.insert(differences_.end(), differences.begin(), differences.end());
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
 void results_folder::seal() {
-    results_seal all{seal_of(folder_ / "results.csv"), std::nullopt, {}};
+    results_seal seals{seal_of(folder_ / "results.csv"), std::nullopt, {}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))
-        all.differences = seal_of(table);
+        seals.differences = seal_of(table);
     for (const row& r : rows_)
-        if (std::ranges::find(all.contenders, r.name) == all.contenders.end()) all.contenders.push_back(r.name);
-    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, all));
+        if (std::ranges::find(seals.contenders, r.name) == seals.contenders.end()) seals.contenders.push_back(r.name);
+    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, seals));
 }
 
 void results_folder::open_table() {

@@ -20,13 +20,13 @@ namespace {
 using json = nlohmann::ordered_json;
 
 const machine& here() {
-    static const machine found = this_machine();
-    return found;
+    static const machine detected = this_machine();
+    return detected;
 }
 
-/// What made the results. Times of different builds or machines must not meet in one table.
+/// The build and machine that determine times; results that differ in it must not be mixed in one table.
 json build() {
-    // Of the program that runs: what was changed and not committed makes another build too.
+    // A hash of the executable also detects changes that were not committed.
     static const std::string digest = aabb::hash_of_text(bytes_of_file("/proc/self/exe"));
     return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
             {"dirty", AABBLAB_DIRTY},     {"compiler", AABBLAB_COMPILER},
@@ -35,15 +35,15 @@ json build() {
             {"engines", AABBLAB_ENGINES}, {"program", digest}};
 }
 
-/// What else there is to know of the machine. It may change without making the times of a run another machine's.
+/// Further properties of the machine, which may change during an experiment without invalidating its times.
 json surroundings() {
-    json all{{"processors", here().processors}, {"kernel", here().kernel}, {"libc", here().libc}};
-    if (here().governor) all["governor"] = *here().governor;
-    if (here().hypervisor) all["hypervisor"] = *here().hypervisor;
-    return all;
+    json properties{{"processors", here().processors}, {"kernel", here().kernel}, {"libc", here().libc}};
+    if (here().governor) properties["governor"] = *here().governor;
+    if (here().hypervisor) properties["hypervisor"] = *here().hypervisor;
+    return properties;
 }
 
-/// What strategies plan by. Times of a run that planned otherwise are of other work.
+/// The cost model by which strategies plan. With other costs they do other work, so times are not comparable.
 json costs() {
     json ns = json::object();
     for (const aabb::cost_info& cost : aabb::cost_infos) ns[std::string(cost.name)] = aabb::machine_costs().*cost.value;
@@ -51,18 +51,18 @@ json costs() {
 }
 
 json json_of(const contender_name& name) {
-    json all = json::object();
+    json parts = json::object();
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (!name[kind].empty()) all[std::string(name_of(kind))] = name[kind];
-    if (!name.engine.empty()) all["engine"] = name.engine;
-    return all;
+        if (!name[kind].empty()) parts[std::string(name_of(kind))] = name[kind];
+    if (!name.engine.empty()) parts["engine"] = name.engine;
+    return parts;
 }
 
-contender_name contender_of(const json_value& all) {
+contender_name contender_of(const json_value& parts) {
     contender_name name;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        name[kind] = all.text(std::string(name_of(kind))).value_or("");
-    name.engine = all.text("engine").value_or("");
+        name[kind] = parts.text(std::string(name_of(kind))).value_or("");
+    name.engine = parts.text("engine").value_or("");
     return name;
 }
 
@@ -74,28 +74,28 @@ table_seal table_of(const json_value& table) {
     return {table.needed("rows").index(), table.needed("sha256").text()};
 }
 
-/// The name of a file need not be UTF-8.
+/// Replaces invalid UTF-8, since names of files may contain any bytes.
 std::string text_of(const json& manifest, int indent) {
     return manifest.dump(indent, ' ', false, json::error_handler_t::replace);
 }
 
-/// Of all but the checksum itself.
+/// The checksum of a manifest without the checksum itself.
 std::string checksum_of(json manifest) {
     manifest["seal"].erase("manifest");
     return sha256_of(text_of(manifest, -1));
 }
 
 results_seal seal_in(const json_value& seal) {
-    results_seal all{table_of(seal.needed("results.csv")), std::nullopt, {}};
-    if (const auto table = seal.member("differences.csv")) all.differences = table_of(*table);
-    for (const json_value& contender : seal.objects("contenders")) all.contenders.push_back(contender_of(contender));
-    return all;
+    results_seal checksums{table_of(seal.needed("results.csv")), std::nullopt, {}};
+    if (const auto table = seal.member("differences.csv")) checksums.differences = table_of(*table);
+    for (const json_value& c : seal.objects("contenders")) checksums.contenders.push_back(contender_of(c));
+    return checksums;
 }
 
-/// A manifest that somebody wrote.
+/// A parsed manifest, which may have been edited.
 struct read_in {
     json_value content;
-    json raw;  ///< the same in the order in which it stands there, for checksums
+    json raw;  ///< preserves the order of members, for checksums
 };
 
 read_in read_json(const std::filesystem::path& file) {
@@ -108,22 +108,22 @@ read_in read_json(const std::filesystem::path& file) {
     return {std::move(content), json::parse(text)};
 }
 
-/// A number where that says the same, to the letter.
+/// A JSON number if its text is identical to the value, otherwise a string.
 json json_of(const std::string& value) {
     const json parsed = json::parse(value, nullptr, false);
     return parsed.is_number() && parsed.dump() == value ? parsed : json(value);
 }
 
-/// The scenes of a manifest in their order, each with its exact digest, or an empty one.
+/// The scenes of a manifest in order, with the digests of the ground truth, which may be empty.
 std::vector<std::pair<scene_choice, std::string>> scenes_in(const read_in& manifest) {
     std::vector<std::pair<scene_choice, std::string>> scenes;
     for (const json_value& scene : manifest.content.objects("scenes")) {
-        scene_choice played{scene.text("kind").value_or(""), {}, {}, scene.index("seed")};
-        // As they were written, which is the order that rows have them in.
+        scene_choice choice{scene.text("kind").value_or(""), {}, {}, scene.index("seed")};
+        // Preserve the order in which they were written, because rows have the same order.
         const json& raw = manifest.raw["scenes"][scenes.size()];
-        if (!set_parameters(played, raw.value("parameters", json()).dump()))
+        if (!set_parameters(choice, raw.value("parameters", json()).dump()))
             scene.fail("must have parameters, an object of settings");
-        scenes.emplace_back(std::move(played), scene.text("digest").value_or(""));
+        scenes.emplace_back(std::move(choice), scene.text("digest").value_or(""));
     }
     return scenes;
 }
@@ -131,16 +131,16 @@ std::vector<std::pair<scene_choice, std::string>> scenes_in(const read_in& manif
 }  // namespace
 
 std::string parameters_json(const scene_choice& scene) {
-    json all = json::object();
-    for (const aabb::setting& s : scene.settings) all[s.name] = json_of(s.value);
-    if (!scene.meshes.empty()) all["meshes"] = scene.meshes;
-    return text_of(all, -1);
+    json parameters = json::object();
+    for (const aabb::setting& s : scene.settings) parameters[s.name] = json_of(s.value);
+    if (!scene.meshes.empty()) parameters["meshes"] = scene.meshes;
+    return text_of(parameters, -1);
 }
 
 bool set_parameters(scene_choice& scene, const std::string& text) {
-    const json all = json::parse(text, nullptr, false);
-    if (!all.is_object()) return false;
-    for (const auto& [name, value] : all.items()) {
+    const json parameters = json::parse(text, nullptr, false);
+    if (!parameters.is_object()) return false;
+    for (const auto& [name, value] : parameters.items()) {
         if (name == "meshes") {
             if (!value.is_array()) return false;
             for (const json& mesh : value) {
@@ -171,25 +171,25 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         {"costs", costs()},     {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
         {"scenes", scenes},     {"notes", e.notes}};
     if (seal) {
-        json& all = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
-        if (seal->differences) all["differences.csv"] = json_of(*seal->differences);
-        all["contenders"] = json::array();
-        for (const contender_name& name : seal->contenders) all["contenders"].push_back(json_of(name));
-        all["manifest"] = checksum_of(manifest);
+        json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
+        if (seal->differences) checksums["differences.csv"] = json_of(*seal->differences);
+        checksums["contenders"] = json::array();
+        for (const contender_name& name : seal->contenders) checksums["contenders"].push_back(json_of(name));
+        checksums["manifest"] = checksum_of(manifest);
     }
     return text_of(manifest, 2) + "\n";
 }
 
 sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
     const read_in manifest = read_json(file);
-    sealed_manifest all{manifest.content.text("experiment").value_or(""), scenes_in(manifest), std::nullopt};
+    sealed_manifest result{manifest.content.text("experiment").value_or(""), scenes_in(manifest), std::nullopt};
     const std::optional<json_value> seal = manifest.content.member("seal");
-    if (!seal) return all;
-    all.seal = seal_in(*seal);
+    if (!seal) return result;
+    result.seal = seal_in(*seal);
     if (seal->needed("manifest").text() != checksum_of(manifest.raw))
         throw aabb::input_error(
             file.string() + " was altered after the run: what stands in it does not have the checksum that it states");
-    return all;
+    return result;
 }
 
 std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
@@ -203,7 +203,7 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
     if (before.raw.value("costs", json()) != costs())
         return where + " were made with other costs (aabblab calibrate), by which strategies plan otherwise";
     if (!before.content.has("seal")) return {};
-    // Nobody may continue what was altered, and seal it anew.
+    // Altered results must not be resumed and sealed again.
     try {
         (void)verified_rows(manifest.parent_path());
     } catch (const aabb::input_error& altered) {

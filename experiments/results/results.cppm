@@ -1,4 +1,4 @@
-/// Results of an experiment in a folder: results.csv, manifest.json, differences.csv.
+/// Reads and writes the results folder of an experiment: results.csv, manifest.json, differences.csv.
 export module aabblab.results;
 
 import aabb.counters;
@@ -9,16 +9,16 @@ export import :columns;
 
 export namespace aabblab {
 
-/// What played a scene, as it stands in the columns of every table: the choice of each kind, as the command line takes
-/// it, and an engine. Empty where there is no such part.
+/// The name of a composition or an engine in the columns of every table: the choice of each kind, in the syntax of the
+/// command line, or the engine. Parts that do not apply are empty.
 struct contender_name {
     aabb::by_kind<std::string> choices;
     std::string engine;
 
-    /// What `auto` has in place of an engine; what is named with it stands behind.
+    /// The engine name of `auto`; strategies that are fixed by name follow it.
     static constexpr std::string_view automatic = "auto";
     [[nodiscard]] bool is_automatic() const { return engine == automatic || engine.starts_with("auto + "); }
-    /// Whether any of it is of a system that is not ours.
+    /// True for an engine of another library.
     [[nodiscard]] bool is_reference() const { return !engine.empty() && !is_automatic(); }
 
     [[nodiscard]] std::string& operator[](aabb::strategy_kind kind) { return choices[kind]; }
@@ -26,13 +26,13 @@ struct contender_name {
     friend auto operator<=>(const contender_name&, const contender_name&) = default;
 };
 
-/// Parts of a stage that have a column; what an engine calls otherwise is under `engine`. `triangles` and `vertices`
-/// are the scene's meshes, which every composition reads and none of them holds.
+/// The parts of a stage that have a column of bytes; other parts of an engine count as `engine`. `triangles` and
+/// `vertices` belong to the scene's meshes, which compositions share and do not own.
 inline constexpr std::array<std::string_view, 12> byte_columns = {"projections", "sort",      "partition", "sweep",
                                                                   "prepare",     "nodes",     "indices",   "stack",
                                                                   "refit",       "triangles", "vertices",  "engine"};
 
-/// One row: one scene played once from a fresh start. Metrics that were not asked for are empty.
+/// One row: one run of a scene, starting from scratch. Metrics that the config does not record are empty.
 struct row {
     std::string experiment;
     scene_choice scene;
@@ -40,49 +40,49 @@ struct row {
     std::uint64_t frames = 0;
     contender_name name;
     std::uint64_t repeat = 0;
-    std::uint64_t process = 0;               ///< that timed it, from 0
+    std::uint64_t process = 0;               ///< the process that timed it, from 0
     std::optional<std::uint64_t> triangles;  ///< of the scene's meshes, each counted once; empty in scenes of boxes
-    std::optional<double> build_ms;          ///< making the stages, taking the objects, building the trees
-    std::optional<double> first_ms;          ///< frame 0, whole
+    std::optional<double> build_ms;          ///< constructs the stages, inserts the objects, builds the trees
+    std::optional<double> first_ms;          ///< frame 0, all stages
     std::optional<double> update_ms;         ///< sums over the frames after frame 0
     std::optional<double> search_ms;
     std::optional<double> detect_ms;
-    std::optional<double> build_cpu_ms;  ///< the same of the thread's processor time
+    std::optional<double> build_cpu_ms;  ///< the same in processor time of the thread
     std::optional<double> first_cpu_ms;
     std::optional<double> update_cpu_ms;
     std::optional<double> search_cpu_ms;
     std::optional<double> detect_cpu_ms;
     std::uint64_t candidates = 0;           ///< pairs of boxes, over all frames
     std::optional<std::uint64_t> contacts;  ///< pairs of triangles, over all frames; empty in scenes of boxes
-    std::string digest;                     ///< of the contacts, or of the pairs in scenes of boxes
-    /// Over the frames after frame 0; of frame 0 where there is no other.
+    std::string digest;                     ///< hash of the contacts, or of the pairs in scenes of boxes
+    /// Sums over the frames after frame 0, or of frame 0 if it is the only one.
     std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes;
-    std::optional<std::uint64_t> missing;   ///< pairs or contacts of the exact answer that are not there
-    std::optional<std::uint64_t> invented;  ///< those that are there but not in the exact answer
-    std::optional<double> box_inflation;    ///< area of the tree's boxes over that of the smallest ones, less 1
+    std::optional<std::uint64_t> missing;   ///< false negatives: pairs or contacts of the ground truth
+    std::optional<std::uint64_t> invented;  ///< false positives
+    std::optional<double> box_inflation;    ///< surface area of a tree's boxes over that of tight boxes, less 1
     std::string status;                     ///< "exact" or "inexact"
 
-    /// Equal keys name the same measurement.
+    /// Equal keys identify the same measurement.
     [[nodiscard]] std::string key() const;
 };
 
-/// The settings of a scene, and its meshes, as a JSON object: what stands in the column `scene_parameters`.
+/// The settings and meshes of a scene as a JSON object, for the column `scene_parameters`.
 [[nodiscard]] std::string parameters_json(const scene_choice& scene);
 
-/// Rows of a results.csv. A last one that was cut off in the middle of being written is left out.
-/// @param seen hears each row with the line that it begins in
-/// @throws aabb::input_error with file and line where it is not a results.csv, or two rows are of the same measurement.
+/// Reads a results.csv, except a last row that was only partly written when the program ended.
+/// @param seen is called with each row and the line at which it begins
+/// @throws aabb::input_error with file and line if it is not a results.csv, or if two rows have the same key.
 [[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file,
                                          const std::function<void(const row&, std::size_t)>& seen = {});
 
-/// Rows of a folder of results, held against its manifest: the scenes are the manifest's, and an exact row has the
-/// digest that the manifest has for its scene. Where the run was finished, so that the manifest has a seal, all rows
-/// are there, none was altered, and they stand in the order of scenes, repeats and contenders, whatever the file's.
-/// @throws aabb::input_error where that is not so, with file, and line where there is one.
+/// Reads the rows of a results folder and verifies them against its manifest: every scene is listed, and exact rows
+/// have the digest of their scene. If the run was finished, so that the manifest has a seal, the rows must be complete
+/// and unaltered; they are then sorted by scene, repeat and candidate, whatever their order in the file.
+/// @throws aabb::input_error if the verification fails, with the file, and the line if there is one.
 [[nodiscard]] std::vector<row> verified_rows(const std::filesystem::path& folder);
 
-/// A line of differences.csv: how many pairs of one class a contender missed or invented in a scene.
+/// A line of differences.csv: the number of false negatives or false positives of one class and candidate in a scene.
 struct difference {
     scene_choice scene;
     contender_name name;
@@ -92,10 +92,10 @@ struct difference {
 };
 [[nodiscard]] std::vector<difference> read_differences(const std::filesystem::path& file);
 
-/// Keeps others from writing results into a folder, which it makes, while it or a process started meanwhile lives.
+/// Locks a results folder, which it creates, until it and all processes started meanwhile have ended.
 class folder_lock {
 public:
-    /// @throws aabb::input_error where another process has it, or the folder cannot be made.
+    /// @throws aabb::input_error if another process holds the lock, or the folder cannot be created.
     explicit folder_lock(const std::filesystem::path& folder);
     folder_lock(const folder_lock&) = delete;
     folder_lock& operator=(const folder_lock&) = delete;
@@ -105,53 +105,53 @@ private:
     int descriptor_;
 };
 
-/// What is done with results that are there already: `replace` resumes those of the same config, build and machine and
-/// sets others aside, as results.csv.old.
+/// The treatment of existing results: `replace` resumes them if config, build and machine are the same, and otherwise
+/// renames them to results.csv.old.
 enum class existing_results { refuse, resume, replace };
 
 struct experiment_record {
     std::string name;
-    std::string file;  ///< the config, as the user named it
-    std::string text;  ///< what stands in it
-    std::string hash;  ///< of all that decides the results
+    std::string file;  ///< the path of the config, as given by the user
+    std::string text;  ///< the content of the config
+    std::string hash;  ///< the hash of all inputs of the results
     bool quick;
     std::vector<scene_choice> scenes;
     std::vector<std::string> notes;  ///< a sentence each
 };
 
-/// Of the exact answers.
+/// The digest of the ground truth, by scene.
 using scene_digests = std::map<scene_choice, std::string>;
 
-/// The folder of a running experiment, which holds its lock, or was started by a process that does. What is written
-/// stays, whatever happens to the program afterwards.
+/// The folder of a running experiment; this process, or the one that started it, must hold the lock. Written rows
+/// survive a crash of the program.
 class results_folder {
 public:
-    /// Creates the folder and its manifest, or takes up what is there.
-    /// @throws aabb::input_error when results are there and are not to be resumed, or are of another config or build
-    /// and not to be replaced, or when the folder cannot be written.
+    /// Creates the folder and its manifest, or resumes existing results.
+    /// @throws aabb::input_error if there are results and `existing` does not permit to resume or replace them, if they
+    /// are of another config or build and must not be replaced, or if the folder cannot be written.
     results_folder(std::filesystem::path folder, experiment_record e, existing_results existing);
     results_folder(const results_folder&) = delete;
     results_folder& operator=(const results_folder&) = delete;
     ~results_folder();
 
     [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
-    /// Says which results were replaced and why; empty where none were.
+    /// The reason why results were replaced; empty if none were.
     [[nodiscard]] const std::string& replaced() const { return replaced_; }
     [[nodiscard]] std::span<const row> rows() const { return rows_; }
     [[nodiscard]] bool has(const row& wanted) const;
 
-    /// Appends a row and flushes it.
+    /// Appends a row and flushes the file.
     void add(const row& finished);
-    /// Deletes the rows of a contender in a scene.
+    /// Deletes the rows of a candidate, or of a repeat, in a scene.
     void drop(const scene_choice& scene, const contender_name& name);
     void drop(const scene_choice& scene, std::uint64_t repeat);
-    /// Notes the exact digest of a scene in the manifest.
+    /// Records the digest of the ground truth of a scene in the manifest.
     void set_digest(const scene_choice& scene, const std::string& digest);
-    /// Replaces the differences of these contenders in this scene.
+    /// Replaces the differences of these candidates in this scene.
     void set_differences(const scene_choice& scene, std::span<const contender_name> of,
-                         std::span<const difference> found);
-    /// Of an experiment that is finished: its manifest gets what later shows whether a row is missing or was altered.
-    /// It loses that when the results are opened again.
+                         std::span<const difference> differences);
+    /// Seals a finished experiment: adds checksums to the manifest, by which missing or altered rows are detected
+    /// later. Opening the results again removes the seal.
     void seal();
 
 private:
@@ -171,42 +171,42 @@ private:
     std::FILE* file_ = nullptr;
 };
 
-/// The manifest of a results folder, as far as reports show it.
+/// The parts of a manifest that reports show.
 struct manifest_summary {
     std::string date;
-    std::string commit;  ///< with "(changed)" where files differed from it
+    std::string commit;  ///< with "(changed)" if files differed from it
     std::string compiler;
     std::string flags;
     std::string cpu;
     std::vector<std::string> notes;
-    std::string config;  ///< what stands in it
+    std::string config;  ///< its content
     bool quick = false;
-    bool finished = false;  ///< all was played
-    std::string text;       ///< the manifest as the program wrote it, however it came here
+    bool finished = false;  ///< all scenes were run
+    std::string text;       ///< the whole manifest, formatted as the program writes it
 };
-/// @throws aabb::input_error where it is not a manifest.
+/// @throws aabb::input_error if it is not a manifest.
 [[nodiscard]] manifest_summary read_manifest(const std::filesystem::path& folder);
 
-/// What made results of this program, as a manifest says it: times of different builds or machines must not meet.
+/// The build and machine in the format of a manifest: times of different ones must not be mixed.
 [[nodiscard]] std::string build_description();
 
 }  // namespace aabblab
 
-// What the parts of the module share.
+// Shared by the units of the module.
 namespace aabblab {
 
 /// The inverse of `parameters_json`.
-/// @returns false where the text is not such an object
+/// @returns false if the text is not such an object
 [[nodiscard]] bool set_parameters(scene_choice& scene, const std::string& json);
 
 [[nodiscard]] std::string csv_header_of_rows();
 [[nodiscard]] std::string csv_of(const row& r);
 [[nodiscard]] std::string csv_of(std::span<const difference> differences);
 
-/// What shows whether a table was altered, whatever the order of its rows and the ends of its lines.
+/// Detects alterations of a table, except of the order of its rows and of its line endings.
 struct table_seal {
     std::size_t rows;
-    std::string checksum;  ///< SHA-256 of its sorted lines, that of the column names among them
+    std::string checksum;  ///< SHA-256 of its sorted lines, including the header
     friend bool operator==(const table_seal&, const table_seal&) = default;
 };
 [[nodiscard]] table_seal seal_of(const std::filesystem::path& table);
@@ -214,7 +214,7 @@ struct table_seal {
 struct results_seal {
     table_seal results;
     std::optional<table_seal> differences;
-    std::vector<contender_name> contenders;  ///< in the order in which they were played
+    std::vector<contender_name> contenders;  ///< in the order in which they were run
 };
 
 [[nodiscard]] std::string manifest_text(const experiment_record& e, const std::string& date,
@@ -222,16 +222,16 @@ struct results_seal {
 
 struct sealed_manifest {
     std::string experiment;
-    std::vector<std::pair<scene_choice, std::string>> scenes;  ///< each with its exact digest, or an empty one
+    std::vector<std::pair<scene_choice, std::string>> scenes;  ///< with their digests, which may be empty
     std::optional<results_seal> seal;
 };
-/// @throws aabb::input_error where it is not a manifest, or was altered since it was sealed.
+/// @throws aabb::input_error if it is not a manifest, or was altered after it was sealed.
 [[nodiscard]] sealed_manifest read_sealed_manifest(const std::filesystem::path& file);
 
-/// Why results cannot be continued: they are of another config, build or machine. Empty where they can.
+/// The reason why results cannot be resumed, such as another config, build or machine; empty if they can.
 [[nodiscard]] std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e);
-/// The date and the digests of results that are continued.
-/// @throws aabb::input_error where they cannot be.
+/// The date and the digests of results that are resumed.
+/// @throws aabb::input_error if they cannot be resumed.
 [[nodiscard]] std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file,
                                                                     const experiment_record& e);
 

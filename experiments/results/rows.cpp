@@ -13,7 +13,7 @@ void for_each_name(auto& name, auto field) {
     field("engine", name.engine);
 }
 
-/// A scene without kind and seed, which have columns of their own.
+/// The part of a scene without columns of its own: all but kind and seed.
 template <class Scene>
 struct parameters_of {
     Scene& scene;
@@ -79,10 +79,10 @@ std::string expected_of(const parameters_of<scene_choice>&) {
     return "a JSON object of settings";
 }
 
-/// What is quoted of a field that may be of any length.
+/// Messages quote at most this many characters of a field.
 constexpr std::size_t longest_quote = 60;
 
-/// Columns that results of earlier versions do not have.
+/// Columns that results of earlier versions lack.
 constexpr std::array<std::string_view, 1> later_columns{"restarts"};
 
 /// "column 3 is 'x'; expected 'seed'"
@@ -95,10 +95,10 @@ std::string first_difference(const std::vector<std::string>& names, const std::v
 
 }  // namespace
 
-void require_header(const std::string& file, const csv_record& found, const std::vector<std::string>& expected) {
-    if (csv_line(found.fields) != csv_line(expected))
+void require_header(const std::string& file, const csv_record& header, const std::vector<std::string>& expected) {
+    if (csv_line(header.fields) != csv_line(expected))
         throw aabb::input_error(file + ":1: these are not the columns of this version; " +
-                                first_difference(found.fields, expected));
+                                first_difference(header.fields, expected));
 }
 
 std::string row::key() const {

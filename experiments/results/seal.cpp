@@ -9,30 +9,30 @@ namespace aabblab {
 namespace {
 
 void require_seal(const std::filesystem::path& table, const table_seal& stated) {
-    const table_seal found = std::filesystem::exists(table) ? seal_of(table) : table_seal{};
-    if (found.rows != stated.rows)
-        throw aabb::input_error(table.string() + " has " + std::to_string(found.rows) + " rows; when the run was " +
+    const table_seal actual = std::filesystem::exists(table) ? seal_of(table) : table_seal{};
+    if (actual.rows != stated.rows)
+        throw aabb::input_error(table.string() + " has " + std::to_string(actual.rows) + " rows; when the run was " +
                                 "finished it had " + std::to_string(stated.rows) + ", as manifest.json says");
-    if (found != stated)
+    if (actual != stated)
         throw aabb::input_error(table.string() +
                                 " was altered after the run: its rows do not have the checksum that manifest.json "
                                 "states");
 }
 
-/// The places of scenes in the manifest, with their digests.
+/// The positions of scenes in the manifest, with their digests.
 using known_scenes = std::map<scene_choice, std::pair<std::size_t, std::string>>;
 
 /// @param place "results.csv:17: "
 void require_known(const known_scenes& known, const row& r, const std::string& place) {
-    const auto found = known.find(r.scene);
-    if (found == known.end())
+    const auto entry = known.find(r.scene);
+    if (entry == known.end())
         throw aabb::input_error(place + "manifest.json has no scene " + r.scene.kind + " with these parameters");
-    if (const std::string& digest = found->second.second; r.status == "exact" && !digest.empty() && r.digest != digest)
+    if (const std::string& digest = entry->second.second; r.status == "exact" && !digest.empty() && r.digest != digest)
         throw aabb::input_error(place + "the row is exact, but its digest is '" + r.digest +
                                 "'; that of the scene is " + digest + ", as manifest.json says");
 }
 
-/// By scene, repeat and contender.
+/// Restores the order of the run: by scene, repeat and candidate.
 void sort_as_played(std::vector<row>& rows, const known_scenes& scenes, const std::vector<contender_name>& contenders) {
     std::map<contender_name, std::size_t> turns;
     for (const contender_name& name : contenders) turns.emplace(name, turns.size());
@@ -55,26 +55,26 @@ table_seal seal_of(const std::filesystem::path& table) {
     std::ranges::sort(lines);
     std::string text;
     for (const std::string& line : lines) text += line;
-    // One line has the names of the columns.
+    // The header is not a row.
     return {lines.empty() ? 0 : lines.size() - 1, sha256_of(text)};
 }
 
 std::vector<row> verified_rows(const std::filesystem::path& folder) {
-    const sealed_manifest made = read_sealed_manifest(folder / "manifest.json");
+    const sealed_manifest manifest = read_sealed_manifest(folder / "manifest.json");
     const std::filesystem::path table = folder / "results.csv";
     known_scenes scenes;
-    for (const auto& [scene, digest] : made.scenes) scenes.emplace(scene, std::pair(scenes.size(), digest));
+    for (const auto& [scene, digest] : manifest.scenes) scenes.emplace(scene, std::pair(scenes.size(), digest));
     std::vector<row> rows = read_rows(table, [&](const row& r, std::size_t line) {
         const std::string place = table.string() + ":" + std::to_string(line) + ": ";
-        if (r.experiment != made.experiment)
+        if (r.experiment != manifest.experiment)
             throw aabb::input_error(place + "the row is of the experiment '" + r.experiment +
-                                    "', and manifest.json of '" + made.experiment + "'");
+                                    "', and manifest.json of '" + manifest.experiment + "'");
         require_known(scenes, r, place);
     });
-    if (!made.seal) return rows;
-    require_seal(table, made.seal->results);
-    if (made.seal->differences) require_seal(folder / "differences.csv", *made.seal->differences);
-    sort_as_played(rows, scenes, made.seal->contenders);
+    if (!manifest.seal) return rows;
+    require_seal(table, manifest.seal->results);
+    if (manifest.seal->differences) require_seal(folder / "differences.csv", *manifest.seal->differences);
+    sort_as_played(rows, scenes, manifest.seal->contenders);
     return rows;
 }
 

@@ -7,7 +7,7 @@ namespace aabblab {
 
 namespace {
 
-/// Its experiments, in the order in which they are played.
+/// An experiment of the atlas; they run in this order.
 struct part {
     std::string_view name;
     bool unseen;
@@ -18,36 +18,36 @@ constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {
 
 std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
-    for (const part& one : parts)
-        experiments.push_back(open_experiment(fmt::format("{}/{}.toml", AABBLAB_ATLAS_CONFIGS, one.name), quick));
+    for (const part& p : parts)
+        experiments.push_back(open_experiment(fmt::format("{}/{}.toml", AABBLAB_ATLAS_CONFIGS, p.name), quick));
     std::vector<std::string> failures;
     for (const experiment& e : experiments) {
         note(fmt::format("part {} of {} of the atlas: {}, {} scenes", &e - experiments.data() + 1, experiments.size(),
                          e.name, e.scenes.size()));
-        std::vector<std::string> found =
+        std::vector<std::string> wrong =
             play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
-        std::ranges::move(found, std::back_inserter(failures));
+        std::ranges::move(wrong, std::back_inserter(failures));
     }
     return failures;
 }
 
 std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
     std::vector<std::string> sentences;
-    for (const part& one : parts) {
-        if (!std::filesystem::exists(folder / one.name / "manifest.json"))
-            sentences.push_back(fmt::format("of {} nothing was played yet", one.name));
-        else if (!read_manifest(folder / one.name).finished)
+    for (const part& p : parts) {
+        if (!std::filesystem::exists(folder / p.name / "manifest.json"))
+            sentences.push_back(fmt::format("of {} nothing was played yet", p.name));
+        else if (!read_manifest(folder / p.name).finished)
             sentences.push_back(
-                fmt::format("{} is not finished; scenes of it that were not played are missing", one.name));
+                fmt::format("{} is not finished; scenes of it that were not played are missing", p.name));
     }
     return sentences;
 }
 
 std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder) {
     std::vector<atlas_scene> atlas;
-    for (const part& one : parts)
-        if (std::filesystem::exists(folder / one.name / "results.csv"))
-            std::ranges::move(read_atlas(folder / one.name, one.unseen), std::back_inserter(atlas));
+    for (const part& p : parts)
+        if (std::filesystem::exists(folder / p.name / "results.csv"))
+            std::ranges::move(read_atlas(folder / p.name, p.unseen), std::back_inserter(atlas));
     return atlas;
 }
 

@@ -34,12 +34,12 @@ void print_tables(std::span<const hit_point> points) {
     }
 }
 
-/// @returns a sentence for each test whose hits are wrong
+/// @returns a sentence for each test with wrong hits
 std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, std::span<const pair_set> sets,
                                            printed shown) {
-    // What is finished stays, whatever happens afterwards.
+    // Write after each set, so that a crash does not lose finished ones.
     const std::vector<hit_point> points = measure_hits(
-        sets, [&](std::span<const hit_point> so_far) { write_file(folder / "intersections.csv", csv_of(so_far)); });
+        sets, [&](std::span<const hit_point> finished) { write_file(folder / "intersections.csv", csv_of(finished)); });
     if (shown != printed::nothing) print_tables(points);
     std::vector<std::string> failures;
     for (const hit_point& p : points)
@@ -56,11 +56,11 @@ std::string usual_study() {
 }
 
 std::vector<std::filesystem::path> configs_in(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> all;
+    std::vector<std::filesystem::path> configs;
     for (const auto& file : std::filesystem::directory_iterator(folder))
-        if (file.path().extension() == ".toml") all.push_back(file.path());
-    std::ranges::sort(all);
-    return all;
+        if (file.path().extension() == ".toml") configs.push_back(file.path());
+    std::ranges::sort(configs);
+    return configs;
 }
 
 std::vector<std::filesystem::path> error_configs() {
@@ -71,7 +71,7 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
     require_fine_clock();
     std::vector<std::string> failures;
     std::filesystem::create_directories(folder);
-    // Of an earlier study, they would stand beside the config of this one.
+    // Remove results of an earlier study, which would not match the config of this one.
     for (const char* file : {"errors.csv", "intersections.csv"}) std::filesystem::remove(folder / file);
     write_file(folder / "config.toml", study.text);
     if (study.whole) {
@@ -83,7 +83,7 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
         }
     } else if (!study.curves.empty()) {
         const std::vector<error_point> points = measure_errors(
-            study, [&](std::span<const error_point> so_far) { write_file(folder / "errors.csv", csv_of(so_far)); });
+            study, [&](std::span<const error_point> finished) { write_file(folder / "errors.csv", csv_of(finished)); });
         if (shown != printed::nothing) {
             print_tables(points);
             draw(folder / "figures", error_figures(points));

@@ -22,13 +22,13 @@ namespace aabblab {
 
 namespace {
 
-/// Says how to go on when the program is interrupted; every finished row is in its file by then.
+/// Prints how to resume when the program is interrupted; all finished rows are in their file by then.
 class interruption {
 public:
     explicit interruption(const std::string& resume_with) {
         message() = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
         std::signal(SIGINT, [](int signal) {
-            // Only what a signal handler may call.
+            // Async-signal-safe functions only.
             if (write(STDERR_FILENO, message().data(), message().size()) < 0) _exit(1);
             std::signal(signal, SIG_DFL);
             std::raise(signal);
@@ -45,7 +45,7 @@ private:
     }
 };
 
-/// Once for each kind of scene.
+/// Notes each idle engine once per kind of scene.
 void note_idle_engines(const experiment& e) {
     std::set<std::string> kinds;
     for (const scene_choice& scene : e.scenes)
@@ -53,20 +53,20 @@ void note_idle_engines(const experiment& e) {
             for (const std::string& sentence : idle_engines(e, scene, scene.kind)) note(sentence);
 }
 
-/// Whatever the seeds.
+/// True if two scenes differ at most in their seeds.
 bool is_same_scene(const scene_choice& a, const scene_choice& b) {
     return whatever_seed(a) == whatever_seed(b);
 }
 
-/// The rows of a scene, whatever its seeds.
-std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> all) {
-    std::vector<row> rows;
-    for (const row& r : all)
-        if (is_same_scene(r.scene, scene)) rows.push_back(r);
-    return rows;
+/// The rows of a scene over all its seeds.
+std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> rows) {
+    std::vector<row> matching;
+    for (const row& r : rows)
+        if (is_same_scene(r.scene, scene)) matching.push_back(r);
+    return matching;
 }
 
-/// Names of files are in it.
+/// Escapes control characters, which names of files may contain.
 scene_choice visible_scene(scene_choice scene) {
     for (aabb::setting& s : scene.settings) s.value = visible(s.value);
     for (std::string& mesh : scene.meshes) mesh = visible(mesh);
@@ -84,19 +84,19 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
     flush_output();
 }
 
-/// A table for scenes whose ratios are to the same composition; those of boxes and of meshes are not.
+/// Prints one table per baseline, because scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
     std::map<contender_name, std::vector<scene_summary>> alike;
     for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
-    for (const auto& [base, some] : alike)
-        if (const table overall = overall_table_of(some); some.size() > 1 && !overall.rows.empty())
+    for (const auto& [base, group] : alike)
+        if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
             print(
                 fmt::format("{} scenes with {},\nthe ratio to it as a geometric mean, fastest first; regret: the ratio "
                             "over\nthe least of an exact answer in each scene, the median, and the worst\n\n{}\n",
-                            some.size(), text_of(base), to_text(overall, output_width())));
+                            group.size(), text_of(base), to_text(overall, output_width())));
 }
 
-/// What takes several must not have them all on one processor.
+/// Multi-threaded compositions must not be pinned to one processor.
 bool takes_several_threads(const experiment& e) {
     return std::ranges::any_of(every_composition(e), [](const aabb::composition& c) {
         return std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
@@ -106,29 +106,29 @@ bool takes_several_threads(const experiment& e) {
     });
 }
 
-/// Plays one process's share of every scene.
-/// @param tell hears what is wrong, a sentence each
-/// @param is_played hears the number of each scene that is
+/// Runs one process's share of every scene.
+/// @param report is called with a sentence per failure
+/// @param finished is called with the index of each scene at its end
 void play_scenes(
     const experiment& e, results_folder& results, std::size_t process,
-    const std::function<void(const std::string&)>& tell,
-    const std::function<void(std::size_t)>& is_played = [](std::size_t) {}) {
+    const std::function<void(const std::string&)>& report,
+    const std::function<void(std::size_t)>& finished = [](std::size_t) {}) {
     std::optional<idlest_processor> pinned;
     if (e.records(metric_group::time) && !takes_several_threads(e)) pinned.emplace();
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
-        std::ranges::for_each(run_scene(e, scene, contenders_for(e, scene), results, process), tell);
-        is_played(i);
+        std::ranges::for_each(run_scene(e, scene, contenders_for(e, scene), results, process), report);
+        finished(i);
     }
 }
 
-/// @param tell hears what is wrong, a sentence each
+/// Runs each share in a new process, one after the other.
 void play_afresh(const experiment& e, const std::filesystem::path& folder,
-                 const std::function<void(const std::string&)>& tell) {
+                 const std::function<void(const std::string&)>& report) {
     for (std::size_t process = 0; process < e.processes; ++process) {
         std::vector<std::string> share{"run", e.file, "--out", folder.string(), "--process", std::to_string(process)};
         if (e.quick) share.emplace_back("--quick");
-        std::ranges::for_each(lines_of_own_process(share), tell);
+        std::ranges::for_each(lines_of_own_process(share), report);
     }
 }
 
@@ -139,7 +139,7 @@ experiment open_experiment(const std::string& config, bool quick) {
     for (const std::string& sentence : e.notes) note(sentence);
     std::vector<std::string> meshes;
     for (const scene_choice& scene : e.scenes) meshes.insert(meshes.end(), scene.meshes.begin(), scene.meshes.end());
-    // All scenes of a config have its folder.
+    // All scenes share the folder of the config.
     note_left_out(meshes, e.scenes.front().folder);
     return e;
 }
@@ -158,10 +158,10 @@ std::vector<std::string> idle_engines(const experiment& e, const scene_choice& s
 std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
                                          existing_results existing, const std::string& resume_with, printed shown) {
     if (e.records(metric_group::time)) require_fine_clock();
-    const interruption said(resume_with);
-    const folder_lock alone(folder);
+    const interruption handler(resume_with);
+    const folder_lock lock(folder);
     std::vector<std::string> failures;
-    const auto tell = [&](const std::string& failure) {
+    const auto report = [&](const std::string& failure) {
         note(failure);
         failures.push_back(failure);
     };
@@ -169,12 +169,12 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
         results_folder results(folder, record_of(e), existing);
         note_idle_engines(e);
         if (!results.replaced().empty()) note(results.replaced() + "; this run replaces them");
-        // It is of a whole run.
+        // A summary of an earlier run would be out of date.
         std::error_code ignored;
         std::filesystem::remove(folder / "summary.csv", ignored);
         if (e.processes == 1) {
-            // Shows a scene as soon as its last seed is played.
-            play_scenes(e, results, 0, tell, [&](std::size_t i) {
+            // Print a scene as soon as its last seed is finished.
+            play_scenes(e, results, 0, report, [&](std::size_t i) {
                 const scene_choice& scene = e.scenes[i];
                 if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_same_scene(scene, e.scenes[i + 1])))
                     print_scenes(e, summarise(rows_of_all_seeds(scene, results.rows())), shown);
@@ -183,7 +183,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
         }
     }
     if (e.processes > 1) {
-        play_afresh(e, folder, tell);
+        play_afresh(e, folder, report);
         results_folder(folder, record_of(e), existing_results::resume).seal();
     }
     const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));

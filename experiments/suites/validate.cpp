@@ -15,9 +15,9 @@ namespace aabblab {
 
 namespace {
 
-/// The tables that are told, with what stands above them.
+/// The tables of a report, with their captions.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
-    std::vector<named_table> all = {
+    std::vector<named_table> tables = {
         {"extreme_boxes", "Boxes: by the definition, in a double loop", scene_table(rows, row_group::boxes)},
         {"extreme_meshes", "Meshes: by CGAL's exact kernel on every two triangles; -missing +invented",
          scene_table(rows, row_group::meshes)},
@@ -27,29 +27,30 @@ std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
          case_table(rows)},
         {"extreme_case_tests", "The same by inexact triangle tests, in every order of corners, float and double",
          inexact_case_table(rows)}};
-    std::erase_if(all, [](const named_table& t) { return t.content.rows.empty(); });
-    return all;
+    std::erase_if(tables, [](const named_table& t) { return t.content.rows.empty(); });
+    return tables;
 }
 
 suite_report report_of(std::span<const extreme_row> rows) {
     return {memory_in(rows), {}, tables_of(rows), failures_in(rows)};
 }
 
-/// A table for each quantity.
+/// One table per quantity.
 std::vector<named_table> tables_of(const stiff_study& study, const stiff_result& result) {
-    std::vector<named_table> all;
+    std::vector<named_table> tables;
     for (const stiff_row& r : result.rows) {
         const std::string caption = fmt::format("{}: {}", study.name, r.quantity);
-        auto found = std::ranges::find(all, caption, &named_table::caption);
-        if (found == all.end()) {
-            const std::string name = fmt::format("{}_{}", study.name, all.size() + 1);
-            all.push_back({name, caption, {{{r.quantity, false}, {"measured"}, {"expected", false}, {"", false}}, {}}});
-            found = all.end() - 1;
+        auto match = std::ranges::find(tables, caption, &named_table::caption);
+        if (match == tables.end()) {
+            const std::string name = fmt::format("{}_{}", study.name, tables.size() + 1);
+            tables.push_back(
+                {name, caption, {{{r.quantity, false}, {"measured"}, {"expected", false}, {"", false}}, {}}});
+            match = tables.end() - 1;
         }
-        found->content.rows.push_back({r.subject, fmt::format("{:.4g}", r.measured), r.rule,
+        match->content.rows.push_back({r.subject, fmt::format("{:.4g}", r.measured), r.rule,
                                        std::string(stiff_verdict_words[static_cast<std::size_t>(r.verdict)])});
     }
-    return all;
+    return tables;
 }
 
 void add_study(suite_report& report, const stiff_study& study, const stiff_result& result) {
@@ -62,7 +63,7 @@ void add_study(suite_report& report, const stiff_study& study, const stiff_resul
                 fmt::format("{}: {}: {} is {:.4g}, not {}", study.name, r.subject, r.quantity, r.measured, r.rule));
 }
 
-/// Those of these names, all where none is given.
+/// The studies with these names, or all if there are no names.
 std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     std::vector<stiff_study> chosen;
     std::vector<std::string> known;
@@ -76,7 +77,7 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
-// Earlier versions sealed what they drew, not rows.
+// Earlier versions stored reports instead of rows.
 
 figure_axis axis_of(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
@@ -89,7 +90,7 @@ series series_of(const json_value& j) {
     for (const json_value& p : j.needed("points").list()) {
         const std::vector<json_value> numbers = p.list();
         if (numbers.size() != 4) p.fail("must be four numbers");
-        // Quartiles are the same; what is none, as where a trajectory ends beyond all, is null in JSON.
+        // Quartiles equal the value; a value that is not finite, as of a diverging trajectory, is null in JSON.
         if (!numbers[1].is_null()) line.points.push_back({numbers[0].number(), numbers[1].number()});
     }
     return line;
@@ -115,10 +116,10 @@ named_table table_of(const json_value& j) {
 }
 
 suite_report drawn_report(const std::filesystem::path& file) {
-    const json_value all(file.string(), text_of_file(file), "is not the report of a suite of validate");
-    suite_report report{all.needed("paragraphs").texts(), {}, {}, all.needed("failures").texts()};
-    for (const json_value& f : all.needed("figures").list()) report.figures.push_back(figure_of(f));
-    for (const json_value& t : all.needed("tables").list()) report.tables.push_back(table_of(t));
+    const json_value document(file.string(), text_of_file(file), "is not the report of a suite of validate");
+    suite_report report{document.needed("paragraphs").texts(), {}, {}, document.needed("failures").texts()};
+    for (const json_value& f : document.needed("figures").list()) report.figures.push_back(figure_of(f));
+    for (const json_value& t : document.needed("tables").list()) report.tables.push_back(table_of(t));
     return report;
 }
 
@@ -131,11 +132,11 @@ std::string usual_cases() {
 suite_report play_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick, bool shown) {
     const auto size = quick ? aabb::extreme_size::quick : aabb::extreme_size::full;
     const std::vector<aabb::triangle_case> hard = read_triangle_cases(cases);
-    std::filesystem::create_directories(folder);  // before the work, which takes a while
+    std::filesystem::create_directories(folder);  // fail early, before the long run
     const extreme_list list = all_extreme_scenes(size);
     for (const std::string& sentence : list.notes) note(sentence);
     std::vector<extreme_row> rows = play_scenes(list.scenes, size);
-    // What is finished stays, whatever happens afterwards.
+    // Write the scenes first, so that a crash in the cases does not lose them.
     write_file(folder / "extreme.csv", csv_of(rows));
     for (extreme_row& row : play_cases(hard)) rows.push_back(std::move(row));
     suite_report report = report_of(rows);
@@ -172,7 +173,7 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
             for (const named_table& t : tables_of(study, result)) print(to_text(t.content, output_width()) + "\n");
             flush_output();
         }
-        // What is finished stays, whatever happens afterwards; other studies' files do too.
+        // Write after each study, so that a crash does not lose finished ones.
         write_result(folder, study, result);
         draw(folder / "figures", figures_of(study, result));
     }
@@ -184,7 +185,7 @@ std::optional<suite_report> kept_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return drawn_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {
         const std::vector<extreme_row> rows = read_extreme_rows(folder / "extreme.csv");
-        // Cases are played last: without any the run was interrupted.
+        // Cases run last: if there are none, the run was interrupted.
         if (std::ranges::count(rows, row_group::cases, &extreme_row::group) == 0) return std::nullopt;
         return report_of(rows);
     }

@@ -1,4 +1,4 @@
-/// Where the parts of a figure go, in ems of its font, so that no legend, name or mark covers data.
+/// Lays out the parts of a figure, in ems of its font, so that no legend, name or mark covers data.
 module aabblab.figures:arrangement;
 
 import aabb.std;
@@ -11,7 +11,7 @@ struct arrangement {
     double width;   ///< of the whole figure
     double height;  ///< of the whole figure
 
-    /// A plot, from the figure's left and lower edges.
+    /// The edges of a plot, measured from the left and lower edges of the figure.
     struct box {
         double left;
         double right;
@@ -19,51 +19,51 @@ struct arrangement {
         double top;
         bool has_x_ticks;
         bool has_y_ticks;
-        std::vector<double> mark_tops;  ///< up to where the lines of its marks reach
+        std::vector<double> mark_tops;  ///< the upper ends of the lines of its marks
     };
-    std::vector<box> plots;  ///< one a panel
+    std::vector<box> plots;  ///< one per panel
 
-    std::vector<tick> x_ticks;  ///< small ones for numbers that would run into each other
-    std::size_t x_name_length;  ///< at which names below the plot are broken into lines
-    int x_name_angle;           ///< of these names, in degrees; 0 where they fit side by side
+    std::vector<tick> x_ticks;  ///< labels that would overlap are removed
+    std::size_t x_name_length;  ///< the maximum line length of names below the plot, in characters
+    int x_name_angle;           ///< of these names, in degrees; 0 if they fit side by side
 
-    /// How a label's line looks, beside the label: in a legend from here to the right, at the line's end about this
-    /// place.
+    /// A sample of a series beside its label: in a legend it starts at `at`, at the end of a line it is centred
+    /// there.
     struct sample {
         place at;
         const shown_label* of;
         bool is_end;
     };
     std::vector<sample> samples;
-    std::vector<words> texts;  ///< all but those of the ticks
+    std::vector<words> texts;  ///< all except tick labels
 };
 
 // In ems.
 inline constexpr double line_height = 1.25;
-inline constexpr double tick_room = 0.9;  ///< of a tick and the gap to its label
+inline constexpr double tick_room = 0.9;  ///< length of a tick with the gap to its label
 
-/// The label of a tick as its axis shows it: a name is broken into short lines, a number stands in one.
+/// The lines of a tick label: names are broken into short lines, numbers are not.
 [[nodiscard]] std::vector<std::string> lines_of(const scale& axis, const tick& t, std::size_t length) {
     return axis.named ? lines_of(t.label, length) : std::vector{t.label};
 }
 
-/// The middles of lines of text below a place.
+/// The centres of lines of text below a place.
 [[nodiscard]] std::vector<place> lines_below(place top, std::size_t count) {
-    std::vector<place> all;
+    std::vector<place> centres;
     for (std::size_t i = 0; i < count; ++i)
-        all.push_back({top.x, top.y - line_height * (static_cast<double>(i) + 0.5)});
-    return all;
+        centres.push_back({top.x, top.y - line_height * (static_cast<double>(i) + 0.5)});
+    return centres;
 }
 
 // In ems.
-constexpr double figure_width = 36;  // on a phone of 400 pixels an em has ten of them
-constexpr double character = 0.6;    // the widest usual sans
+constexpr double figure_width = 36;  // about 10 pixels per em on a phone of 400 pixels
+constexpr double character = 0.6;    // of the widest common sans-serif fonts
 constexpr double legend_row = 1.4;
-constexpr double legend_sample = 6;  // of a line in the legend, with the gaps about it
-constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, with the gaps about it
+constexpr double legend_sample = 6;  // of a line in the legend, including gaps
+constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, including gaps
 constexpr double gap = 0.6;
 
-// In characters, at which labels are broken into lines.
+// Maximum lengths of lines in labels, in characters.
 constexpr std::size_t longest_name = 54;
 constexpr std::size_t end_label_length = 18;
 
@@ -89,7 +89,7 @@ double width_of(const scale& axis, const tick& t, std::size_t name_length) {
     return axis.named ? width_of(lines_of(axis, t, name_length)) : width_of(t.label + t.power);
 }
 
-/// The widest and the highest label of an axis.
+/// The maximum width and height of the labels of an axis.
 std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_length) {
     double width = 0;
     double height = 0;
@@ -101,37 +101,37 @@ std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_l
     return {width, height};
 }
 
-/// The label of a line at its end.
+/// The label at the end of a line.
 struct end_label {
     const shown_label* of;
     std::vector<std::string> lines;
-    double wanted;      ///< from the plot's lower edge, as is the following
-    double middle = 0;  ///< where it has place
+    double wanted;      ///< its preferred centre above the plot's lower edge
+    double middle = 0;  ///< its actual centre
 };
 
 struct legend {
-    std::vector<std::vector<std::string>> entries;  ///< the lines of each label; none where it has none
+    std::vector<std::vector<std::string>> entries;  ///< the lines of each label; empty if it has none
     double left = 0;
-    double column = 0;  ///< its width
+    double column = 0;  ///< the width of a column
     std::size_t rows = 0;
     bool has_long_entries = false;
 
     [[nodiscard]] double height() const { return rows == 0 ? 0 : legend_row * static_cast<double>(rows) + gap; }
 };
 
-/// The text of a mark, beside its line.
+/// The text beside the line of a mark, like a flag at its pole.
 struct flag {
-    double at;  ///< its line
+    double at;  ///< x of the line
     double begin;
     double end;
-    std::size_t row = 0;  ///< from below
+    std::size_t row = 0;  ///< counted from below
 };
 
-/// Texts, so high that no line but their own runs through them.
-/// @returns how many rows they take
+/// Assigns rows to the texts so that no line of another mark crosses them.
+/// @returns the number of rows
 std::size_t raise(std::vector<flag>& flags) {
     const auto crosses = [](const flag& line, const flag& text) { return text.begin < line.at && line.at < text.end; };
-    // Each round settles one row at least, but for texts that each have the line of the other in them.
+    // Each round settles at least one row, except for texts that mutually cross each other's lines.
     for (std::size_t round = 0; round < flags.size(); ++round)
         for (flag& a : flags)
             for (flag& b : flags) {
@@ -144,7 +144,7 @@ std::size_t raise(std::vector<flag>& flags) {
                     ++b.row;
             }
     std::size_t rows = 0;
-    for (const flag& one : flags) rows = std::max(rows, one.row + 1);
+    for (const flag& f : flags) rows = std::max(rows, f.row + 1);
     return rows;
 }
 
@@ -170,7 +170,7 @@ public:
         const double marks = line_height * static_cast<double>(flag_rows);
         const double row = plot_height_ + marks + (titled ? line_height + gap / 2 : 0);
 
-        // The last row of panels may leave a place free, which the legend can take.
+        // The legend can take the free cell that an incomplete last row of panels leaves.
         legend labels;
         bool is_free = false;
         if (ends.empty()) {
@@ -206,7 +206,7 @@ private:
         return left_ + static_cast<double>(panel % columns_) * (plot_width() + column_gap_);
     }
 
-    /// The height of the plots, which grows with the number of names on the y axis, and the margin at the left.
+    /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin.
     void place_left() {
         const auto [width, height] = extent_of_labels(d_.y, y_name_length);
         plot_height_ = panels_ == 1 ? 17 : 10;
@@ -215,17 +215,17 @@ private:
         left_ = gap / 2 + height_of(y_label_) + gap + width + tick_room;
     }
 
-    /// Leaves out numbers until none runs into the next.
+    /// Removes labels of ticks until no two overlap.
     void thin_x_ticks() {
         std::vector<tick*> labelled;
         for (tick& t : to_.x_ticks)
             if (!t.label.empty()) labelled.push_back(&t);
         const auto fits = [&](std::size_t step) {
             for (std::size_t i = step; i < labelled.size(); i += step) {
-                const tick& one = *labelled[i - step];
+                const tick& previous = *labelled[i - step];
                 const tick& next = *labelled[i];
-                if ((d_.x.place(next.at) - d_.x.place(one.at)) * plot_width() <
-                    (width_of(d_.x, one, 0) + width_of(d_.x, next, 0)) / 2 + gap)
+                if ((d_.x.place(next.at) - d_.x.place(previous.at)) * plot_width() <
+                    (width_of(d_.x, previous, 0) + width_of(d_.x, next, 0)) / 2 + gap)
                     return false;
             }
             return true;
@@ -236,8 +236,8 @@ private:
             if (i % step != 0) labelled[i]->label.clear();
     }
 
-    /// The ticks of the x axis: their height, and the right margin and the gap between plots, which the outer ones may
-    /// hang over.
+    /// Places the labels of the x axis, and widens the right margin and the gap between plots for outer labels that
+    /// protrude. @returns the height of the labels
     double place_x_ticks() {
         to_.x_name_length = longest_name;
         to_.x_ticks = d_.x.ticks;
@@ -263,7 +263,7 @@ private:
             if (!d_.x.named) thin_x_ticks();
             return height;
         }
-        // Slanted, each ends at its tick; upright where that puts one line upon the next or makes the plot narrow.
+        // Slanted labels end at their tick; vertical ones replace them if they overlap or narrow the plot too much.
         constexpr double slant = 30 * std::numbers::pi / 180;
         constexpr double widest_margin = 16;
         to_.x_name_length = longest_name;
@@ -282,7 +282,7 @@ private:
         return longest;
     }
 
-    /// Where the lines of a figure without panels end, if all with a label are lines that end near the right edge.
+    /// The ends of the lines of a figure without panels, provided that all labelled series end near the right edge.
     [[nodiscard]] std::vector<end_label> wanted_ends() const {
         constexpr double near_edge = 0.9;
         std::vector<end_label> ends;
@@ -298,7 +298,7 @@ private:
         return ends;
     }
 
-    /// Labels at the ends of lines, if there is room for them: none may be far from its line.
+    /// Places labels at the ends of lines; returns none if a label would be too far from its line.
     std::vector<end_label> place_ends() {
         constexpr double furthest = 2.2;
         std::vector<end_label> ends = wanted_ends();
@@ -309,50 +309,50 @@ private:
             if (end.lines.size() > 3 || widest > character * static_cast<double>(end_label_length)) return {};
         }
         std::ranges::sort(ends, {}, &end_label::middle);
-        // How much two lack to stand above each other.
-        const auto missing = [&](std::size_t upper) {
+        // The overlap of two neighbouring labels.
+        const auto overlap = [&](std::size_t upper) {
             const end_label& a = ends[upper - 1];
             const end_label& b = ends[upper];
             return (height_of(a.lines) + height_of(b.lines)) / 2 - (b.middle - a.middle);
         };
-        // Those that meet share what they have to give way, again and again until none meet.
+        // Relaxation: labels that overlap move apart by half of the overlap each, until none do.
         constexpr int enough = 200;
         for (int round = 0; round < enough; ++round)
             for (std::size_t i = 1; i < ends.size(); ++i) {
-                const double lack = std::max(missing(i), 0.);
-                ends[i - 1].middle -= lack / 2;
-                ends[i].middle += lack / 2;
+                const double excess = std::max(overlap(i), 0.);
+                ends[i - 1].middle -= excess / 2;
+                ends[i].middle += excess / 2;
             }
         for (std::size_t i = 0; i < ends.size(); ++i)
-            if ((i > 0 && missing(i) > 0.1) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
+            if ((i > 0 && overlap(i) > 0.1) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
         if (!ends.empty()) right_ = std::max(right_, end_sign + widest + gap / 2);
         return ends;
     }
 
-    /// Column by column, at the right of a room so wide.
+    /// Lays out the legend column by column, aligned to the right of the given width.
     [[nodiscard]] legend legend_of(double width) const {
-        legend made;
+        legend result;
         const std::size_t most = length_in(width - legend_sample - gap);
         std::size_t lines = 0;
         double widest = 0;
         for (const shown_label& label : d_.labels) {
-            const auto& entry = made.entries.emplace_back(lines_of(with_breaks(label.text, most), most));
+            const auto& entry = result.entries.emplace_back(lines_of(with_breaks(label.text, most), most));
             lines += entry.size();
-            made.has_long_entries |= entry.size() > 1;
+            result.has_long_entries |= entry.size() > 1;
             widest = std::max(widest, width_of(entry));
         }
-        if (lines == 0) return made;
-        made.column = legend_sample + widest;
-        auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - gap) / made.column));
-        // Lines of one label must stay below each other.
-        if (made.has_long_entries) columns = 1;
-        made.rows = (lines + columns - 1) / columns;
-        columns = (lines + made.rows - 1) / made.rows;
-        made.left = std::max(gap, width - made.column * static_cast<double>(columns));
-        return made;
+        if (lines == 0) return result;
+        result.column = legend_sample + widest;
+        auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - gap) / result.column));
+        // A label of several lines must not be split between columns.
+        if (result.has_long_entries) columns = 1;
+        result.rows = (lines + columns - 1) / columns;
+        columns = (lines + result.rows - 1) / result.rows;
+        result.left = std::max(gap, width - result.column * static_cast<double>(columns));
+        return result;
     }
 
-    /// Each stands beside its line like a flag, on the side where there is room.
+    /// The texts of a panel's marks, each on the side of its line where there is room.
     [[nodiscard]] std::vector<flag> flags_of(std::size_t panel) const {
         std::vector<flag> flags;
         for (const figure_mark& m : d_.panels[panel].marks) {
@@ -371,7 +371,7 @@ private:
         for (std::size_t i = 0; i < lines.size(); ++i) add(at[i], lines[i], end);
     }
 
-    /// @returns its upper edge
+    /// @returns the upper edge of the label
     double add_x_label(double bottom) {
         const double middle = (left_ + figure_width - right_) / 2;
         const double room = 2 * std::min(middle, figure_width - middle);
@@ -407,7 +407,7 @@ private:
         }
     }
 
-    /// Each behind the sign of its line, which may be a little off.
+    /// Adds the labels at the ends of lines, each after the sign of its line, because it may be slightly displaced.
     void add_ends(const std::vector<end_label>& ends, double bottom) {
         const double left = to_.plots.front().right + 0.7;
         for (const end_label& end : ends) {

@@ -1,4 +1,4 @@
-/// A figure made ready to be drawn: which points have a place in it, and on which axes.
+/// Prepares a figure for drawing: selects the points that can be shown, and scales the axes.
 module aabblab.figures:drawing;
 
 import aabb.std;
@@ -8,7 +8,7 @@ import aabblab.figures;
 
 namespace aabblab {
 
-/// The points of a series in NAME.csv: all that are finite, of a level the first.
+/// The points of a series in NAME.csv: all finite ones, or the first for a level.
 [[nodiscard]] std::vector<figure_point> points_of(const series& s) {
     std::vector<figure_point> points;
     for (figure_point p : s.points) {
@@ -20,37 +20,37 @@ namespace aabblab {
     return points;
 }
 
-/// A series in the order of NAME.csv: those that all panels share, then panel by panel.
+/// A series with its number in NAME.csv: first the series that all panels share, then those of each panel.
 struct numbered_series {
     const series* source;
     std::size_t number;         ///< from 1
-    const figure_panel* panel;  ///< none, where all have it
+    const figure_panel* panel;  ///< null if all panels share it
 };
 
 [[nodiscard]] std::vector<numbered_series> numbered(const figure& f) {
-    std::vector<numbered_series> all;
-    for (const series& s : f.lines) all.push_back({&s, all.size() + 1, nullptr});
+    std::vector<numbered_series> list;
+    for (const series& s : f.lines) list.push_back({&s, list.size() + 1, nullptr});
     for (const figure_panel& panel : f.panels)
-        for (const series& s : panel.lines) all.push_back({&s, all.size() + 1, &panel});
-    return all;
+        for (const series& s : panel.lines) list.push_back({&s, list.size() + 1, &panel});
+    return list;
 }
 
-/// Half the distance of the nearest names; a factor where the axis is logarithmic.
+/// Half the distance of the two nearest names; the square root of their ratio if the axis is logarithmic.
 [[nodiscard]] double half_gap(const figure_axis& axis) {
     double gap = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < axis.names.size(); ++i) {
-        const double one = axis.names[i - 1].first;
+        const double previous = axis.names[i - 1].first;
         const double next = axis.names[i].first;
-        gap = std::min(gap, axis.logarithmic ? std::sqrt(next / one) : (next - one) / 2);
+        gap = std::min(gap, axis.logarithmic ? std::sqrt(next / previous) : (next - previous) / 2);
     }
     if (std::isfinite(gap)) return gap;
     return axis.logarithmic ? 2 : 0.5;
 }
 
-/// A series as far as it has a place in the figure.
+/// The part of a series that can be shown.
 struct shown_series {
     const series* source;
-    std::size_t look;  ///< from 0; the same for what has one label in several panels
+    std::size_t look;  ///< from 0; series with the same label in several panels share it
     std::vector<figure_point> points;
     bool varies;  ///< has quartiles to show
 
@@ -64,14 +64,14 @@ struct shown_panel {
     std::vector<figure_mark> marks;  ///< from left to right
 };
 
-/// A look in the legend, or at the end of its line.
+/// An entry of the legend, or a label at the end of a line.
 struct shown_label {
     std::string text;
     std::size_t look;
-    series_style style;  ///< points where a line has one point only
+    series_style style;  ///< `points` for a line with a single point
 };
 
-inline constexpr std::size_t y_name_length = 32;  ///< in characters, at which names on the y axis are broken into lines
+inline constexpr std::size_t y_name_length = 32;  ///< maximum line length of names on the y axis
 
 struct extent {
     double least = std::numeric_limits<double>::infinity();
@@ -87,11 +87,11 @@ struct extent {
     return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
-/// What has no label has a look of its own, as every series has where there are no panels.
-[[nodiscard]] std::vector<std::size_t> looks_of(const figure& f, const std::vector<numbered_series>& all) {
+/// With panels, series with equal labels share a look; every other series has a look of its own.
+[[nodiscard]] std::vector<std::size_t> looks_of(const figure& f, const std::vector<numbered_series>& lines) {
     std::vector<std::size_t> looks;
     std::vector<const series*> first;
-    for (const numbered_series& s : all) {
+    for (const numbered_series& s : lines) {
         const auto same = std::ranges::find_if(first, [&](const series* other) {
             return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
         });
@@ -110,16 +110,16 @@ struct extent {
 }
 
 [[nodiscard]] std::vector<shown_panel> shown(const figure& f) {
-    const std::vector<numbered_series> all = numbered(f);
-    const std::vector<std::size_t> looks = looks_of(f, all);
+    const std::vector<numbered_series> series_list = numbered(f);
+    const std::vector<std::size_t> looks = looks_of(f, series_list);
     std::vector<shown_panel> panels;
     for (std::size_t i = 0; i < std::max<std::size_t>(f.panels.size(), 1); ++i) {
         const figure_panel* const panel = f.panels.empty() ? nullptr : &f.panels[i];
         shown_panel& to = panels.emplace_back(panel == nullptr ? "" : panel->title);
         to.marks = shown_marks(f, panel);
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            if (all[k].panel != nullptr && all[k].panel != panel) continue;
-            shown_series s{all[k].source, looks[k], points_of(*all[k].source), false};
+        for (std::size_t k = 0; k < series_list.size(); ++k) {
+            if (series_list[k].panel != nullptr && series_list[k].panel != panel) continue;
+            shown_series s{series_list[k].source, looks[k], points_of(*series_list[k].source), false};
             std::erase_if(s.points, [&](const figure_point& p) {
                 return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
             });
@@ -130,7 +130,7 @@ struct extent {
     return panels;
 }
 
-/// Each look once.
+/// One label per look.
 [[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)
@@ -160,7 +160,7 @@ struct extent {
     return {values.least, values.greatest, axis.logarithmic, names, true};
 }
 
-/// The figure must outlive it.
+/// A prepared figure; it refers to the original, which must outlive it.
 struct drawing {
     explicit drawing(const figure& of) : f(of), panels(shown(of)), labels(labels_of(panels)) {
         extent x_values;

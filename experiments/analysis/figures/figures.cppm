@@ -1,12 +1,12 @@
-/// Figures for a paper: readable in black and white, and by the colour-blind.
+/// Figures for a paper that are readable in black and white, and by colour-blind people.
 export module aabblab.figures;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// One measured value and its quartiles, which are the value itself where nothing varies. What is not finite is left
-/// out, and so is, on a logarithmic axis, what is not positive.
+/// A measured value with its quartiles, which equal the value if it does not vary. Values that are not finite are
+/// omitted, as are non-positive values on a logarithmic axis.
 struct figure_point {
     double x;
     double y;
@@ -14,27 +14,27 @@ struct figure_point {
     double high = y;
 };
 
-/// How a series is drawn. Quartiles show only where low < high.
+/// The style of a series. Quartiles are drawn only if low < high.
 enum class series_style : unsigned char {
     line,    ///< points joined in their order, with a band from quartile to quartile
-    points,  ///< points alone, with quartile bars; over names, those of several series stand side by side
+    points,  ///< points with quartile bars; over names, several series are drawn side by side
     level,   ///< a horizontal line over the whole width at the first point's y, with its band; x does not matter
 };
 
 struct series {
-    std::string label;  ///< at its end or in the legend, where it is not empty
+    std::string label;  ///< at its end or in the legend, unless empty
     series_style style = series_style::line;
-    std::vector<figure_point> points{};  ///< a series without is left out; the others look as if it were there
+    std::vector<figure_point> points{};  ///< an empty series is omitted; the looks of others do not change
 };
 
 struct figure_axis {
     std::string label;  ///< with the unit: "time a frame (ms)"
     bool logarithmic = false;
-    /// Where the axis has names in place of numbers: each with its place, from left to right.
+    /// If not empty, the names that replace numbers, each with its position, from left to right.
     std::vector<std::pair<double, std::string>> names{};
 };
 
-/// A vertical line with a few words above it.
+/// A vertical line with a short text above it.
 struct figure_mark {
     double x;
     std::string label;
@@ -43,27 +43,27 @@ struct figure_mark {
 /// One of several small plots that share both axes.
 struct figure_panel {
     std::string title;  ///< above it: "displacement 0.1"
-    /// Beside those of the figure. What has the same label looks the same in every panel.
+    /// Drawn in addition to those of the figure. Series with the same label look the same in every panel.
     std::vector<series> lines{};
     std::vector<figure_mark> marks{};
 };
 
 struct figure {
-    std::string name;     ///< of its files, without ending: "figure1"
-    std::string caption;  ///< one sentence or two; stands beside the figure in reports, not in it
+    std::string name;     ///< of its files, without extension: "figure1"
+    std::string caption;  ///< one or two sentences; reports show it beside the figure
     figure_axis x;
     figure_axis y;
     std::vector<series> lines{};  ///< up to ten are distinguishable; with panels, drawn in each
     std::vector<figure_mark> marks{};
-    std::vector<figure_panel> panels{};  ///< without any it is one plot
+    std::vector<figure_panel> panels{};  ///< if empty, the figure is a single plot
 };
 
-/// Writes NAME.csv (the points), NAME.svg and NAME.pdf into the folder, which it makes. The same figures give the same
-/// bytes.
-/// @throws aabb::input_error where a file cannot be written.
+/// Writes NAME.csv (the points), NAME.svg and NAME.pdf to the folder, which it creates. The output is
+/// deterministic.
+/// @throws aabb::input_error if a file cannot be written.
 void draw(const std::filesystem::path& folder, std::span<const figure> figures);
 
-/// The text of NAME.csv: a line a point, with the number of its series, from 1.
+/// The text of NAME.csv: one line per point, with the number of its series, from 1.
 [[nodiscard]] std::string csv_of(const figure& f);
 
 [[nodiscard]] std::string svg_of(const figure& f);

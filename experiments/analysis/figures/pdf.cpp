@@ -10,7 +10,7 @@ namespace {
 
 constexpr double em = 9;  // in points
 
-/// Of Helvetica's characters from the blank on, in thousandths of an em (Adobe's font metrics).
+/// Widths of Helvetica's characters from the space on, in thousandths of an em (Adobe's font metrics).
 constexpr std::array<int, 95> widths = {278,  278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278,
                                         556,  556, 556, 556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556,
                                         1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
@@ -18,10 +18,10 @@ constexpr std::array<int, 95> widths = {278,  278, 355, 556, 556, 889, 667, 191,
                                         333,  556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556,
                                         556,  556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584};
 constexpr int usual_width = 556;  // of letters with accents
-constexpr int sign_width = 584;   // of what stands between numbers
+constexpr int sign_width = 584;   // of mathematical signs
 
-/// The code points that the font has and the encoding of western Windows has elsewhere, or not: these take the codes of
-/// control characters.
+/// The codes of characters outside Latin-1: as in Windows-1252, or control characters for the signs that it
+/// lacks.
 constexpr std::array<std::pair<char32_t, char>, 12> codes = {{{U'\u2212', '\x01'},
                                                               {U'\u2264', '\x02'},
                                                               {U'\u2265', '\x03'},
@@ -37,7 +37,7 @@ constexpr std::array<std::pair<char32_t, char>, 12> codes = {{{U'\u2212', '\x01'
 constexpr std::string_view encoding =
     "<</Type/Encoding/BaseEncoding/WinAnsiEncoding/Differences[1/minus/lessequal/greaterequal]>>";
 
-/// A question mark for what the font has not.
+/// The code of a character; a question mark if the font lacks it.
 char code_of(char32_t character) {
     if ((character >= ' ' && character < 0x7f) || (character >= 0xa0 && character <= 0xff))
         return static_cast<char>(character);
@@ -61,7 +61,7 @@ std::string encoded(std::string_view utf8) {
     return text;
 }
 
-/// In ems.
+/// The width in ems.
 double width_of(std::string_view encoded_text) {
     double width = 0;
     for (const char c : encoded_text)
@@ -71,7 +71,7 @@ double width_of(std::string_view encoded_text) {
     return width / 1000;
 }
 
-/// A string as PDF has it.
+/// A PDF string literal.
 std::string in_brackets(std::string_view encoded_text) {
     std::string text = "(";
     for (const char c : encoded_text) {
@@ -117,19 +117,19 @@ std::string operators_of(const words& w) {
     const double turn = w.angle * std::numbers::pi / 180;
     const double x = w.at.x - before * std::cos(turn) + baseline * std::sin(turn);
     const double y = w.at.y - before * std::sin(turn) - baseline * std::cos(turn);
-    std::string all = fmt::format("BT /F {} Tf {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj", em, std::cos(turn),
+    std::string ops = fmt::format("BT /F {} Tf {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj", em, std::cos(turn),
                                   std::sin(turn), -std::sin(turn), std::cos(turn), x * em, y * em, in_brackets(text));
     if (!power.empty())
-        all += fmt::format(" /F {} Tf {} Ts {} Tj 0 Ts", short_number(power_size * em), short_number(power_rise * em),
+        ops += fmt::format(" /F {} Tf {} Ts {} Tj 0 Ts", short_number(power_size * em), short_number(power_rise * em),
                            in_brackets(power));
-    return all + " ET\n";
+    return ops + " ET\n";
 }
 
 }  // namespace
 
 std::string pdf_of(const sheet& s) {
     std::string page;
-    for (const auto& part : s.parts) page += std::visit([](const auto& one) { return operators_of(one); }, part);
+    for (const auto& part : s.parts) page += std::visit([](const auto& p) { return operators_of(p); }, part);
     const std::vector<std::string> objects = {
         "<</Type/Catalog/Pages 2 0 R>>", "<</Type/Pages/Kids[3 0 R]/Count 1>>",
         fmt::format("<</Type/Page/Parent 2 0 R/MediaBox[0 0 {} {}]/Contents 4 0 R/Resources<</Font<</F 5 0 R>>/"
@@ -137,7 +137,7 @@ std::string pdf_of(const sheet& s) {
                     short_number(s.width * em), short_number(s.height * em), faint_opacity),
         fmt::format("<</Length {}>>stream\n{}\nendstream", page.size(), page),
         fmt::format("<</Type/Font/Subtype/Type1/BaseFont/Helvetica/Encoding{}>>", encoding)};
-    // The second line says that bytes are no text.
+    // The second line marks the file as binary.
     std::string pdf = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n";
     std::string places;
     for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -8,13 +8,13 @@ namespace aabblab {
 
 namespace {
 
-// What tells series apart: a colour, and for black and white a dash and a sign of its own.
+// Each series has a colour and, for black and white, a dash pattern and a sign of its own.
 
-/// Okabe and Ito's colours for every eye, without their yellow, which white paper swallows, and with a grey.
+/// The colour-blind safe palette of Okabe and Ito (2008), with grey instead of yellow, which is too light on white.
 constexpr std::array<std::string_view, 8> colours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                      "#E69F00", "#56B4E9", "#000000", "#8C8C8C"};
 
-/// In tenths of an em: lengths of dash, gap, dash, gap; the first is solid.
+/// Lengths of dash, gap, dash, gap in tenths of an em; the first is solid.
 const std::array<std::vector<double>, 10> dashes = {{{},
                                                      {8, 3},
                                                      {2.5, 2.5},
@@ -26,16 +26,16 @@ const std::array<std::vector<double>, 10> dashes = {{{},
                                                      {1.5, 4},
                                                      {10, 3, 5, 3}}};
 
-/// A regular polygon, as points of series are drawn; a disc without corners, a cross with none but two lines.
+/// The sign of a point: a regular polygon, a disc (no corners), or a cross of two lines.
 struct sign {
     int corners;
     double turn;  ///< of the first corner from the right, in degrees
     bool is_open;
-    double size;  ///< radius in ems, which makes all look equally large
+    double size;  ///< radius in ems, chosen so that all look equally large
 };
 constexpr int is_disc = 0;
 constexpr int is_cross = 2;
-/// As far apart as they are: discs, open squares, triangles, …
+/// Ordered so that neighbours are easy to distinguish: discs, open squares, triangles, …
 constexpr std::array<sign, 10> signs = {{{is_disc, 0, false, 0.25},
                                          {4, 45, true, 0.33},
                                          {3, 90, false, 0.38},
@@ -55,7 +55,7 @@ constexpr double thin = 0.06;
 
 using places = std::vector<place>;
 
-/// The outlines of a sign about a place.
+/// Adds the outlines of a sign centred at a place.
 void add_sign(const sign& s, place at, std::vector<places>& to) {
     if (s.corners == is_disc) return to.push_back({at});
     const auto corner = [&](int i, int of) {
@@ -137,12 +137,12 @@ private:
     }
     [[nodiscard]] double middle_x() const { return (plot_->left + plot_->right) / 2; }
     [[nodiscard]] double middle_y() const { return (plot_->bottom + plot_->top) / 2; }
-    /// Of a point's quartile; on a logarithmic axis the lower one may have no place.
+    /// The y of the lower quartile, clamped to the axis if it is logarithmic, where it may not be positive.
     [[nodiscard]] double low(const figure_point& p) const {
         return y(d_.y.logarithmic ? std::max(p.low, d_.y.from) : p.low);
     }
 
-    /// Points of several series over one name stand side by side.
+    /// The horizontal shift that puts points of several series over one name side by side.
     [[nodiscard]] double shift_of(const shown_series& s) const {
         if (!d_.x.named || d_.x.logarithmic || !s.is(series_style::points)) return 0;
         double count = 0;
@@ -193,15 +193,15 @@ private:
             return stroke_look({{{plot_->left, height}, {plot_->right, height}}}, s.look, true);
         }
         const double shift = shift_of(s);
-        places all;
-        for (const figure_point& p : s.points) all.push_back({x(p.x + shift), y(p.y)});
-        if (s.is_joined()) stroke_look({all}, s.look, true);
-        // The points of a line that has many would be one thick line.
+        places points;
+        for (const figure_point& p : s.points) points.push_back({x(p.x + shift), y(p.y)});
+        if (s.is_joined()) stroke_look({points}, s.look, true);
+        // Signs at all points of a long line would merge into one thick line.
         constexpr std::size_t readable = 20;
-        const std::size_t step = s.is_joined() && all.size() > readable ? all.size() / (readable / 2) : 1;
-        places some;
-        for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
-        put_signs(some, s.look);
+        const std::size_t step = s.is_joined() && points.size() > readable ? points.size() / (readable / 2) : 1;
+        places sparse;
+        for (std::size_t i = 0; i < points.size(); i += step) sparse.push_back(points[i]);
+        put_signs(sparse, s.look);
     }
 
     void marks() {
@@ -211,7 +211,7 @@ private:
         }
     }
 
-    /// The two axes with their ticks, and their labels where they are not those of a panel below or beside.
+    /// Draws both axes with their ticks; inner panels share the tick labels of the outer ones.
     void frame() {
         const auto& [left, right, bottom, top, has_x, has_y, mark_tops] = *plot_;
         std::vector<places> lines{{{left, top}, {left, bottom}, {right, bottom}}};

@@ -1,5 +1,5 @@
-/// A figure as lines, areas and texts, as any format of pictures has them. Their places are in ems of the font, from
-/// the left and the lower edge.
+/// A figure as lines, areas and texts, independent of the file format. Positions are in ems of the font, from the left
+/// and lower edges.
 module aabblab.figures:sheet;
 
 import aabb.std;
@@ -8,38 +8,38 @@ import aabblab.svg;
 
 namespace aabblab {
 
-/// Lines, or the areas within them, that look alike.
+/// Lines, or the areas that they enclose, with the same look.
 struct strokes {
     polylines lines;
     std::string_view colour;       ///< "#0072B2"
     double width = 0;              ///< in ems; 0 for an area
-    std::vector<double> dashes{};  ///< of dash, gap, dash, gap, …, in ems; none where it is solid
+    std::vector<double> dashes{};  ///< lengths of dash, gap, dash, gap, …, in ems; empty for solid lines
     bool closed = false;
-    bool round = false;  ///< at their ends: a line of one place is a disc then
-    bool faint = false;  ///< what lies below an area is seen through it
+    bool round = false;  ///< round caps: a line of a single point is then a disc
+    bool faint = false;  ///< translucent
 };
 
 inline constexpr double faint_opacity = 0.18;
 
-/// A line of text; its middle is there, or its left or right end.
+/// A line of text, anchored at its left end, middle or right end.
 struct words {
     enum class anchor : unsigned char { left, middle, right };
 
     place at;
     std::string text;
     anchor end = anchor::left;
-    std::string power{};  ///< raised and smaller, behind the text
+    std::string power{};  ///< a superscript after the text
     int angle = 0;        ///< in degrees, counter-clockwise
 };
 
-inline constexpr double power_size = 0.7;  ///< of the font's
+inline constexpr double power_size = 0.7;  ///< relative to the font size
 inline constexpr double power_rise = 0.4;
 inline constexpr double baseline = 0.35;  ///< below the middle of a line
 
 struct sheet {
     double width;
     double height;
-    std::vector<std::variant<strokes, words>> parts;  ///< each covers those before it
+    std::vector<std::variant<strokes, words>> parts;  ///< in painting order
 };
 
 [[nodiscard]] sheet sheet_of(const figure& f);
