@@ -32,8 +32,7 @@ enum class printed { tables, tables_and_counts, nothing };
                                                        existing_results existing, const std::string& resume_with,
                                                        printed shown);
 
-/// Runs the share of one of these processes, and appends to existing results. Failures go to standard output, one line
-/// each.
+/// Runs the share of one of these processes, appends to existing results, and prints a line per failure.
 /// @returns true if there were no failures
 [[nodiscard]] bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process);
 
@@ -50,8 +49,7 @@ enum class printed { tables, tables_and_counts, nothing };
 /// @returns a sentence for each composition with wrong results, and for each test with wrong hits
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown);
 
-/// Runs the experiments of an atlas, each in a sub-folder of its own. Results of the same build and size are
-/// resumed.
+/// Runs the experiments of an atlas in sub-folders; resumes existing results of the same build and size.
 /// @returns a sentence for each composition with wrong results
 [[nodiscard]] std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick);
 

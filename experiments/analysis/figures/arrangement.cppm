@@ -27,8 +27,7 @@ struct arrangement {
     std::size_t x_name_length;  ///< the maximum line length of names below the plot, in characters
     int x_name_angle;           ///< of these names, in degrees; 0 if they fit side by side
 
-    /// A sample of a series beside its label: in a legend it starts at `at`, at the end of a line it is centred
-    /// there.
+    /// The sample of a series beside its label: starts at `at` in a legend, is centred there at the end of a line.
     struct sample {
         place at;
         const shown_label* of;

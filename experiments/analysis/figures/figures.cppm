@@ -58,8 +58,7 @@ struct figure {
     std::vector<figure_panel> panels{};  ///< if empty, the figure is a single plot
 };
 
-/// Writes NAME.csv (the points), NAME.svg and NAME.pdf to the folder, which it creates. The output is
-/// deterministic.
+/// Writes NAME.csv (the points), NAME.svg and NAME.pdf to the folder, which it creates; the bytes are reproducible.
 /// @throws aabb::input_error if a file cannot be written.
 void draw(const std::filesystem::path& folder, std::span<const figure> figures);
 

@@ -20,8 +20,7 @@ constexpr std::array<int, 95> widths = {278,  278, 355, 556, 556, 889, 667, 191,
 constexpr int usual_width = 556;  // of letters with accents
 constexpr int sign_width = 584;   // of mathematical signs
 
-/// The codes of characters outside Latin-1: as in Windows-1252, or control characters for the signs that it
-/// lacks.
+/// The codes of characters outside Latin-1: as in Windows-1252, or control codes for signs that it lacks.
 constexpr std::array<std::pair<char32_t, char>, 12> codes = {{{U'\u2212', '\x01'},
                                                               {U'\u2264', '\x02'},
                                                               {U'\u2265', '\x03'},

@@ -16,7 +16,7 @@ struct json_value::document {
 
 namespace {
 
-/// Lists and objects in each other. Nobody writes so many, and what visits them calls itself.
+/// The nesting limit of lists and objects, since visitors recurse. Valid inputs stay far below it.
 constexpr int most_nested = 64;
 
 bool is_nested_too_deeply(std::string_view text) {
@@ -37,21 +37,21 @@ bool is_nested_too_deeply(std::string_view text) {
 }
 
 json parsed(const std::string& file, std::string_view text, const std::string& otherwise, json_value::position where) {
-    const auto refuse = [&](const std::string& place, const std::string& why) {
+    const auto reject = [&](const std::string& place, const std::string& why) {
         throw aabb::input_error(file + place + ": " + otherwise + why);
     };
-    // A callback of the parser could tell, but makes it look at every list again for each of its items.
+    // Checked up front, because a parser callback would visit every list again for each of its items.
     if (is_nested_too_deeply(text))
-        refuse("", ": its JSON is nested more than " + std::to_string(most_nested) + " deep");
+        reject("", ": its JSON is nested more than " + std::to_string(most_nested) + " deep");
     try {
         return json::parse(text);
     } catch (const json::parse_error& error) {
         const std::size_t read = std::min(error.byte, text.size());
-        if (where == json_value::position::byte) refuse("", ": its JSON is malformed at byte " + std::to_string(read));
+        if (where == json_value::position::byte) reject("", ": its JSON is malformed at byte " + std::to_string(read));
         const auto line = 1 + std::ranges::count(text.substr(0, read), '\n');
-        refuse(":" + std::to_string(line), ": its JSON is malformed");
+        reject(":" + std::to_string(line), ": its JSON is malformed");
     } catch (const json::out_of_range&) {
-        refuse("", ": a number in it does not fit a double");
+        reject("", ": a number in it does not fit a double");
     }
     return {};
 }
@@ -123,9 +123,9 @@ bool json_value::has(const std::string& key) const {
 }
 
 json_value json_value::needed(const std::string& key) const {
-    std::optional<json_value> found = member(key);
-    if (!found) throw aabb::input_error(in_->file + ": " + (place_.empty() ? "" : place_ + ".") + key + " is missing");
-    return *std::move(found);
+    std::optional<json_value> value = member(key);
+    if (!value) throw aabb::input_error(in_->file + ": " + (place_.empty() ? "" : place_ + ".") + key + " is missing");
+    return *std::move(value);
 }
 
 std::optional<json_value> json_value::member(const std::string& key) const {
@@ -134,32 +134,32 @@ std::optional<json_value> json_value::member(const std::string& key) const {
 }
 
 std::vector<json_value> json_value::objects(const std::string& key) const {
-    const std::optional<json_value> found = member(key);
-    if (!found) return {};
-    std::vector<json_value> items = found->list();
+    const std::optional<json_value> value = member(key);
+    if (!value) return {};
+    std::vector<json_value> items = value->list();
     for (const json_value& item : items) item.require(content_at(item.content_).is_object(), "an object");
     return items;
 }
 
 std::vector<std::string> json_value::texts(const std::string& key) const {
-    const std::optional<json_value> found = member(key);
-    return found ? found->texts() : std::vector<std::string>();
+    const std::optional<json_value> value = member(key);
+    return value ? value->texts() : std::vector<std::string>();
 }
 
 std::vector<std::size_t> json_value::indices(const std::string& key) const {
-    const std::optional<json_value> found = member(key);
-    if (!found) return {};
-    const json& content = content_at(found->content_);
-    found->require(content.is_array() && std::ranges::all_of(content, &json::is_number_unsigned),
+    const std::optional<json_value> value = member(key);
+    if (!value) return {};
+    const json& content = content_at(value->content_);
+    value->require(content.is_array() && std::ranges::all_of(content, &json::is_number_unsigned),
                    "a list of whole numbers");
     return content.get<std::vector<std::size_t>>();
 }
 
 std::optional<std::vector<double>> json_value::numbers(const std::string& key) const {
-    const std::optional<json_value> found = member(key);
-    if (!found) return {};
-    const json& content = content_at(found->content_);
-    found->require(content.is_array() && std::ranges::all_of(content, &json::is_number), "a list of numbers");
+    const std::optional<json_value> value = member(key);
+    if (!value) return {};
+    const json& content = content_at(value->content_);
+    value->require(content.is_array() && std::ranges::all_of(content, &json::is_number), "a list of numbers");
     return content.get<std::vector<double>>();
 }
 

@@ -1,19 +1,19 @@
-/// JSON that anybody may have written: members are asked for by type, and one of another is refused by its place.
+/// Reads untrusted JSON: callers request members by type, and a wrong type is rejected with its position.
 export module aabblab.json;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// A value in a file. Every function throws aabb::input_error where the value, or a member, is of another type than is
-/// asked for: "a.gltf: accessors[3].count must be a whole number".
+/// A value in a file. Every function throws aabb::input_error if the value, or a member, has another type than
+/// requested: "a.gltf: accessors[3].count must be a whole number".
 class json_value {
 public:
-    /// Where a file that is no JSON is said to be wrong: at a line, or at a byte of what has no lines.
+    /// How messages locate a syntax error: by line, or by byte in formats without lines.
     enum class position { line, byte };
 
-    /// @param file its name, for messages
-    /// @param otherwise what is said of it where it is no JSON: "is not a manifest of results"
+    /// @param file the name in messages
+    /// @param otherwise the message if it is not JSON: "is not a manifest of results"
     json_value(std::string file, std::string_view text, const std::string& otherwise, position where = position::line);
 
     [[nodiscard]] std::string text() const;
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] json_value needed(const std::string& key) const;
     [[nodiscard]] std::size_t needed_index(const std::string& key) const { return needed(key).index(); }
 
-    // The same, empty where there is no such member.
+    // Optional members; empty if absent.
     [[nodiscard]] std::optional<json_value> member(const std::string& key) const;
     [[nodiscard]] std::optional<std::string> text(const std::string& key) const { return as(key, &json_value::text); }
     [[nodiscard]] std::optional<double> number(const std::string& key) const { return as(key, &json_value::number); }
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key) const;
     template <std::size_t Count>
     [[nodiscard]] std::array<double, Count> numbers(const std::string& key, std::array<double, Count> fallback) const {
-        if (const auto found = member(key)) found->read_numbers(fallback.data(), Count);
+        if (const auto value = member(key)) value->read_numbers(fallback.data(), Count);
         return fallback;
     }
 
@@ -57,12 +57,12 @@ private:
 
     template <class T>
     [[nodiscard]] std::optional<T> as(const std::string& key, T (json_value::*type)() const) const {
-        const auto found = member(key);
-        return found ? std::optional<T>((*found.*type)()) : std::nullopt;
+        const auto value = member(key);
+        return value ? std::optional<T>((*value.*type)()) : std::nullopt;
     }
 
     std::shared_ptr<const document> in_;
-    const void* content_;  // of the document
+    const void* content_;  // points into the document
     std::string place_;
 };
 

@@ -11,14 +11,14 @@ namespace aabblab {
 
 namespace {
 
-/// The first line of a file; nothing where there is no such file.
+/// The first line of a file; empty if the file is missing.
 std::optional<std::string> line_of(const std::filesystem::path& file) {
     std::ifstream in(file);
     std::string line;
     return std::getline(in, line) ? std::optional(line) : std::nullopt;
 }
 
-/// "32K" in bytes.
+/// Parses a size such as "32K".
 std::optional<std::uint64_t> bytes_of(const std::string& size) {
     std::uint64_t number = 0;
     const char* end = size.data() + size.size();
@@ -31,11 +31,11 @@ std::optional<std::uint64_t> bytes_of(const std::string& size) {
 std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& folder) {
     std::map<std::string, std::uint64_t> caches;
     for (int i = 0;; ++i) {
-        const std::filesystem::path one = folder / ("index" + std::to_string(i));
-        const auto level = line_of(one / "level");
-        const auto size = line_of(one / "size");
+        const std::filesystem::path cache = folder / ("index" + std::to_string(i));
+        const auto level = line_of(cache / "level");
+        const auto size = line_of(cache / "size");
         if (!level || !size) return caches;
-        const std::string type = line_of(one / "type").value_or("");
+        const std::string type = line_of(cache / "type").value_or("");
         if (const auto bytes = bytes_of(*size))
             caches["L" + *level + (type == "Data" ? "d" : type == "Instruction" ? "i" : "")] = *bytes;
     }

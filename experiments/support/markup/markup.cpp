@@ -23,10 +23,10 @@ std::string short_number(double value) {
     return text == "-0" ? "0" : text;
 }
 
-std::string element(std::string_view tag, const attributes& all, std::optional<std::string_view> content) {
+std::string element(std::string_view tag, const attributes& list, std::optional<std::string_view> content) {
     std::string text = "<" + std::string(tag);
-    for (const attribute& one : all)
-        if (!one.value.empty()) text += fmt::format(" {}=\"{}\"", one.name, one.value);
+    for (const attribute& a : list)
+        if (!a.value.empty()) text += fmt::format(" {}=\"{}\"", a.name, a.value);
     return text + (content ? fmt::format(">{}</{}>", *content, tag) : "/>");
 }
 

@@ -1,17 +1,17 @@
-/// HTML, element by element, and what `aabblab.svg` draws with.
+/// Writes elements of HTML and SVG.
 export module aabblab.markup;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// Text as it stands between tags and in attributes.
+/// Escapes text for elements and attributes.
 [[nodiscard]] std::string markup_text(std::string_view text);
 
-/// With at most two decimals: a picture shows no more.
+/// A number with at most two decimals, enough for pictures.
 [[nodiscard]] std::string short_number(double value);
 
-/// A name and a value; one whose value is empty is left out.
+/// A name and a value; attributes with an empty value are omitted.
 struct attribute {
     std::string_view name;
     std::string value;
@@ -23,8 +23,8 @@ struct attribute {
 };
 using attributes = std::vector<attribute>;
 
-/// @param content markup, in which text is `markup_text`
-[[nodiscard]] std::string element(std::string_view tag, const attributes& all,
+/// @param content markup, in which text must be escaped by `markup_text`
+[[nodiscard]] std::string element(std::string_view tag, const attributes& list,
                                   std::optional<std::string_view> content = {});
 
 }  // namespace aabblab

@@ -1,4 +1,4 @@
-/// Pictures as SVG: no other module writes it.
+/// Writes pictures as SVG; all SVG goes through this module.
 export module aabblab.svg;
 
 import aabb.std;
@@ -6,7 +6,7 @@ import aabblab.markup;
 
 export namespace aabblab {
 
-/// From the left and the upper edge, in pixels, where nothing else is said.
+/// A point; unless stated otherwise in pixels from the left and upper edges.
 struct place {
     double x, y;
 };
@@ -16,15 +16,15 @@ struct svg_box {
     double left, top, width, height;
 };
 
-/// What stands smaller and raised in a text.
+/// A superscript in a text.
 [[nodiscard]] inline std::string svg_power(std::string_view text, double rise, double size) {
     return element("tspan", {{"dy", -rise}, {"font-size", size}}, markup_text(text));
 }
 
-/// Elements, of which each covers those before it. A `kind` is a class of a style sheet; a `look` has more attributes.
+/// Elements in painting order. A `kind` is a class of a style sheet; a `look` holds further attributes.
 class svg_picture {
 public:
-    /// @param unit of x and of widths: with "%" a picture is as wide as there is room, and its text keeps its size
+    /// @param unit of x and of widths: with "%" the picture fills the available width, and its text keeps its size
     explicit svg_picture(std::string_view unit = "") : unit_(unit) {}
 
     void line(std::string_view kind, place from, place to) {
@@ -37,7 +37,7 @@ public:
     void disc(place middle, double radius) {
         add("circle", {{"cx", along(middle.x)}, {"cy", middle.y}, {"r", radius}});
     }
-    /// In pixels.
+    /// Always in pixels.
     void path(std::string_view kind, const polylines& lines, bool closed = false, const attributes& look = {}) {
         std::string d;
         for (const std::vector<place>& line : lines) {
@@ -48,13 +48,13 @@ public:
         }
         add("path", {{"class", kind}, {"d", d}}, look);
     }
-    /// @param behind markup
+    /// @param behind markup that follows the text
     void text(std::string_view kind, place at, std::string_view text, const attributes& look = {},
               std::string_view behind = "") {
         add("text", {{"class", kind}, {"x", along(at.x)}, {"y", at.y}}, look, markup_text(text).append(behind));
     }
     void group(const svg_picture& of, const attributes& look) { add("g", {}, look, "\n" + of.elements_); }
-    /// With its upper left corner there. No group can be moved by a part of the width.
+    /// Places its upper left corner. A nested svg, because a group cannot be moved by a share of the width.
     void put(place at, const svg_picture& other) {
         if (unit_.empty())
             return group(other, {{"transform", "translate(" + short_number(at.x) + " " + short_number(at.y) + ")"}});
@@ -62,13 +62,13 @@ public:
     }
     void style(std::string_view css) { add("style", {}, {}, css); }
 
-    /// As part of a page.
+    /// The picture as part of a page.
     [[nodiscard]] std::string in_page(std::string_view kind, std::string_view label, double height) const {
         return element("svg",
                        {{"class", kind}, {"role", "img"}, {"aria-label", label}, {"width", "100%"}, {"height", height}},
                        elements_);
     }
-    /// On white paper.
+    /// The picture as a file, on a white background.
     [[nodiscard]] std::string file(double width, double height, double font_size) const {
         const std::string paper = element("rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "white"}});
         return element("svg",

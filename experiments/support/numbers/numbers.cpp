@@ -16,7 +16,7 @@ std::string counted(std::uint64_t n, std::string_view what) {
 
 std::string three_digits(double value) {
     if (value == 0) return "0";
-    // Rounding may carry into a digit more: 9.996 is 10.0.
+    // Rounding may carry into another digit: 9.996 becomes 10.0.
     const double rounded = std::strtod(fmt::format("{:.2e}", value).c_str(), nullptr);
     const int before_point = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + 1;
     return fmt::format("{:.{}f}", value, std::clamp(3 - before_point, 0, 6));

@@ -1,4 +1,4 @@
-/// Numbers as people read them, and as files have them.
+/// Formats numbers for readers and for files.
 export module aabblab.numbers;
 
 import aabb.std;
@@ -9,16 +9,16 @@ export namespace aabblab {
 [[nodiscard]] std::string grouped(std::uint64_t n);
 
 /// "12,345 objects", "1 frame".
-/// @param what one of them is called
+/// @param what the singular noun
 [[nodiscard]] std::string counted(std::uint64_t n, std::string_view what);
 
-/// With three digits that count, or all before the point: "0.00123", "0.123", "12.3", "1234"; at most six behind it.
+/// Three significant digits, or all before the point: "0.00123", "0.123", "12.3", "1234"; at most six decimals.
 [[nodiscard]] std::string three_digits(double value);
 
-/// "0.3", of 0.1 + 0.2: fifteen digits, which every double keeps, without those that only rounding has made.
+/// "0.3" for 0.1 + 0.2: fifteen significant digits, which hide rounding errors in the last bits of a double.
 [[nodiscard]] std::string fifteen_digits(double value);
 
-/// Milliseconds, rounded to the nanoseconds that clocks count in; sums are off by a little.
+/// Milliseconds rounded to whole nanoseconds, the unit of clocks, which removes rounding errors of sums.
 [[nodiscard]] double whole_nanoseconds(double ms);
 
 }  // namespace aabblab

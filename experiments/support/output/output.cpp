@@ -25,7 +25,7 @@ void lose_output(int error) {
     reader_has_gone = true;
 }
 
-/// The bytes of the character in front; 0 where it is a control character or no UTF-8.
+/// The length in bytes of the first character; 0 for a control character or invalid UTF-8.
 std::size_t plain_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;
@@ -36,7 +36,7 @@ std::size_t plain_length(std::string_view text) {
         if ((byte(i) & 0xc0U) != 0x80) return 0;
         code = code << 6U | (byte(i) & 0x3fU);
     }
-    // The second row of control characters, forms longer than they need be, halves of UTF-16 pairs, and no Unicode.
+    // Rejects C1 control characters, overlong forms, surrogates, and code points beyond Unicode.
     constexpr std::array<std::uint32_t, 5> least = {0, 0, 0xa0, 0x800, 0x10000};
     return code >= least[length] && (code < 0xd800 || code > 0xdfff) && code <= 0x10ffff ? length : 0;
 }
@@ -115,12 +115,12 @@ void print_paragraph(std::string_view text) {
 std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
     const std::size_t indent = characters(before);
     const std::string lines = wrapped(text, most > indent ? most - indent : 0);
-    std::string all(before);
+    std::string result(before);
     for (const char c : lines) {
-        all += c;
-        if (c == '\n') all.append(indent, ' ');
+        result += c;
+        if (c == '\n') result.append(indent, ' ');
     }
-    return all;
+    return result;
 }
 
 std::string entry(std::string_view name, std::string_view text) {

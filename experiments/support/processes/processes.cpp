@@ -4,7 +4,7 @@ module;
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
-// That of glibc 2.36 does not say that what it declares is C.
+// The header of glibc 2.36 lacks extern "C".
 extern "C" {
 #include <sys/pidfd.h>
 }
@@ -21,7 +21,7 @@ namespace aabblab {
 
 namespace {
 
-/// Both ends are closed in every child, except where they are given to it.
+/// A pipe; exec closes both ends in a child (O_CLOEXEC) unless they are passed to it.
 struct pipe_ends {
     std::array<int, 2> ends{-1, -1};
 
@@ -38,22 +38,22 @@ struct pipe_ends {
     }
 };
 
-/// Puts an open file in the place of one that the program begins with; no name leaves that one.
+/// Redirects a standard stream to a file; does nothing if the name is empty.
 [[nodiscard]] bool redirect(const char* file, int flags, int place) {
     if (*file == 0) return true;
     const int opened = open(file, flags | O_CLOEXEC, 0666);
     return opened >= 0 && dup2(opened, place) >= 0;
 }
 
-// Between fork and exec only what a signal handler may call.
+// Between fork and exec: async-signal-safe functions only.
 
-/// Has this process sent a signal when its parent ends.
+/// Makes the kernel send this process a signal when its parent ends.
 void end_with(pid_t parent, int signal) {
     prctl(PR_SET_PDEATHSIG, signal);
-    if (getppid() != parent) _exit(127);  // it ended before that
+    if (getppid() != parent) _exit(127);  // the parent has already ended
 }
 
-/// Returns where the program cannot be started.
+/// Starts the program; returns only if that fails.
 void become(char* const* arguments, const surroundings& where, int output) {
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(where.input.c_str(), O_RDONLY, STDIN_FILENO) ||
         !redirect(where.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
@@ -64,7 +64,7 @@ void become(char* const* arguments, const surroundings& where, int output) {
     execvp(*arguments, arguments);
 }
 
-/// Kills the children of this process, those whose parents die of it, and so on.
+/// Kills all descendants: orphans become children of this process, the subreaper, and are killed in turn.
 void kill_descendants() {
     std::array<char, 4096> list{};
     for (;;) {
@@ -78,7 +78,7 @@ void kill_descendants() {
             if (c >= '0' && c <= '9') {
                 child = 10 * child + (c - '0');
             } else {
-                // Its number is whole.
+                // The number is complete.
                 kill(child, SIGKILL);
                 child = 0;
             }
@@ -87,9 +87,9 @@ void kill_descendants() {
     }
 }
 
-/// Goes on in a new process, which is to become the program, and waits until that one ends, or TERM comes, as it does
-/// when the parent ends. Then it kills all that was started, in whatever session, and ends as the program did.
-/// @returns in the new process; false where there can be none
+/// Forks a process that will become the program. The keeper, this process, waits until that one ends, or until SIGTERM,
+/// which the end of the parent also causes. It then kills all descendants, in any session, and ends like the program.
+/// @returns true in the new process; false if fork fails
 [[nodiscard]] bool keep(int output, int refusal, pid_t parent) {
     sigset_t awaited;
     sigset_t before;
@@ -105,7 +105,7 @@ void kill_descendants() {
     if (program < 0) return false;
     if (program == 0) {
         end_with(keeper, SIGKILL);
-        setpgid(0, 0);  // what it sends to its group is not for the keeper
+        setpgid(0, 0);  // so that signals to its group do not reach the keeper
         sigprocmask(SIG_SETMASK, &before, nullptr);
         return true;
     }
@@ -114,24 +114,24 @@ void kill_descendants() {
     int status = 0;
     for (pid_t ended = 0; ended != program;) {
         if (sigwaitinfo(&awaited, nullptr) == SIGTERM) {
-            status = SIGTERM;  // as of one that this signal ended
+            status = SIGTERM;  // as if this signal had ended the program
             break;
         }
         while (ended != program && (ended = waitpid(-1, &status, WNOHANG)) > 0) continue;
     }
     kill_descendants();
     if (!WIFSIGNALED(status)) _exit(WEXITSTATUS(status));
-    prctl(PR_SET_DUMPABLE, 0);  // no core: it would be of this process
+    prctl(PR_SET_DUMPABLE, 0);  // avoid a core dump of the keeper
     std::signal(WTERMSIG(status), SIG_DFL);
     sigprocmask(SIG_SETMASK, &none, nullptr);
     kill(keeper, WTERMSIG(status));
     _exit(127);
 }
 
-/// Ends when its standard input does, which all keepers hold open too.
+/// Ends at the end of its standard input, which all keepers hold open, too.
 constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf -- \"$1\"";
 
-/// As `become`. Nobody who reads our output waits for it.
+/// Like `become`, for the guard; its output goes to /dev/null so that readers of ours do not wait for it.
 [[noreturn]] void become_guard(int input, const char* folder) {
     setpgid(0, 0);
     if (dup2(input, STDIN_FILENO) >= 0 && redirect("/dev/null", O_WRONLY, STDOUT_FILENO) &&
@@ -142,35 +142,35 @@ constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf 
 
 using clock = std::chrono::steady_clock;
 
-/// Whether there is something to be read, or nothing will come, before that time.
+/// True if input, or the end of input, arrives before that time.
 bool is_ready(int input, const std::optional<clock::time_point>& end) {
-    pollfd one{input, POLLIN, 0};
+    pollfd request{input, POLLIN, 0};
     while (end) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(*end - clock::now()).count();
         if (left <= 0) return false;
         constexpr std::int64_t longest = std::numeric_limits<int>::max();
-        if (poll(&one, 1, static_cast<int>(std::min<std::int64_t>(left, longest))) > 0) break;
+        if (poll(&request, 1, static_cast<int>(std::min<std::int64_t>(left, longest))) > 0) break;
     }
     return true;
 }
 
-/// What comes until the other end closes, or until that time.
+/// Reads until the other end closes, or until that time.
 std::string read_all(int input, const std::optional<clock::time_point>& end = {}) {
-    std::string all;
+    std::string text;
     std::array<char, 4096> part{};
     for (;;) {
-        if (!is_ready(input, end)) return all;
-        const ssize_t got = read(input, part.data(), part.size());
-        if (got > 0)
-            all.append(part.data(), static_cast<std::size_t>(got));
-        else if (got == 0 || errno != EINTR)
-            return all;
+        if (!is_ready(input, end)) return text;
+        const ssize_t count = read(input, part.data(), part.size());
+        if (count > 0)
+            text.append(part.data(), static_cast<std::size_t>(count));
+        else if (count == 0 || errno != EINTR)
+            return text;
     }
 }
 
 bool ends_before(pid_t child, clock::time_point end) {
     const int handle = pidfd_open(child, 0);
-    // Without a handle nobody tells.
+    // Without a handle the end cannot be observed.
     if (handle < 0) return true;
     const bool ended = is_ready(handle, end);
     close(handle);
@@ -202,15 +202,15 @@ child_result run_child(const std::string& program, const std::vector<std::string
     output.close_end(1);
     refusal.close_end(1);
     child_result result{};
-    // Nothing comes where the program was started, which closes the other end.
+    // If the program starts, exec closes the other end, and nothing is read.
     if (const std::string why = read_all(refusal.ends[0]); why.size() == sizeof result.refused)
         std::memcpy(&result.refused, why.data(), why.size());
     std::optional<clock::time_point> end;
     if (where.timeout.count() > 0) end = clock::now() + where.timeout;
     result.printed = read_all(output.ends[0], end);
-    // A program may close its output, and go on.
+    // A program may close its output before it ends.
     result.timed_out = end && !ends_before(child, *end);
-    // Who keeps a program kills it, and all that it started.
+    // On SIGTERM the keeper kills the program and all its descendants.
     if (result.timed_out) kill(child, where.kept ? SIGTERM : SIGKILL);
     while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
     return result;
@@ -236,7 +236,7 @@ ended_process run_to_end(const std::filesystem::path& program, const std::vector
 }
 
 std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments) {
-    // Not by its name, which may be another build's by now.
+    // By this link, because the file of that name may be another build by now.
     ended_process ended = run_to_end("/proc/self/exe", arguments, {});
     if (ended.status != 0 && ended.lines.empty())
         throw aabb::input_error("a process of " + arguments[1] +

@@ -1,53 +1,53 @@
-/// Other programs, run to their end.
+/// Runs other programs to their end.
 export module aabblab.processes;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// Where a program begins; what is empty is ours.
+/// The environment of a program; empty members are inherited.
 struct surroundings {
     std::filesystem::path folder;
     std::filesystem::path input;
-    std::filesystem::path errors;     ///< appended to; /dev/stdout: they go where its output goes
-    bool kept = false;                ///< apart from the terminal, and killed at its end with all that it starts
-    std::chrono::seconds timeout{0};  ///< after which it is killed; 0: never
+    std::filesystem::path errors;     ///< appended to; with /dev/stdout errors are part of the output
+    bool kept = false;                ///< detached from the terminal; all descendants are killed at its end
+    std::chrono::seconds timeout{0};  ///< time until it is killed; 0 for none
 };
 
 struct child_result {
-    int refused;     ///< errno where it could not be started, otherwise 0
+    int refused;     ///< errno if it could not be started, otherwise 0
     int status;      ///< of waitpid
-    bool timed_out;  ///< it was killed; what it started lives on, unless it was kept
+    bool timed_out;  ///< it was killed; its descendants survive unless it was kept
     std::string printed;
 };
 
-/// Runs a program to its end. It does not outlive the calling thread, however that ends, nor, if kept, what it starts.
+/// Runs a program to its end. Neither it nor, if kept, its descendants outlive the calling thread, however that ends.
 /// @param program a path, or a name without slashes to be looked up in PATH
 [[nodiscard]] child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                      const surroundings& where);
 
-/// What a program that ended by itself left.
+/// The result of a program that exited.
 struct ended_process {
     int status;
-    std::vector<std::string> lines;  ///< that it printed
+    std::vector<std::string> lines;  ///< its output
 };
 
-/// Runs a program to its end, which it must reach by itself. What we have printed so far comes before what it says.
-/// @param log of what it says on standard error; empty: goes to ours
-/// @throws aabb::input_error where it cannot be run, or ends otherwise than with 0 or 1.
+/// Runs a program that must exit normally. Flushes our output first, so that it precedes the program's.
+/// @param log the file for its standard error; if empty, inherits ours
+/// @throws aabb::input_error if it cannot be started, or if its exit status is not 0 or 1.
 [[nodiscard]] ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                        const std::filesystem::path& log);
 
-/// This program started afresh, which must print a line for all that is wrong.
-/// @throws aabb::input_error also where it ends with 1 and has not said why.
+/// Runs this program in a new process, which must print one line per failure.
+/// @throws aabb::input_error also if it ends with 1 and has printed nothing.
 [[nodiscard]] std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments);
 
 [[nodiscard]] std::filesystem::path own_folder();
 
-/// A folder that is removed with this, and with this process, by whatever signal it ends.
+/// Owns a temporary folder: removes it on destruction, and also if this process is killed by any signal.
 class folder_guard {
 public:
-    /// @param folder that is there, and is nobody else's
+    /// @param folder an existing folder that is not used otherwise
     explicit folder_guard(std::filesystem::path folder);
     folder_guard(const folder_guard&) = delete;
     folder_guard& operator=(const folder_guard&) = delete;
@@ -57,8 +57,8 @@ public:
 
 private:
     std::filesystem::path folder_;
-    int held_ = -1;   // an end of a pipe, which closes with this process and those that keep programs for it
-    int guard_ = -1;  // the process that waits for that; less than 0 where it could not be started
+    int held_ = -1;   // an end of a pipe, which closes when this process and its keepers have ended
+    int guard_ = -1;  // the process that waits for that; negative if it could not be started
 };
 
 }  // namespace aabblab

@@ -9,7 +9,7 @@ namespace aabblab {
 
 namespace {
 
-/// Ticks that each processor has been busy, by its number; empty where the system does not say.
+/// The busy ticks of each processor, by number; empty if /proc/stat is unavailable.
 std::map<std::size_t, double> busy_ticks() {
     std::map<std::size_t, double> busy;
     std::ifstream in("/proc/stat");
@@ -34,11 +34,11 @@ idlest_processor::idlest_processor() {
     double least = std::numeric_limits<double>::infinity();
     std::size_t idlest = CPU_SETSIZE;
     for (const auto& [number, ticks] : busy_ticks()) {
-        const auto then = busy_before.find(number);
-        if (number >= CPU_SETSIZE || !CPU_ISSET(number, &before_) || then == busy_before.end()) continue;
-        // Of equals the last: interrupts tend to go to the first.
-        if (ticks - then->second > least) continue;
-        least = ticks - then->second;
+        const auto earlier = busy_before.find(number);
+        if (number >= CPU_SETSIZE || !CPU_ISSET(number, &before_) || earlier == busy_before.end()) continue;
+        // Ties go to the last processor, because interrupts tend to go to the first.
+        if (ticks - earlier->second > least) continue;
+        least = ticks - earlier->second;
         idlest = number;
     }
     if (idlest == CPU_SETSIZE) return;

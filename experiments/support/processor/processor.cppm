@@ -1,13 +1,13 @@
 module;
 #include <sched.h>
 
-/// Where this process runs.
+/// Pins threads to processors.
 export module aabblab.processor;
 
 export namespace aabblab {
 
-/// Keeps this thread on one processor while it lives, so that its caches stay warm: of those that it may run on the one
-/// that has been the least busy for the last moment. Where the system does not allow it, all stays as it is.
+/// Pins this thread to one processor during its lifetime, so that caches stay warm: to the allowed processor that was
+/// least busy in a short sample. If the system does not permit pinning, it has no effect.
 class idlest_processor {
 public:
     idlest_processor();
@@ -15,7 +15,7 @@ public:
     idlest_processor& operator=(const idlest_processor&) = delete;
     ~idlest_processor();
 
-    /// Calls `work` while this thread, and threads that it starts, may run wherever this one might before.
+    /// Calls `work` without pinning, so that threads that it starts may run on all processors.
     void without(auto&& work) const {
         leave();
         work();

@@ -1,27 +1,27 @@
-/// How far long work has come, for whoever waits at a terminal.
+/// Shows the progress of long runs on a terminal.
 export module aabblab.progress;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// "searching: 30 of 120, about 12 s left". The estimate takes what is left to go as fast as what is done; there is
-/// none before the first is done, nor where the total is not known, which is 0: "searching: 30".
+/// "searching: 30 of 120, about 12 s left". The estimate assumes constant speed; it is omitted before the first step is
+/// done, and if the total is unknown (0): "searching: 30".
 [[nodiscard]] std::string progress_text(std::string_view what, std::size_t done, std::size_t total,
                                         std::chrono::duration<double> elapsed);
 
-/// A line on stderr that says how far the work has come: on a terminal only, and only once the work has taken two
-/// seconds. The line is gone when the object is; `hide` takes it away for other output until the next `at`.
+/// A progress line on stderr, shown on terminals only, and only after two seconds of work. The destructor clears the
+/// line; `hide` clears it for other output until the next `at`.
 class progress {
 public:
     /// @param what the work, as in "searching"
-    /// @param total its steps; 0 where that is not known
+    /// @param total the number of steps; 0 if unknown
     progress(std::string what, std::size_t total);
     progress(const progress&) = delete;
     progress& operator=(const progress&) = delete;
     ~progress();
 
-    /// `done` of the steps are done. Cheap enough to call for every step of a millisecond.
+    /// Reports that `done` steps are done. Cheap enough for steps of a millisecond.
     void at(std::size_t done);
     void hide();
 

@@ -19,7 +19,7 @@ constexpr std::string_view minus_sign = "\u2212";
     return {at, mantissa == 1 ? "10" : number_text(mantissa, decimals) + "\u00d710", number_text(exponent, 0)};
 }
 
-/// The power of ten of the first digit.
+/// The decimal exponent of the first digit.
 [[nodiscard]] int exponent_of(double value) {
     return static_cast<int>(std::floor(std::log10(value) + 1e-9));
 }
@@ -42,13 +42,13 @@ constexpr std::string_view minus_sign = "\u2212";
     return !t.label.empty();
 }
 
-/// The given multiples of every so many powers of ten with numbers, the others without.
+/// Ticks at all multiples of powers of ten; only the given multiples of every `decades`-th power have labels.
 [[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
     const bool powers = from < 0.9e-4 || to > 1.1e6;
     std::vector<tick> ticks;
     for (int exponent = exponent_of(from); exponent <= exponent_of(to); ++exponent)
         for (int times = 1; times < 10; ++times) {
-            // Divided, because a power below 1 is rounded itself.
+            // Division, because powers below 1 are not exact.
             const double at = exponent < 0 ? times / std::pow(10, -exponent) : times * std::pow(10, exponent);
             if (at < from * (1 - 1e-9) || at > to * (1 + 1e-9)) continue;
             const bool of_these = std::ranges::find(multiples, times) != multiples.end();
@@ -85,7 +85,7 @@ double round_step(double span, double most) {
 std::vector<double> round_values(double from, double to, double step) {
     const double first = std::ceil(from / step - 1e-6);
     std::vector<double> values;
-    // Counted, since far from 0 the next value may be rounded to the same.
+    // Counted by an integer, because far from 0 adding a small step may have no effect.
     for (int i = 0; i <= std::floor(to / step + 1e-6) - first; ++i)
         values.push_back((first + i) * step + 0.0);  // -0 is 0
     return values;

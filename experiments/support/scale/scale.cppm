@@ -1,4 +1,4 @@
-/// The range of an axis and its ticks.
+/// Computes the range of an axis and its ticks.
 export module aabblab.scale;
 
 import aabb.std;
@@ -8,7 +8,7 @@ export namespace aabblab {
 struct tick {
     double at;
     std::string label;    ///< empty for a small tick
-    std::string power{};  ///< raised behind it: "6" of a million written as a power of ten
+    std::string power{};  ///< superscript after the label: "6" in 10^6
 };
 
 struct scale {
@@ -23,16 +23,16 @@ struct scale {
 };
 
 enum class scale_end : unsigned char {
-    near_values,  ///< shortly beyond the values
-    on_ticks,     ///< where an axis is linear, on a tick, and at 0 if that is not far
+    near_values,  ///< slightly beyond the values
+    on_ticks,     ///< on a tick if the axis is linear, and at 0 if that is near
 };
 
-/// Of an axis that shows all from `least` to `greatest`, which may be equal; both are positive where it is logarithmic.
+/// The scale of an axis that shows `least` to `greatest`, which may be equal, and must be positive if logarithmic.
 [[nodiscard]] scale scale_of(double least, double greatest, bool logarithmic, scale_end end);
 
-/// 1, 2 or 5 times a power of ten, so that at most so many of them fit into the span.
+/// The smallest step of 1, 2 or 5 times a power of ten of which at most `most` fit into the span.
 [[nodiscard]] double round_step(double span, double most);
-/// The multiples of the step in a range, its ends among them, as far as rounding tells them apart.
+/// The multiples of the step in a range; ends that are multiples up to rounding are included.
 [[nodiscard]] std::vector<double> round_values(double from, double to, double step);
 
 }  // namespace aabblab

@@ -1,4 +1,4 @@
-/// Checksums that every system has a tool for.
+/// Checksums that users can verify with sha256sum.
 export module aabblab.sha256;
 
 import aabb.std;

@@ -10,21 +10,21 @@ namespace aabblab {
 
 namespace {
 
-/// Some hundred boxes take as long a frame, and reading the clock less.
+/// About the time per frame of some hundred boxes; reading the clock takes less.
 constexpr double longest_step_ms = 1e-2;
 
 double wall_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// By how much a clock moves at once, the least of some, for who is interrupted misses steps; short enough is enough.
+/// The step of a clock: the minimum of a few, because interrupts hide steps; stops at the first that is fine enough.
 double step_of(double (*clock)()) {
     double step = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10 && step > longest_step_ms; ++i) {
         const double before = clock();
-        double now = before;
-        while (now == before) now = clock();
-        step = std::min(step, now - before);
+        double after = before;
+        while (after == before) after = clock();
+        step = std::min(step, after - before);
     }
     return step;
 }
@@ -46,15 +46,15 @@ double thread_cpu_ms() {
 }
 
 double empty_cpu_ms() {
-    // The least of many: what disturbs a reading only adds to it.
+    // The minimum of many readings, because disturbances only add time.
     static const double least = [] {
-        double found = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (int i = 0; i < 1000; ++i) {
             const double start = thread_cpu_ms();
             static_cast<void>(milliseconds_of([] {}));
-            found = std::min(found, thread_cpu_ms() - start);
+            minimum = std::min(minimum, thread_cpu_ms() - start);
         }
-        return found;
+        return minimum;
     }();
     return least;
 }

@@ -1,12 +1,12 @@
-/// The clocks that all times are taken with.
+/// The clocks of all measurements.
 export module aabblab.stopwatch;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// To be called before anything is timed whose time is what is asked for.
-/// @throws aabb::input_error where a clock goes in steps of more than a hundredth of a millisecond.
+/// Must be called before times are measured for results.
+/// @throws aabb::input_error if the resolution of a clock is worse than a hundredth of a millisecond.
 void require_fine_clock();
 
 /// Wall time of one call, in milliseconds.
@@ -16,10 +16,10 @@ void require_fine_clock();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Of one call, in milliseconds.
+/// The times of one call, or sums of them, in milliseconds.
 struct elapsed {
     double wall_ms = 0;
-    double cpu_ms = 0;  ///< that this thread had a processor: what waits for one, or for a neighbour, is not in it
+    double cpu_ms = 0;  ///< processor time of this thread; excludes waiting and preemption
 
     elapsed& operator+=(const elapsed& other) {
         wall_ms += other.wall_ms;
@@ -30,10 +30,10 @@ struct elapsed {
 
 /// Processor time of this thread so far.
 [[nodiscard]] double thread_cpu_ms();
-/// Of a call that does nothing: reading the clock takes as long as a frame of some dozen boxes.
+/// The measured time of an empty call: reading the clock takes as long as a frame with a few dozen boxes.
 [[nodiscard]] double empty_cpu_ms();
 
-/// Wall time and processor time of one call. The wall clock is read inside, where it costs nothing to speak of.
+/// Wall time and processor time of one call. The wall clock is read inside, because its cost is negligible.
 [[nodiscard]] elapsed elapsed_in(auto&& work) {
     const double start = thread_cpu_ms();
     const double wall = milliseconds_of(work);

@@ -1,9 +1,9 @@
 module;
 #include <Eigen/Core>
 
-/// What is done with Eigen's vectors beside adding and scaling them, which is done by components. Sums are taken from
-/// left to right, while the order of Eigen's follows from the processor. A vector stands before the number that scales
-/// it: where several module files bring Eigen along, clang 19 emits no friends of its templates, and linking fails.
+/// Operations on Eigen's vectors other than addition and scaling. They sum from left to right, whereas the order of
+/// Eigen's own reductions depends on the processor. Write the vector before its scale factor: if several modules
+/// include Eigen, clang 19 does not emit friends of its templates, and linking fails.
 export module aabblab.vectors;
 
 import aabb.geometry;
@@ -23,7 +23,7 @@ export namespace aabblab {
     return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }
 
-/// Without rounding.
+/// Converts exactly.
 template <class Real>
 [[nodiscard]] inline Eigen::Vector3d in_eigen(const aabb::vec3<Real>& p) {
     return {p[0], p[1], p[2]};
@@ -33,7 +33,7 @@ template <class Real>
     return {p[0], p[1], p[2]};
 }
 
-/// Three columns times a vector, summed from left to right, too.
+/// A matrix of three columns times a vector, also summed from left to right.
 template <class Matrix>
 [[nodiscard]] inline Eigen::Vector3d product(const Matrix& m, const Eigen::Vector3d& p) {
     return m.col(0) * p[0] + m.col(1) * p[1] + m.col(2) * p[2];
