@@ -34,7 +34,7 @@ public:
     /// @param work is timed, for each test
     /// @param judge compares the result with the ground truth, untimed
     template <class Work, class Judge>
-    void play(std::size_t pairs, Work work, Judge judge) {
+    void run_batch(std::size_t pairs, Work work, Judge judge) {
         run_round(entries_, batches_, [&](entry& turn) {
             if (batches_ % turn.share != 0) return;
             const double ms = milliseconds_of([&] { work(*turn.test); });
@@ -76,12 +76,12 @@ public:
     }
 
     template <class Real>
-    void play(std::span<const aabb::triangle_pair<Real>> batch) {
+    void run_batch(std::span<const aabb::triangle_pair<Real>> batch) {
         truth_.resize(batch.size());
         for (std::size_t i = 0; i < batch.size(); ++i)
             truth_[i] = static_cast<std::uint8_t>(aabb::exactly_intersect(batch[i].a, batch[i].b));
         results_.resize(batch.size());
-        methods_.play(
+        methods_.run_batch(
             batch.size(), [&](aabb::triangle_test& test) { test.intersect(batch, results_); },
             [&](error_point& point) { count(point); });
     }
@@ -111,7 +111,7 @@ std::vector<error_point> points_of(const error_study& study, const pair_set& set
     for (std::uint64_t left = set.count; left > 0; left -= batch.size()) {
         batch.resize(std::min<std::uint64_t>(left, pairs_in_batch));
         source.next(batch);
-        run.play(std::span<const aabb::triangle_pair<Real>>(batch));
+        run.run_batch(std::span<const aabb::triangle_pair<Real>>(batch));
         shown.at(done += batch.size());
     }
     return run.points();
@@ -162,7 +162,7 @@ std::vector<error_point> points_of(const error_study& study, const scene_choice&
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
     const std::span<const aabb::triangle_pair<float>> rest(pairs);
     for (std::size_t at = 0; at < pairs.size(); at += pairs_in_batch)
-        run.play(rest.subspan(at, std::min(pairs_in_batch, pairs.size() - at)));
+        run.run_batch(rest.subspan(at, std::min(pairs_in_batch, pairs.size() - at)));
     return run.points();
 }
 
@@ -192,14 +192,14 @@ public:
         }
     }
 
-    void play(std::span<const aabb::triangle_pair<double>> hits) {
+    void run_batch(std::span<const aabb::triangle_pair<double>> hits) {
         std::deque<aabb::exact_intersection> exact;
         for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);
         std::vector<aabb::triangle_intersection> constructed(hits.size());
         const auto construct = [&](aabb::triangle_test& test) {
             for (std::size_t k = 0; k < hits.size(); ++k) constructed[k] = test.intersection(hits[k].a, hits[k].b);
         };
-        tests_.play(hits.size(), construct, [&](hit_point& point) {
+        tests_.run_batch(hits.size(), construct, [&](hit_point& point) {
             point.count += hits.size();
             for (std::size_t k = 0; k < hits.size(); ++k) {
                 const aabb::corner_errors errors = exact[k].errors_of(constructed[k]);
@@ -228,8 +228,8 @@ std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint
     std::vector<aabb::triangle_pair<double>> batch;
     std::uint64_t tried = 0;
     std::uint64_t hits = 0;
-    const auto play = [&] {
-        run.play(batch);
+    const auto flush = [&] {
+        run.run_batch(batch);
         batch.clear();
         shown.at(done + hits);
     };
@@ -240,9 +240,9 @@ std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint
         if (!aabb::exactly_intersect(p.a, p.b)) continue;
         ++hits;
         batch.push_back({in_double(p.a), in_double(p.b)});
-        if (batch.size() == hits_in_batch) play();
+        if (batch.size() == hits_in_batch) flush();
     }
-    if (!batch.empty()) play();
+    if (!batch.empty()) flush();
     return run.points(tried);
 }
 

@@ -113,7 +113,7 @@ extreme_row row_of_test(const aabb::triangle_case& of, const named_test& test, b
     return row;
 }
 
-void play_tests(std::span<const aabb::triangle_case> cases, std::vector<extreme_row>& rows) {
+void run_tests(std::span<const aabb::triangle_case> cases, std::vector<extreme_row>& rows) {
     for (const named_test& test : all_triangle_tests())
         for (const aabb::triangle_case& c : cases) {
             rows.push_back(row_of_test<float>(c, test, c.intersect, "float"));
@@ -158,8 +158,8 @@ std::vector<candidate> candidates(aabb::stage stage, bool named_values) {
 }
 
 /// Tests the two triangles in both orders, with every query.
-void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes, const candidate& of,
-                std::vector<extreme_row>& rows) {
+void run_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes, const candidate& of,
+               std::vector<extreme_row>& rows) {
     const std::unique_ptr<aabb::local_stage> stage = of.implementation.make_local(uncounted);
     for (const aabb::mesh& m : meshes) stage->add_model(m);
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -176,7 +176,7 @@ void play_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb
     }
 }
 
-void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> list, std::vector<extreme_row>& rows) {
+void run_candidates(const aabb::extreme_judge& judge, std::span<const candidate> list, std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
     const bool boxes = static_cast<bool>(scene.make_boxes);
     for (const candidate& c : list) {
@@ -199,10 +199,10 @@ void play_scene(const aabb::extreme_judge& judge, std::span<const candidate> lis
 
 std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases) {
     std::vector<extreme_row> rows;
-    play_tests(cases, rows);
+    run_tests(cases, rows);
     const std::vector<aabb::mesh> meshes = meshes_of(cases);
     for (const candidate& c : candidates(aabb::stage::local_detection, true))
-        if (c.role != contender_role::triangle_test) play_stage(cases, meshes, c, rows);
+        if (c.role != contender_role::triangle_test) run_stage(cases, meshes, c, rows);
     return rows;
 }
 
@@ -216,7 +216,7 @@ std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes
     progress shown("extreme scenes", scenes.size());
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const aabb::extreme_judge judge(scenes[i]);
-        play_scene(judge, scenes[i].make_boxes ? of_boxes : scenes[i].most_bytes > 0 ? of_many : of_meshes, rows);
+        run_candidates(judge, scenes[i].make_boxes ? of_boxes : scenes[i].most_bytes > 0 ? of_many : of_meshes, rows);
         shown.at(i + 1);
     }
     return rows;

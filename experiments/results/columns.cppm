@@ -145,11 +145,11 @@ template <class Row, class Columns>
 void require_header(const std::string& file, const csv_record& header, const std::vector<std::string>& expected);
 
 /// @param later columns that may be absent, since files of earlier versions lack them
-/// @param seen is called with each row and the line at which it begins
+/// @param on_row is called with each row and the line at which it begins
 /// @throws aabb::input_error with file and line if the records are not valid rows.
-template <class Row, class Columns, class Seen>
+template <class Row, class Columns, class OnRow>
 [[nodiscard]] std::vector<Row> rows_in(std::span<const csv_record> records, const std::string& file, Columns columns,
-                                       std::span<const std::string_view> later, Seen seen) {
+                                       std::span<const std::string_view> later, OnRow on_row) {
     std::vector<Row> rows;
     if (records.empty()) return rows;
     std::vector<std::string> absent(later.begin(), later.end());
@@ -170,7 +170,7 @@ template <class Row, class Columns, class Seen>
             ++at;
         });
         if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
-        seen(rows.back(), line);
+        on_row(rows.back(), line);
     }
     return rows;
 }

@@ -193,16 +193,17 @@ sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
 }
 
 std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
-    const read_in before = read_json(manifest);
+    const read_in previous = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
-    if (before.content.needed("config").text("hash") != e.hash)
+    if (previous.content.needed("config").text("hash") != e.hash)
         return where + " are of another config or size, or of other meshes or recordings";
-    if (before.raw["build"] != build())
+    if (previous.raw["build"] != build())
         return where + " were made by another build or machine (commit " +
-               before.content.needed("build").text("commit").value_or("unknown") + "), whose times cannot be compared";
-    if (before.raw.value("costs", json()) != costs())
+               previous.content.needed("build").text("commit").value_or("unknown") +
+               "), whose times cannot be compared";
+    if (previous.raw.value("costs", json()) != costs())
         return where + " were made with other costs (aabblab calibrate), by which strategies plan otherwise";
-    if (!before.content.has("seal")) return {};
+    if (!previous.content.has("seal")) return {};
     // Altered results must not be resumed and sealed again.
     try {
         (void)verified_rows(manifest.parent_path());
@@ -215,11 +216,11 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
 std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
     if (const std::string refusal = refusal_to_resume(file, e); !refusal.empty())
         throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
-    const read_in before = read_json(file);
+    const read_in previous = read_json(file);
     scene_digests digests;
-    for (auto& [scene, digest] : scenes_in(before))
+    for (auto& [scene, digest] : scenes_in(previous))
         if (!digest.empty()) digests[std::move(scene)] = std::move(digest);
-    return {before.content.text("date").value_or(""), digests};
+    return {previous.content.text("date").value_or(""), digests};
 }
 
 std::string build_description() {

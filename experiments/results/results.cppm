@@ -71,10 +71,10 @@ struct row {
 [[nodiscard]] std::string parameters_json(const scene_choice& scene);
 
 /// Reads a results.csv, except a last row that was only partly written when the program ended.
-/// @param seen is called with each row and the line at which it begins
+/// @param on_row is called with each row and the line at which it begins
 /// @throws aabb::input_error with file and line if it is not a results.csv, or if two rows have the same key.
 [[nodiscard]] std::vector<row> read_rows(const std::filesystem::path& file,
-                                         const std::function<void(const row&, std::size_t)>& seen = {});
+                                         const std::function<void(const row&, std::size_t)>& on_row = {});
 
 /// Reads the rows of a results folder and verifies them against its manifest: every scene is listed, and exact rows
 /// have the digest of their scene. If the run was finished, so that the manifest has a seal, the rows must be complete

@@ -116,16 +116,16 @@ std::string csv_of(std::span<const difference> differences) {
 }
 
 std::vector<row> read_rows(const std::filesystem::path& file,
-                           const std::function<void(const row&, std::size_t)>& seen) {
+                           const std::function<void(const row&, std::size_t)>& on_row) {
     std::map<std::string, std::size_t> lines;  // by key
     const auto checked = [&](const row& r, std::size_t line) {
         const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         if (r.status != "exact" && r.status != "inexact")
             throw aabb::input_error(place + "the status is '" + r.status + "'; expected exact or inexact");
-        if (const auto [before, is_new] = lines.emplace(r.key(), line); !is_new)
-            throw aabb::input_error(place + "the measurement of line " + std::to_string(before->second) +
+        if (const auto [first, is_new] = lines.emplace(r.key(), line); !is_new)
+            throw aabb::input_error(place + "the measurement of line " + std::to_string(first->second) +
                                     " stands here again, so two runs have written into one folder");
-        if (seen) seen(r, line);
+        if (on_row) on_row(r, line);
     };
     const csv_text table = read_csv(text_of_file(file), file.string());
     return rows_in<row>(table.records, file.string(), columns_of_row, later_columns, checked);

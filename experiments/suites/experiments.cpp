@@ -109,7 +109,7 @@ bool takes_several_threads(const experiment& e) {
 /// Runs one process's share of every scene.
 /// @param report is called with a sentence per failure
 /// @param finished is called with the index of each scene at its end
-void play_scenes(
+void run_scenes(
     const experiment& e, results_folder& results, std::size_t process,
     const std::function<void(const std::string&)>& report,
     const std::function<void(std::size_t)>& finished = [](std::size_t) {}) {
@@ -123,8 +123,8 @@ void play_scenes(
 }
 
 /// Runs each share in a new process, one after the other.
-void play_afresh(const experiment& e, const std::filesystem::path& folder,
-                 const std::function<void(const std::string&)>& report) {
+void run_shares(const experiment& e, const std::filesystem::path& folder,
+                const std::function<void(const std::string&)>& report) {
     for (std::size_t process = 0; process < e.processes; ++process) {
         std::vector<std::string> share{"run", e.file, "--out", folder.string(), "--process", std::to_string(process)};
         if (e.quick) share.emplace_back("--quick");
@@ -174,7 +174,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
         std::filesystem::remove(folder / "summary.csv", ignored);
         if (e.processes == 1) {
             // Print a scene as soon as its last seed is finished.
-            play_scenes(e, results, 0, report, [&](std::size_t i) {
+            run_scenes(e, results, 0, report, [&](std::size_t i) {
                 const scene_choice& scene = e.scenes[i];
                 if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_same_scene(scene, e.scenes[i + 1])))
                     print_scenes(e, summarise(rows_of_all_seeds(scene, results.rows())), shown);
@@ -183,7 +183,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
         }
     }
     if (e.processes > 1) {
-        play_afresh(e, folder, report);
+        run_shares(e, folder, report);
         results_folder(folder, record_of(e), existing_results::resume).seal();
     }
     const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
@@ -197,7 +197,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
 bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     results_folder results(folder, record_of(e), existing_results::resume);
     bool right = true;
-    play_scenes(e, results, process, [&](const std::string& failure) {
+    run_scenes(e, results, process, [&](const std::string& failure) {
         print(failure + "\n");
         flush_output();
         right = false;

@@ -35,7 +35,7 @@ selection selection::with(aabb::strategy_kind kind, std::string choice) const {
 }
 
 // Older results, such as the archived run, omit `axes` where two were cut, which was the default at the time.
-static std::string as_named_now(const std::string& choice) {
+static std::string with_default_axes(const std::string& choice) {
     constexpr std::string_view cut = "axial_cut";
     if (!choice.starts_with(cut) || choice.find("axes=") != std::string::npos) return choice;
     const std::string others = choice.size() > cut.size() ? "," + choice.substr(cut.size() + 1) : "";
@@ -44,7 +44,8 @@ static std::string as_named_now(const std::string& choice) {
 
 bool selection::matches(const contender_name& name) const {
     return name.engine.empty() && std::ranges::all_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
-               return wanted_[kind].empty() || wanted_[kind] == name[kind] || wanted_[kind] == as_named_now(name[kind]);
+               return wanted_[kind].empty() || wanted_[kind] == name[kind] ||
+                      wanted_[kind] == with_default_axes(name[kind]);
            });
 }
 

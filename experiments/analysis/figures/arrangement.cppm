@@ -104,7 +104,7 @@ std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_l
 struct end_label {
     const shown_label* of;
     std::vector<std::string> lines;
-    double wanted;      ///< its preferred centre above the plot's lower edge
+    double wanted;      ///< preferred centre above the plot's lower edge
     double middle = 0;  ///< its actual centre
 };
 
@@ -128,7 +128,7 @@ struct flag {
 
 /// Assigns rows to the texts so that no line of another mark crosses them.
 /// @returns the number of rows
-std::size_t raise(std::vector<flag>& flags) {
+std::size_t assign_rows(std::vector<flag>& flags) {
     const auto crosses = [](const flag& line, const flag& text) { return text.begin < line.at && line.at < text.end; };
     // Each round settles at least one row, except for texts that mutually cross each other's lines.
     for (std::size_t round = 0; round < flags.size(); ++round)
@@ -163,7 +163,7 @@ public:
         std::size_t flag_rows = 0;
         for (std::size_t i = 0; i < panels_; ++i) {
             flags.push_back(flags_of(i));
-            flag_rows = std::max(flag_rows, raise(flags.back()));
+            flag_rows = std::max(flag_rows, assign_rows(flags.back()));
         }
         const bool titled = std::ranges::any_of(d_.panels, [](const shown_panel& p) { return !p.title.empty(); });
         const double marks = line_height * static_cast<double>(flag_rows);

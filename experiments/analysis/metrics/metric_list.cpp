@@ -92,7 +92,7 @@ number wrong_share(const row& r) {
     return (missing + invented) / std::max(reported - invented + missing, 1.0);
 }
 
-std::vector<metric> listed() {
+std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";
     const std::string to_update = "time a frame to take the boxes: to sort and to partition them";
@@ -160,7 +160,7 @@ std::vector<metric> work_metrics() {
 
 std::span<const metric> metrics() {
     static const std::vector<metric> registered = [] {
-        std::vector<metric> list = listed();
+        std::vector<metric> list = row_metrics();
         for (const metric& counted : work_metrics()) list.push_back(counted);
         return list;
     }();

@@ -1,5 +1,5 @@
 /// Decides claims: computes intervals by a bootstrap over processes, seeds and repeats, and turns them into outcomes.
-/// It is independent of what was measured.
+/// It does not depend on the kind of measurement.
 export module aabblab.statistics;
 
 import aabb.std;
