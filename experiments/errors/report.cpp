@@ -142,7 +142,7 @@ public:
         for (const error_curve& curve : curves)
             for (const aabb::composition& c : curve.compositions)
                 if (std::optional<place> at = place_of(c)) {
-                    // A curve of one composition is named as its config names it.
+                    // A curve with a single composition keeps its label in the config.
                     if (curve.compositions.size() == 1) at->label = curve.label;
                     positions.push_back(*std::move(at));
                 }
@@ -274,7 +274,7 @@ table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t{{{"triangle", false}}, {}};
     const std::vector<std::string> sets = sets_in(subset);
-    // Scenes of meshes have long names.
+    // Names of mesh scenes are too long for headers, so they are numbered.
     for (const std::string& set : sets)
         t.columns.push_back({group == pair_group::of_meshes ? fmt::format("scene {}", &set - sets.data() + 1) : set});
     for (const pooled& m : pooled_over(subset)) {

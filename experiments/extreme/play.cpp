@@ -52,7 +52,7 @@ std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_
             std::ranges::move(with_named_values(c, stage), std::back_inserter(more));
         compositions = std::move(more);
     }
-    // Scenes of meshes have a global search of their own.
+    // Broad phases run on scenes of boxes here, so those that need meshes are excluded.
     std::erase_if(compositions, [&](const aabb::composition& c) {
         return !is_exact(c, stage) || !refusal_of(c, stage).empty() || !needs_meshes(c).empty();
     });

@@ -9,7 +9,7 @@ import aabblab.statistics;
 
 export namespace aabblab {
 
-/// The results of one experiment, or of several, as `run` and `reproduce` leave them.
+/// The results of one or several experiments, as written by `run` and `reproduce`.
 struct run_results {
     std::filesystem::path folder;
     std::vector<row> rows;

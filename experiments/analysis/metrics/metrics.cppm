@@ -6,7 +6,7 @@ import aabblab.results;
 
 export namespace aabblab {
 
-/// What a run must have recorded for a metric: a config asks for it by these names.
+/// The data that a run must record for a metric; configs request them by these names.
 enum class metric_group : std::uint8_t { time, counts, bytes, error };
 
 struct metric_group_info {

@@ -116,7 +116,7 @@ void set_labels(scene_summary& scene) {
 struct rows_of_scene {
     scene_summary scene;
     std::vector<repeats_of_line> lines;
-    std::map<contender_name, std::size_t> places;  // of lines
+    std::map<contender_name, std::size_t> places;  // indices of `lines`
 
     void add(const row& r) {
         const auto [place, is_new] = places.emplace(r.name, lines.size());

@@ -110,7 +110,7 @@ struct scene_summary {
 /// over the scenes.
 [[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
 
-/// The table of a summary.csv: every line of every scene with its rank, every number in full.
+/// The table of a summary.csv: every line of every scene with its rank, with all digits.
 [[nodiscard]] table full_table_of(std::span<const scene_summary> scenes);
 
 }  // namespace aabblab

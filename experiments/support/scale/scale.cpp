@@ -87,7 +87,7 @@ std::vector<double> round_values(double from, double to, double step) {
     std::vector<double> values;
     // Counted by an integer, because far from 0 adding a small step may have no effect.
     for (int i = 0; i <= std::floor(to / step + 1e-6) - first; ++i)
-        values.push_back((first + i) * step + 0.0);  // -0 is 0
+        values.push_back((first + i) * step + 0.0);  // turns -0 into 0
     return values;
 }
 
