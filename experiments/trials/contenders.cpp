@@ -14,52 +14,52 @@ namespace aabblab {
 
 namespace {
 
-/// Takes a stage of the composition.
-void use(contender& who, const aabb::composition& c, aabb::stage stage) {
-    for (const aabb::strategy_kind kind : kinds_of(stage)) who.name[kind] = to_text(c[kind]);
-    who.exact = who.exact && is_exact(c, stage);
+/// Takes one stage from the composition.
+void use(contender& candidate, const aabb::composition& c, aabb::stage stage) {
+    for (const aabb::strategy_kind kind : kinds_of(stage)) candidate.name[kind] = to_text(c[kind]);
+    candidate.exact = candidate.exact && is_exact(c, stage);
     if (stage == aabb::stage::global_search) {
-        who.exact_boxes = is_exact(c, stage);
-        who.whole_boxes = needs_meshes(c).empty();
-        who.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
+        candidate.exact_boxes = is_exact(c, stage);
+        candidate.whole_boxes = needs_meshes(c).empty();
+        candidate.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
     } else {
-        who.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
+        candidate.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
     }
 }
 
 }  // namespace
 
 contender contender_of(const aabb::composition& c, bool meshes) {
-    contender who;
-    use(who, c, aabb::stage::global_search);
-    if (meshes) use(who, c, aabb::stage::local_detection);
-    return who;
+    contender candidate;
+    use(candidate, c, aabb::stage::global_search);
+    if (meshes) use(candidate, c, aabb::stage::local_detection);
+    return candidate;
 }
 
 contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
-    aabb::composition whole = aabb::complete_composition(named);
+    aabb::composition initial = aabb::complete_composition(named);
     const auto selected = [named, outlook = outlook_of(scene)](aabb::composition& c) -> const aabb::composition& {
         select_for_scene(c, named, outlook);
         return c;
     };
-    contender who = contender_of(selected(whole), scene.meshes() != nullptr);
-    // To select is part of making the stages, and of their time.
-    who.make_global = [selected, whole](aabb::instrumentation counted) mutable {
-        return aabb::compose_global_search(selected(whole), counted);
+    contender candidate = contender_of(selected(initial), scene.meshes() != nullptr);
+    // The selection runs when the stages are created, so that its time counts as build time.
+    candidate.make_global = [selected, initial](aabb::instrumentation counted) mutable {
+        return aabb::compose_global_search(selected(initial), counted);
     };
-    if (who.make_local)
-        who.make_local = [selected, whole](aabb::instrumentation counted) mutable {
-            return aabb::compose_local_detection(selected(whole), counted);
+    if (candidate.make_local)
+        candidate.make_local = [selected, initial](aabb::instrumentation counted) mutable {
+            return aabb::compose_local_detection(selected(initial), counted);
         };
-    // It has one name in all scenes, whatever is selected.
-    who.name = {};
-    who.name.engine = contender_name::automatic;
+    // The name does not depend on what is selected, so that it is the same for all scenes.
+    candidate.name = {};
+    candidate.name.engine = contender_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (named[kind])
-            who.name.engine += " + " +
-                               (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
-                               to_text(*named[kind]);
-    return who;
+            candidate.name.engine += " + " +
+                                     (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
+                                     to_text(*named[kind]);
+    return candidate;
 }
 
 aabb::scene_outlook outlook_of(const scene_play& scene) {
@@ -69,26 +69,26 @@ aabb::scene_outlook outlook_of(const scene_play& scene) {
 
 std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
-    contender who;
-    who.name.engine = engine.name;
-    who.exact = engine.exact;
+    contender candidate;
+    candidate.name.engine = engine.name;
+    candidate.exact = engine.exact;
     if (engine.searches_boxes)
-        who.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
+        candidate.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
     else
-        use(who, {}, aabb::stage::global_search);
+        use(candidate, {}, aabb::stage::global_search);
     if (meshes && engine.collides_meshes)
-        who.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
+        candidate.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
     else if (meshes)
-        use(who, {}, aabb::stage::local_detection);
-    return who;
+        use(candidate, {}, aabb::stage::local_detection);
+    return candidate;
 }
 
-// External engines: programs of others that read a recording, and write what they found and how long they took.
+// External engines: third-party programs that read a recording, and write the pairs they find and their times.
 
 namespace {
 
-/// A folder in which the external engines of a scene find its recording and leave their answers; made when it is first
-/// asked for, and gone with this, as are the engines.
+/// The temporary folder through which the external engines of a scene read its recording and write their results. It is
+/// created on first use, and removed by the destructor.
 class exchange_folder {
 public:
     explicit exchange_folder(scene_choice scene) : scene_(std::move(scene)) {}
@@ -98,7 +98,7 @@ public:
 
     /// "brownian (objects=1000 seed=1)"
     [[nodiscard]] std::string scene_text() const { return scene_.kind + " (" + parameters_text(scene_) + ")"; }
-    /// The scene from its first frame to its last.
+    /// The recording of the whole scene.
     [[nodiscard]] const std::filesystem::path& recording() {
         if (!recording_.empty()) return recording_;
         std::error_code error;
@@ -124,13 +124,13 @@ private:
     std::size_t objects_ = 0, frames_ = 0;
 };
 
-/// A CSV file of rows of numbers that such a program wrote, read row by row.
-class answer_table {
+/// Reads the CSV output of an external engine row by row.
+class engine_output {
 public:
-    /// @param what the rows are, for messages: "the pairs of the external engine 'NAME'"
-    /// @param columns their names, as the first line has them
-    /// @throws aabb::input_error where the file is not there or begins otherwise. So do all that read.
-    answer_table(std::string what, const std::filesystem::path& file, std::string columns)
+    /// @param what describes the rows in messages: "the pairs of the external engine 'NAME'"
+    /// @param columns the expected first line
+    /// @throws aabb::input_error if the file is missing or its header differs. All member functions that read throw it.
+    engine_output(std::string what, const std::filesystem::path& file, std::string columns)
         : what_(std::move(what)), columns_(std::move(columns)) {
         if (!std::filesystem::exists(file)) throw aabb::input_error(what_ + " are not there: it wrote no such file");
         if (std::filesystem::is_directory(file)) throw aabb::input_error(what_ + " are a folder; expected a file");
@@ -139,12 +139,12 @@ public:
         if (text_ != columns_) fail("expected the line " + columns_);
     }
 
-    /// Goes to the next row; false after the last.
+    /// Advances to the next row; false after the last.
     bool next() {
         fields_.clear();
-        const bool is_there = in_->next();
-        text_ = is_there ? in_->line() : std::string_view();
-        if (!is_there) return false;
+        const bool has_row = in_->next();
+        text_ = has_row ? in_->line() : std::string_view();
+        if (!has_row) return false;
         for (std::size_t from = 0;;) {
             const std::size_t to = std::min(text_.find(',', from), text_.size());
             fields_.push_back(text_.substr(from, to - from));
@@ -155,9 +155,9 @@ public:
         return true;
     }
     /// A number below `end`.
-    [[nodiscard]] std::uint32_t number(std::size_t column, std::string_view of, std::size_t end) const {
+    [[nodiscard]] std::uint32_t number(std::size_t column, std::string_view noun, std::size_t end) const {
         const std::optional<std::uint32_t> value = parsed<std::uint32_t>(column);
-        if (!value || *value >= end) fail("expected " + std::string(of) + " below " + std::to_string(end));
+        if (!value || *value >= end) fail("expected " + std::string(noun) + " below " + std::to_string(end));
         return *value;
     }
     [[nodiscard]] double milliseconds(std::size_t column) const {
@@ -166,9 +166,9 @@ public:
             fail("expected a time in milliseconds, finite and not negative");
         return *value;
     }
-    /// Of the row, with its line and what stands there.
+    /// Throws an error that quotes the row and its line number.
     [[noreturn]] void fail(const std::string& sentence) const {
-        constexpr std::size_t longest_quote = 60;  // of a row that may be of any length
+        constexpr std::size_t longest_quote = 60;  // since a row may have any length
         std::string row(text_.substr(0, longest_quote));
         if (text_.size() > longest_quote) row += "…";
         throw aabb::input_error(what_ + ", line " + std::to_string(in_->number()) + ", '" + row + "': " + sentence);
@@ -186,22 +186,22 @@ private:
     std::string what_, columns_;
     std::optional<line_stream> in_;
     std::string_view text_;
-    std::vector<std::string_view> fields_;  // of text_
+    std::vector<std::string_view> fields_;  // views into text_
 };
 
-/// What such a program found, in place of a search: it has played the whole scene when this is made. Its errors begin
-/// with the place in the config and the scene.
+/// A broad phase that replays the pairs of an external engine. The constructor runs the engine on the whole scene.
+/// Error messages begin with the place in the config and the scene.
 class external_search final : public aabb::global_stage {
 public:
-    /// Runs the program.
-    /// @param told gets its times, by frame
-    /// @throws engine_timeout, and aabb::input_error where it cannot be started or fails, and on times that are
+    /// Runs the engine.
+    /// @param times receives the reported times, by frame
+    /// @throws engine_timeout, and aabb::input_error if the engine cannot be started or fails, or if its times are
     /// malformed
-    external_search(const external_engine& who, exchange_folder& exchange, std::vector<told_times>& told)
-        : place_(who.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + who.name + "'") {
+    external_search(const external_engine& engine, exchange_folder& exchange, std::vector<told_times>& times)
+        : place_(engine.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + engine.name + "'") {
         in_place([&] {
-            run(who, exchange);
-            read_times(told);
+            run(engine, exchange);
+            read_times(times);
             table_.emplace("the pairs of the " + name_, pairs_file_, "frame,a,b");
             read_ahead();
         });
@@ -209,8 +209,8 @@ public:
 
     void insert(std::uint32_t) override {}
     void remove(std::uint32_t) override {}
-    /// Goes to the next frame.
-    /// @throws aabb::input_error on rows that are malformed, not of this frame or a later one, or there twice
+    /// Advances to the next frame.
+    /// @throws aabb::input_error on rows that are malformed, duplicated, or of an earlier frame
     void update(std::span<const aabb::box>) override {
         in_place([this] { take_frame(); });
     }
@@ -227,7 +227,7 @@ private:
         aabb::index_pair pair;
     };
 
-    /// Does what may fail.
+    /// Prefixes the errors of `work` with the place.
     template <class Work>
     void in_place(Work work) const {
         try {
@@ -241,50 +241,50 @@ private:
 
     [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error("the " + name_ + sentence); }
 
-    void run(const external_engine& who, exchange_folder& exchange) {
+    void run(const external_engine& engine, exchange_folder& exchange) {
         const std::filesystem::path recording = exchange.recording();
         objects_ = exchange.objects();
         frames_ = exchange.frames();
-        pairs_file_ = recording.parent_path() / (who.name + ".pairs.csv");
-        times_file_ = recording.parent_path() / (who.name + ".times.csv");
-        std::vector<std::string> arguments(who.command.begin() + 1, who.command.end());
+        pairs_file_ = recording.parent_path() / (engine.name + ".pairs.csv");
+        times_file_ = recording.parent_path() / (engine.name + ".times.csv");
+        std::vector<std::string> arguments(engine.command.begin() + 1, engine.command.end());
         arguments.push_back(recording.string());
         for (const std::filesystem::path& file : {pairs_file_, times_file_}) {
-            // What it left the last time is not taken for an answer.
+            // Files of an earlier run must not be mistaken for results.
             std::filesystem::remove(file);
             arguments.push_back(file.string());
         }
-        // Apart from the terminal it must not wait for what is typed there.
-        const child_result ended = run_child(who.program, arguments,
+        // Without a terminal the engine cannot wait for keyboard input.
+        const child_result ended = run_child(engine.program, arguments,
                                              {.folder = {},
                                               .input = "/dev/null",
                                               .errors = {},
                                               .kept = true,
-                                              .timeout = std::chrono::seconds(who.timeout_s)});
+                                              .timeout = std::chrono::seconds(engine.timeout_s)});
         if (ended.timed_out)
             throw engine_timeout("the " + name_ + " was killed: it had not ended after " +
-                                 std::to_string(who.timeout_s) + " s, its timeout_s");
-        if (ended.refused == ENOENT && who.program.find('/') == std::string::npos)
-            fail(": there is no program " + who.program + " in PATH; write ./" + who.program +
+                                 std::to_string(engine.timeout_s) + " s, its timeout_s");
+        if (ended.refused == ENOENT && engine.program.find('/') == std::string::npos)
+            fail(": there is no program " + engine.program + " in PATH; write ./" + engine.program +
                  " for one in the folder of the config");
-        if (ended.refused != 0) fail(": " + who.program + " cannot be started: " + std::strerror(ended.refused));
+        if (ended.refused != 0) fail(": " + engine.program + " cannot be started: " + std::strerror(ended.refused));
         if (!WIFEXITED(ended.status)) fail(" was ended by signal " + std::to_string(WTERMSIG(ended.status)));
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
     }
 
-    void read_times(std::vector<told_times>& told) const {
-        told.clear();
-        answer_table table("the times of the " + name_, times_file_, "frame,update_ms,search_ms");
+    void read_times(std::vector<told_times>& times) const {
+        times.clear();
+        engine_output table("the times of the " + name_, times_file_, "frame,update_ms,search_ms");
         while (table.next()) {
-            if (table.number(0, "a frame", frames_) != told.size())
-                table.fail("expected frame " + std::to_string(told.size()) + "; each stands once, in order");
-            told.push_back({table.milliseconds(1), table.milliseconds(2)});
-            // No ratio can be formed with it, and nothing takes no time.
-            if (told.back().update_ms + told.back().search_ms == 0)
+            if (table.number(0, "a frame", frames_) != times.size())
+                table.fail("expected frame " + std::to_string(times.size()) + "; each stands once, in order");
+            times.push_back({table.milliseconds(1), table.milliseconds(2)});
+            // A ratio cannot be formed with zero, and no search takes zero time.
+            if (times.back().update_ms + times.back().search_ms == 0)
                 table.fail("expected more than 0 ms, the two together");
         }
-        if (told.size() < frames_)
-            throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(told.size()));
+        if (times.size() < frames_)
+            throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(times.size()));
     }
 
     void read_ahead() {
@@ -316,54 +316,55 @@ private:
     std::string place_, name_;
     std::filesystem::path pairs_file_, times_file_;
     std::size_t objects_ = 0, frames_ = 0;
-    std::optional<answer_table> table_;
-    std::uint32_t frame_ = 0;          // the next one
-    std::optional<found_pair> ahead_;  // the first row that is not of a frame so far
+    std::optional<engine_output> table_;
+    std::uint32_t frame_ = 0;          // the next frame
+    std::optional<found_pair> ahead_;  // the first row of a later frame
     std::vector<aabb::index_pair> pairs_;
 };
 
 contender contender_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
-    contender who;
-    who.name.engine = engine.name;
-    who.exact = who.exact_boxes = engine.exact;
-    const std::shared_ptr told = std::make_unique<std::vector<told_times>>();
-    who.told = told;
-    who.make_global = [engine, exchange, told](aabb::instrumentation) {
-        return std::make_unique<external_search>(engine, *exchange, *told);
+    contender candidate;
+    candidate.name.engine = engine.name;
+    candidate.exact = candidate.exact_boxes = engine.exact;
+    const std::shared_ptr times = std::make_unique<std::vector<told_times>>();
+    candidate.told = times;
+    candidate.make_global = [engine, exchange, times](aabb::instrumentation) {
+        return std::make_unique<external_search>(engine, *exchange, *times);
     };
-    return who;
+    return candidate;
 }
 
 }  // namespace
 
 std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
-    std::vector<contender> all;
+    std::vector<contender> contenders;
     std::set<contender_name> names;
     for (const aabb::composition& c : e.compositions) {
-        // Refused in a config; of all compositions that there are, it has no part in this scene.
+        // A config rejects it; among all compositions, one that needs meshes is skipped for boxes.
         if (!meshes && !needs_meshes(c).empty()) continue;
-        contender who = contender_of(c, meshes);
-        // In a scene of boxes, compositions that differ in local detection only are one.
-        if (names.insert(who.name).second) all.push_back(std::move(who));
+        contender candidate = contender_of(c, meshes);
+        // For boxes, compositions that differ only in the narrow phase are the same candidate.
+        if (names.insert(candidate.name).second) contenders.push_back(std::move(candidate));
     }
     if (!e.automatic.empty()) {
         const scene_play play(scene);
-        for (const aabb::named_strategies& named : e.automatic) all.push_back(contender_of(named, play));
+        for (const aabb::named_strategies& named : e.automatic) contenders.push_back(contender_of(named, play));
     }
     for (const std::string& name : e.engines) {
         const auto engine = std::ranges::find(aabb::engines(), name, &aabb::engine_info::name);
-        if (std::optional<contender> who = contender_of(*engine, meshes)) all.push_back(*std::move(who));
+        if (std::optional<contender> candidate = contender_of(*engine, meshes))
+            contenders.push_back(*std::move(candidate));
     }
-    if (meshes) return all;
+    if (meshes) return contenders;
     const std::shared_ptr exchange = std::make_unique<exchange_folder>(scene);
-    for (const external_engine& engine : e.externals) all.push_back(contender_of(engine, exchange));
-    return all;
+    for (const external_engine& engine : e.externals) contenders.push_back(contender_of(engine, exchange));
+    return contenders;
 }
 
 std::string text_of(const contender_name& name) {
-    const std::string made_of = text_in_line(name.choices);
-    return name.engine + (name.engine.empty() || made_of.empty() ? "" : " + ") + made_of;
+    const std::string strategies = text_in_line(name.choices);
+    return name.engine + (name.engine.empty() || strategies.empty() ? "" : " + ") + strategies;
 }
 
 }  // namespace aabblab

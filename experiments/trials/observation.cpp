@@ -4,81 +4,81 @@ namespace aabblab {
 
 namespace {
 
-/// In place of what was timed, which was reading its answer.
-void take_told(std::span<const told_times> told, observation& seen) {
+/// Replaces the measured times, which are those of reading the results of the external engine.
+void take_told(std::span<const told_times> times, observation& seen) {
     seen.build = {};
     seen.first = seen.rest = {};
-    for (std::size_t frame = 0; frame < told.size(); ++frame) {
+    for (std::size_t frame = 0; frame < times.size(); ++frame) {
         phases& took = frame == 0 ? seen.first : seen.rest;
-        took.update.wall_ms += told[frame].update_ms;
-        took.search.wall_ms += told[frame].search_ms;
+        took.update.wall_ms += times[frame].update_ms;
+        took.search.wall_ms += times[frame].search_ms;
     }
 }
 
-/// Fills the processor's caches with other things.
+/// Evicts everything else from the processor's caches.
 void fill_caches() {
     constexpr std::size_t larger_than_caches = std::size_t{128} << 20U;
     constexpr std::size_t line = 64;
-    static std::vector<unsigned char> other_things(larger_than_caches);
-    for (std::size_t i = 0; i < other_things.size(); i += line) ++other_things[i];
+    static std::vector<unsigned char> buffer(larger_than_caches);
+    for (std::size_t i = 0; i < buffer.size(); i += line) ++buffer[i];
 }
 
-/// Asks once where caches are cold. Otherwise several times in a row, of which it tells the mean: a query that takes a
-/// microsecond would be slowed down by all that was done since the one before.
+/// Times a query once with cold caches. With warm caches it returns the mean of several queries in a row: the first of
+/// them, which may take only a microsecond, would suffer from the work since the previous frame.
 template <class Query>
 elapsed mean_time(const Query& query, bool cold) {
     const int times = cold ? 1 : 16;
     if (!cold) query();
-    const elapsed all = elapsed_in([&] {
+    const elapsed sum = elapsed_in([&] {
         for (int i = 0; i < times; ++i) query();
     });
-    return {all.wall_ms / times, all.cpu_ms / times};
+    return {sum.wall_ms / times, sum.cpu_ms / times};
 }
 
-/// Times the query, detects all contacts, and holds the answer against them.
-elapsed ask(player& who, const asking& how, std::string& wrong) {
+/// Times the query, detects all contacts, and compares the result of the query with them.
+elapsed ask(player& p, const asking& how, std::string& wrong) {
     if (how.cold) fill_caches();
-    if (how.ask == question::pairs) return detect_in(who);
+    if (how.ask == question::pairs) return detect_in(p);
     std::optional<aabb::contact> first;
     std::uint64_t count = 0;
-    const elapsed took = how.ask == question::first ? mean_time([&] { first = who.first_contact(); }, how.cold)
-                                                    : mean_time([&] { count = who.count_contacts(); }, how.cold);
-    who.detect();
-    const std::vector<aabb::contact>& all = who.sorted_contacts();
-    if (how.ask == question::count && count != all.size())
-        wrong = "it counts " + std::to_string(count) + " contacts of " + std::to_string(all.size());
-    if (how.ask == question::first && (first ? !std::ranges::binary_search(all, *first) : !all.empty()))
-        wrong =
-            first ? "its first contact is none" : "it finds no contact, and there are " + std::to_string(all.size());
+    const elapsed took = how.ask == question::first ? mean_time([&] { first = p.first_contact(); }, how.cold)
+                                                    : mean_time([&] { count = p.count_contacts(); }, how.cold);
+    p.detect();
+    const std::vector<aabb::contact>& contacts = p.sorted_contacts();
+    if (how.ask == question::count && count != contacts.size())
+        wrong = "it counts " + std::to_string(count) + " contacts of " + std::to_string(contacts.size());
+    if (how.ask == question::first && (first ? !std::ranges::binary_search(contacts, *first) : !contacts.empty()))
+        wrong = first ? "its first contact is none"
+                      : "it finds no contact, and there are " + std::to_string(contacts.size());
     return took;
 }
 
 }  // namespace
 
-observation observe(scene_play& scene, const contender& who, const protocol& how) {
+observation observe(scene_play& scene, const contender& candidate, const protocol& how) {
     observation seen;
     std::optional<player> p;
-    seen.build = elapsed_in([&] { p.emplace(who, scene, how.counted); });
-    tally found(scene.meshes() != nullptr);
+    seen.build = elapsed_in([&] { p.emplace(candidate, scene, how.counted); });
+    tally results(scene.meshes() != nullptr);
     const auto take = [&](const played_frame& frame) {
-        found.add(frame.pairs, frame.contacts);
+        results.add(frame.pairs, frame.contacts);
         (seen.frames++ == 0 ? seen.first : seen.rest) += frame.took;
         if (!how.each) return;
-        seen.digest = found.digest();
+        seen.digest = results.digest();
         how.each(seen);
     };
     play(scene, *p, take, how.frames, [&](player& asked) { return ask(asked, how.asked, seen.wrong); });
-    if (who.told) take_told(*who.told, seen);
-    seen.digest = found.digest();
+    if (candidate.told) take_told(*candidate.told, seen);
+    seen.digest = results.digest();
     seen.bytes = p->held_bytes();
     seen.work = p->counters();
     seen.left_out = p->left_out();
     return seen;
 }
 
-observation observe(const scene_choice& choice, const contender& who, const protocol& how) {
+observation observe(const scene_choice& choice, const contender& candidate, const protocol& how) {
     scene_play scene(choice);
-    return observe(scene, who, how);
+    return observe(scene, candidate, how);
 }
 
 }  // namespace aabblab

@@ -40,10 +40,10 @@ void scene_play::note_changes(std::span<const std::uint8_t> present) {
     }
 }
 
-player::player(const contender& who, const scene_play& scene, aabb::instrumentation counted)
-    : player(stages{who.make_global(counted), scene.meshes() ? who.make_local(counted) : nullptr}, scene) {}
+player::player(const contender& candidate, const scene_play& scene, aabb::instrumentation counted)
+    : player(stages{candidate.make_global(counted), scene.meshes() ? candidate.make_local(counted) : nullptr}, scene) {}
 
-player::player(stages made, const scene_play& scene) : scene_(scene), made_(std::move(made)) {
+player::player(stages run_stages, const scene_play& scene) : scene_(scene), made_(std::move(run_stages)) {
     if (made_.global) made_.global->expect(scene.frames());
     if (!scene.meshes()) return;
     if (made_.global)
@@ -82,11 +82,11 @@ const std::vector<aabb::contact>& player::sorted_contacts() {
 }
 
 aabb::work_counters player::counters() const {
-    aabb::work_counters all;
-    if (made_.global) all = made_.global->counters();
+    aabb::work_counters work;
+    if (made_.global) work = made_.global->counters();
     if (made_.local)
-        for (std::size_t i = 0; i < all.counts.size(); ++i) all.counts[i] += made_.local->counters().counts[i];
-    return all;
+        for (std::size_t i = 0; i < work.counts.size(); ++i) work.counts[i] += made_.local->counters().counts[i];
+    return work;
 }
 
 std::vector<aabb::part_bytes> player::global_bytes() const {
@@ -110,11 +110,11 @@ std::vector<aabb::part_bytes> player::local_bytes() const {
 }
 
 std::size_t player::held_bytes() const {
-    std::size_t all = buffer_bytes();
-    for (const aabb::part_bytes& part : global_bytes()) all += part.bytes;
+    std::size_t sum = buffer_bytes();
+    for (const aabb::part_bytes& part : global_bytes()) sum += part.bytes;
     for (const aabb::part_bytes& part : local_bytes())
-        if (part.part != "triangles" && part.part != "vertices") all += part.bytes;
-    return all;
+        if (part.part != "triangles" && part.part != "vertices") sum += part.bytes;
+    return sum;
 }
 
 std::optional<double> player::box_inflation() const {
@@ -129,21 +129,21 @@ std::optional<double> player::box_inflation() const {
     return sum / static_cast<double>(models);
 }
 
-elapsed detect_in(player& who) {
-    return elapsed_in([&] { who.detect(); });
+elapsed detect_in(player& p) {
+    return elapsed_in([&] { p.detect(); });
 }
 
-void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each, std::size_t most,
+void play(scene_play& scene, player& p, const std::function<void(const played_frame&)>& each, std::size_t most,
           const detecting& detect) {
     for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
-        phases took{elapsed_in([&] { who.update(); }), elapsed_in([&] { who.search(); }), {}};
-        // What a search sorts, as groups of columns, is told where all others sort.
-        const double share = who.share_of_update();
+        phases took{elapsed_in([&] { p.update(); }), elapsed_in([&] { p.search(); }), {}};
+        // Sorting within a search, as of column groups, counts as update, as it does for other strategies.
+        const double share = p.share_of_update();
         const elapsed sorted{share * took.search.wall_ms, share * took.search.cpu_ms};
         took.update += sorted;
         took.search += {-sorted.wall_ms, -sorted.cpu_ms};
-        took.detect = detect(who);
-        const played_frame played{frame, took, who.sorted_pairs(), who.sorted_contacts()};
+        took.detect = detect(p);
+        const played_frame played{frame, took, p.sorted_pairs(), p.sorted_contacts()};
         each(played);
         scene.tell(played.pairs, played.contacts);
     }

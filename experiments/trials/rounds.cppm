@@ -1,62 +1,61 @@
-/// Who plays when, for how long, and when to give up on one.
+/// The order of interleaved rounds, their time limits, and rules for early stopping.
 export module aabblab.trials:rounds;
 
 import aabb.std;
 
 export namespace aabblab {
 
-/// Who plays at a place of a round, so that it matters to nobody alone after whom one plays: each begins a round, and
-/// in as many rounds as there are players, if these are even, follows each other one once; else about so (Williams,
-/// "Experimental designs balanced for the estimation of residual effects of treatments", 1949).
-[[nodiscard]] constexpr std::size_t in_turn(std::size_t place, std::size_t round, std::size_t players) noexcept {
+/// The candidate at a place of a round. Carry-over effects are balanced: over n rounds of n candidates each candidate
+/// begins one round and, for even n, follows every other candidate once, for odd n about once (Williams, "Experimental
+/// designs balanced for the estimation of residual effects of treatments", 1949).
+[[nodiscard]] constexpr std::size_t in_turn(std::size_t place, std::size_t round, std::size_t candidates) noexcept {
     // 0, 1, -1, 2, -2 and so on.
-    const std::size_t apart = place % 2 == 1 ? (place + 1) / 2 : players - place / 2;
-    return (round + apart) % players;
+    const std::size_t offset = place % 2 == 1 ? (place + 1) / 2 : candidates - place / 2;
+    return (round + offset) % candidates;
 }
 
-/// Runs each candidate once, in turn.
+/// Runs each candidate once, in the order of this round.
 template <class Candidate, class Run>
 void run_round(std::vector<Candidate>& candidates, std::size_t round, Run run) {
     for (std::size_t place = 0; place < candidates.size(); ++place)
         run(candidates[in_turn(place, round, candidates.size())]);
 }
 
-/// Which rounds are run, by their numbers.
 struct round_limits {
     std::size_t end;
     std::size_t begin = 0;
-    std::size_t fewest = 0;  ///< rounds before this one are run however little time is left
-    /// Seconds; where it is given, no round begins for which there is no more time than the one before took.
+    std::size_t fewest = 0;  ///< rounds before this one run regardless of the time
+    /// The remaining seconds; if given, a round begins only if they exceed the time of the previous round.
     std::function<double()> left = nullptr;
-    double expected = 0;  ///< seconds that the first takes
+    double expected = 0;  ///< seconds of the first round, estimated
 };
 
-/// Runs candidates in turn, round after round, as long as there are any.
+/// Runs candidates in interleaved rounds, until the limits are reached or no candidate remains.
 /// @param run takes a candidate and the number of the round
-/// @param after follows a round, with its number; it may remove candidates, which the next round does without
+/// @param after is called after each round, with its number; it may remove candidates
 /// @returns the first round that was not run
 template <class Candidate, class Run, class After>
 std::size_t run_rounds(std::vector<Candidate>& candidates, const round_limits& limits, Run run, After after) {
-    double last = limits.expected;
+    double previous = limits.expected;
     std::size_t round = limits.begin;
     for (; round < limits.end && !candidates.empty(); ++round) {
-        const double left = limits.left ? limits.left() : std::numeric_limits<double>::infinity();
-        if (round >= limits.fewest && left <= last) break;
-        run_round(candidates, round, [&](Candidate& one) { run(one, round); });
-        if (limits.left) last = left - limits.left();
+        const double remaining = limits.left ? limits.left() : std::numeric_limits<double>::infinity();
+        if (round >= limits.fewest && remaining <= previous) break;
+        run_round(candidates, round, [&](Candidate& candidate) { run(candidate, round); });
+        if (limits.left) previous = remaining - limits.left();
         after(round);
     }
     return round;
 }
 
-/// Who takes so many times as long as another is hopeless: who is disturbed takes a few times as long, never so many.
+/// A candidate that takes this many times as long as another is hopeless: disturbances alone never cost that much.
 inline constexpr double hopeless_ratio = 20;
 
-/// When to give up on a candidate, by what another takes for the same.
+/// Early stopping: limits the time of a candidate relative to that of another.
 struct stopping_rule {
     double ratio = hopeless_ratio;
     double grace = 0;  ///< seconds that are too short to matter; added to each limit
-    /// No candidate gets more, so that a few do not take all time, unless it stays within `margin` times the other.
+    /// An upper limit, so that a few candidates do not use up the time; `margin` times the other is always allowed.
     double share = std::numeric_limits<double>::infinity();
     double margin = 1;
 
@@ -66,8 +65,8 @@ struct stopping_rule {
     }
 };
 
-/// When to end. What is to take S seconds ends within 2 S, or 2 seconds after the scene is read where that is later:
-/// half of it is for playing, the rest for comparing with the exact pairs. A twentieth is kept for ending and telling.
+/// The time limits of a command. A budget of S seconds ends within 2 S, or 2 seconds after the scene is read if that is
+/// later: one half is for runs, the other for the ground truth. A twentieth is reserved for finishing and reporting.
 class time_limits {
 public:
     /// @param seconds at most 1,000,000
@@ -76,7 +75,7 @@ public:
         : seconds_(seconds), elapsed_(std::move(elapsed)) {}
 
     void scene_is_read() { reading_ = elapsed_(); }
-    /// Seconds that are left, none where it is not above 0.
+    /// The remaining seconds; not positive once the time is over.
     [[nodiscard]] double to_play() const { return std::max(usable * seconds_, reading_ + usable) - elapsed_(); }
     [[nodiscard]] double to_end() const { return std::max(2 * usable * seconds_, reading_ + 2 * usable) - elapsed_(); }
 
@@ -94,16 +93,16 @@ private:
     double reading_ = 0;
 };
 
-/// Of the times of two in the same rounds, one's over the other's.
+/// Ratios of the times of two candidates within the same rounds.
 struct paired_ratio {
     double median = 1;
     double least = 1;
     double greatest = 1;
 
-    /// Whether the rounds leave it open which of the two is faster by more than 3 %. One round leaves all open.
+    /// Whether the rounds do not show that one is faster by more than 3 %. A single round never shows it.
     [[nodiscard]] bool may_be_same() const { return least == greatest || (least < 1.03 && greatest > 1 / 1.03); }
 };
-/// @param ms one or more, by round, as are those of the other
+/// @param ms one or more times, by round, as is `of_other`
 [[nodiscard]] paired_ratio paired_ratio_of(std::span<const double> ms, std::span<const double> of_other);
 
 }  // namespace aabblab

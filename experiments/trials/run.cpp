@@ -10,13 +10,13 @@ namespace aabblab {
 
 namespace {
 
-/// A contender with the row that all its repeats have in common.
+/// A candidate with the row that all its repeats share.
 struct timed_contender {
-    const contender* who;
+    const contender* candidate;
     row result;
 };
 
-/// With what the experiment records.
+/// Reduces a validated row to the metrics that the experiment records.
 row row_of(const experiment& e, const validated_row& v) {
     row r = v;
     r.experiment = e.name;
@@ -29,21 +29,20 @@ row row_of(const experiment& e, const validated_row& v) {
     return r;
 }
 
-/// The repeats of one process.
+/// The share of the repeats that one process runs.
 round_limits repeats_of(const experiment& e, std::size_t process) {
     const std::size_t repeats = e.records(metric_group::time) ? e.repeats : 1;
     return {.end = repeats * (process + 1) / e.processes, .begin = repeats * process / e.processes};
 }
 
-/// The rows of a scene that there are.
 std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
-    std::vector<row> found;
+    std::vector<row> rows_of_scene;
     for (const row& r : rows)
-        if (r.scene == scene) found.push_back(r);
-    return found;
+        if (r.scene == scene) rows_of_scene.push_back(r);
+    return rows_of_scene;
 }
 
-/// Who is not repeated, of the rows of a scene: those who took too long in the first repeat of the share.
+/// The candidates that early stopping does not repeat, since they took too long in the first repeat of the share.
 std::set<contender_name> given_up(const experiment& e, const round_limits& share, std::span<const row> rows) {
     std::set<contender_name> names;
     if (!e.patience) return names;
@@ -57,7 +56,7 @@ std::set<contender_name> given_up(const experiment& e, const round_limits& share
     return names;
 }
 
-/// Ratios are formed within a repeat, so one that was interrupted is played again, whole. It can only be the last.
+/// Drops an interrupted repeat, which can only be the last, so that it runs again: ratios are formed within a repeat.
 void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const round_limits& share,
                              std::size_t contenders, results_folder& results) {
     if (results.rows().empty()) return;
@@ -71,32 +70,34 @@ void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, con
 
 std::vector<contender> unfinished(const experiment& e, std::span<const contender> contenders, const round_limits& share,
                                   std::span<const row> rows) {
-    const std::set<contender_name> out = given_up(e, share, rows);
-    std::vector<contender> left;
-    for (const contender& who : contenders) {
-        if (out.contains(who.name)) continue;
-        const auto finished = std::ranges::count_if(
-            rows, [&](const row& r) { return r.name == who.name && r.repeat >= share.begin && r.repeat < share.end; });
-        if (static_cast<std::size_t>(finished) < share.end - share.begin) left.push_back(who);
+    const std::set<contender_name> stopped = given_up(e, share, rows);
+    std::vector<contender> remaining;
+    for (const contender& candidate : contenders) {
+        if (stopped.contains(candidate.name)) continue;
+        const auto finished = std::ranges::count_if(rows, [&](const row& r) {
+            return r.name == candidate.name && r.repeat >= share.begin && r.repeat < share.end;
+        });
+        if (static_cast<std::size_t>(finished) < share.end - share.begin) remaining.push_back(candidate);
     }
-    return left;
+    return remaining;
 }
 
-/// Whether what is timed may find other contacts than what was validated: validated, a scene that reacts is told the
-/// exact ones; timed, it is moved by what an inexact contender finds.
-bool goes_its_own_way(const scene_choice& scene, const contender& who) {
-    return !(who.exact && who.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
+/// Whether a timed run may legitimately find other contacts than the validated one: during validation a reactive scene
+/// follows the ground truth; during a timed run it follows the results of an inexact candidate.
+bool may_diverge(const scene_choice& scene, const contender& candidate) {
+    return !(candidate.exact && candidate.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
 }
 
-/// Times one repeat. The answer is compared again: what is timed is compiled apart from what counted its work.
-/// @returns what is wrong; empty when nothing is
+/// Times one repeat. The digest is compared again, since code without counters is a separate template instantiation.
+/// @returns a description of what is wrong; empty if the results agree
 std::string time_into(const scene_choice& scene, const asking& how, timed_contender& timed) {
     row& r = timed.result;
-    const observation times = observe(scene, *timed.who, {.asked = how});
-    const bool told = timed.who->told != nullptr;
-    const auto take = [told](double wall, double cpu, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
+    const observation times = observe(scene, *timed.candidate, {.asked = how});
+    const bool is_external = timed.candidate->told != nullptr;
+    const auto take = [is_external](double wall, double cpu, std::optional<double>& wall_ms,
+                                    std::optional<double>& cpu_ms) {
         wall_ms = wall;
-        if (!told) cpu_ms = cpu;
+        if (!is_external) cpu_ms = cpu;
     };
     take(times.build.wall_ms, times.build.cpu_ms, r.build_ms, r.build_cpu_ms);
     take(times.first.wall_ms(), times.first.cpu_ms(), r.first_ms, r.first_cpu_ms);
@@ -104,58 +105,57 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_conten
     take(times.rest.search.wall_ms, times.rest.search.cpu_ms, r.search_ms, r.search_cpu_ms);
     take(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
-    if (wrong.empty() && times.digest != r.digest && !goes_its_own_way(scene, *timed.who))
+    if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.candidate))
         wrong = "timed, its digest is " + times.digest + ", validated it was " + r.digest;
     if (wrong.empty()) return {};
     return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + wrong;
 }
 
-/// Who is ready to be timed, and what is wrong with the others.
+/// The candidates that are ready to be timed, and the failures of the others.
 struct admission {
     std::vector<timed_contender> timed;
     std::vector<std::string> failures;
 };
 
-/// Plays the scene beside the exact answer.
 admission validated(const experiment& e, const scene_choice& scene, std::span<const contender> contenders,
                     results_folder& results) {
-    admission all;
-    const scene_validation found = validate_scene(scene, contenders);
-    results.set_digest(scene, found.digest);
+    admission admitted;
+    const scene_validation validation = validate_scene(scene, contenders);
+    results.set_digest(scene, validation.digest);
     std::vector<contender_name> names;
     std::vector<difference> differences;
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        const validated_row& v = found.contenders[i];
+        const validated_row& v = validation.contenders[i];
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())
-            all.timed.push_back({&contenders[i], row_of(e, v)});
+            admitted.timed.push_back({&contenders[i], row_of(e, v)});
         else
-            all.failures.push_back(v.failure);
+            admitted.failures.push_back(v.failure);
     }
     if (e.records(metric_group::error)) results.set_differences(scene, names, differences);
-    return all;
+    return admitted;
 }
 
-/// Those whom the first process validated, with what it found.
+/// Reuses the validation of the first process.
 admission known(std::span<const contender> contenders, std::span<const row> rows) {
-    admission all;
-    for (const contender& who : contenders) {
-        const auto before = std::ranges::find(rows, who.name, &row::name);
-        if (before != rows.end()) all.timed.push_back({&who, *before});
+    admission admitted;
+    for (const contender& candidate : contenders) {
+        const auto before = std::ranges::find(rows, candidate.name, &row::name);
+        if (before != rows.end()) admitted.timed.push_back({&candidate, *before});
     }
-    return all;
+    return admitted;
 }
 
-/// Contenders in the order in which they are played: all but the first, to which others are held, shuffled in each
-/// scene, the same each time. Who is played after its like, named beside it in a config, finds code at hand, and few
-/// repeats are too few for everyone to be played after everyone.
+/// Shuffles all candidates but the baseline, reproducibly for each scene. In the order of the config, a candidate often
+/// follows a similar one, whose code is still cached, and a few repeats are too few for every candidate to follow every
+/// other one.
 std::vector<contender> shuffled(std::span<const contender> contenders, const scene_choice& scene) {
-    std::vector<contender> all(contenders.begin(), contenders.end());
+    std::vector<contender> order(contenders.begin(), contenders.end());
     const std::string text = scene.kind + parameters_text(scene);
     std::seed_seq seed(text.begin(), text.end());
-    if (!all.empty()) std::ranges::shuffle(std::span(all).subspan(1), std::mt19937_64(seed));
-    return all;
+    if (!order.empty()) std::ranges::shuffle(std::span(order).subspan(1), std::mt19937_64(seed));
+    return order;
 }
 
 }  // namespace
@@ -170,13 +170,13 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     const round_limits share = repeats_of(e, process);
     drop_interrupted_repeat(e, scene, share, contenders.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
-    const std::vector<contender> left = unfinished(e, shuffled(contenders, scene), share, rows);
-    if (left.empty()) return {};
-    auto [timed, failures] = process == 0 ? validated(e, scene, left, results) : known(left, rows);
+    const std::vector<contender> remaining = unfinished(e, shuffled(contenders, scene), share, rows);
+    if (remaining.empty()) return {};
+    auto [timed, failures] = process == 0 ? validated(e, scene, remaining, results) : known(remaining, rows);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
     const std::size_t in_round = timed.size();
     std::size_t done = 0;
-    std::set<contender_name> out;  // who is not repeated
+    std::set<contender_name> stopped;  // not repeated any more
     const auto play = [&](timed_contender& turn, std::size_t repeat) {
         shown.at(done++);
         turn.result.repeat = repeat;
@@ -186,19 +186,19 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
         try {
             if (e.records(metric_group::time)) failure = time_into(scene, e.how, turn);
         } catch (const engine_timeout& error) {
-            // What it did before stays.
+            // The rows of earlier repeats are kept.
             failures.emplace_back(error.what());
-            out.insert(turn.result.name);
+            stopped.insert(turn.result.name);
             return;
         }
         if (failure.empty()) return results.add(turn.result);
-        out.insert(turn.result.name);
+        stopped.insert(turn.result.name);
         failures.push_back(failure);
         results.drop(scene, turn.result.name);
     };
     const auto give_up = [&](std::size_t repeat) {
-        out.merge(given_up(e, share, rows_of(scene, results.rows())));
-        std::erase_if(timed, [&](const timed_contender& t) { return out.contains(t.result.name); });
+        stopped.merge(given_up(e, share, rows_of(scene, results.rows())));
+        std::erase_if(timed, [&](const timed_contender& t) { return stopped.contains(t.result.name); });
         done = (repeat + 1 - share.begin) * in_round;
     };
     run_rounds(timed, share, play, give_up);

@@ -18,22 +18,22 @@ namespace {
 
 using clock = std::chrono::steady_clock;
 
-/// With which the copy of this process ends.
+/// Exit statuses of the child process.
 enum : int { is_done = 0, has_failed = 1, is_refused = 2, has_no_memory = 3 };
-/// Stands before the sentence of a refusal.
+/// Precedes the message of an input_error.
 constexpr char refusal_mark = 0;
 
 void write_all(int to, std::string_view text) {
     while (!text.empty()) {
         const ssize_t n = write(to, text.data(), text.size());
         if (n < 0 && errno == EINTR) continue;
-        // Nobody reads any more.
+        // The parent does not read any more.
         if (n <= 0) _exit(has_failed);
         text.remove_prefix(static_cast<std::size_t>(n));
     }
 }
 
-/// Of all processes this one is killed first where memory runs out; whoever started it goes on.
+/// Makes the kernel kill this process before its parent if memory runs out.
 void offer_to_be_killed() {
     const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
     if (file < 0) return;
@@ -55,15 +55,15 @@ void offer_to_be_killed() {
     } catch (const std::length_error&) {
         status = has_no_memory;
     } catch (...) {  // NOLINT(bugprone-empty-catch)
-        // It is told by the status.
+        // The exit status reports it.
     }
     _exit(status);
 }
 
-/// For `poll`: at least one, since less than that may be left.
+/// For `poll`: at least 1, since less than a millisecond may remain, which 0 would turn into a busy loop.
 int milliseconds_until(clock::time_point end) {
-    const double left = std::chrono::duration<double, std::milli>(end - clock::now()).count();
-    return static_cast<int>(std::clamp(std::ceil(left), 1.0, double{std::numeric_limits<int>::max()}));
+    const double remaining = std::chrono::duration<double, std::milli>(end - clock::now()).count();
+    return static_cast<int>(std::clamp(std::ceil(remaining), 1.0, double{std::numeric_limits<int>::max()}));
 }
 
 /// Reads until the other end closes.
@@ -71,8 +71,8 @@ int milliseconds_until(clock::time_point end) {
 bool read_until(int from, clock::time_point end, std::string& text) {
     std::array<char, 4096> part{};
     while (clock::now() < end) {
-        pollfd one{from, POLLIN, 0};
-        const int ready = poll(&one, 1, milliseconds_until(end));
+        pollfd pipe_end{from, POLLIN, 0};
+        const int ready = poll(&pipe_end, 1, milliseconds_until(end));
         if (ready < 0 && errno != EINTR) return false;
         if (ready <= 0) continue;
         const ssize_t n = read(from, part.data(), part.size());
@@ -93,12 +93,12 @@ ending ending_of(int status) {
     }
 }
 
-// What is told of a play: a line after each frame, with what it took up to there, then one of its bytes and of what its
-// stages left out, without reasons. The first letter says which.
+// The protocol between child and parent: a line after each frame with the times so far, then a last line with the bytes
+// and the omissions of the stages, without reasons. The first letter is the type of the line.
 constexpr char frame_line = 'f';
 constexpr char last_line = 'l';
 
-/// @param seconds since the play began
+/// @param seconds since the run began
 std::string line_of(const observation& seen, double seconds) {
     std::ostringstream text;
     text.precision(17);
@@ -109,15 +109,15 @@ std::string line_of(const observation& seen, double seconds) {
     return text.str();
 }
 
-/// A last line that was cut off is none.
+/// Parses the output of the child; an incomplete last line is ignored.
 attempt attempt_from(const work_apart& played) {
-    attempt one{.end = played.end, .seen = {}, .reason = played.reason, .seconds = played.seconds};
-    observation& seen = one.seen;
+    attempt result{.end = played.end, .seen = {}, .reason = played.reason, .seconds = played.seconds};
+    observation& seen = result.seen;
     std::istringstream lines(played.told.substr(0, played.told.rfind('\n') + 1));
     for (std::string line; std::getline(lines, line);) {
         std::istringstream text(line.substr(1));
         if (line[0] == frame_line) {
-            text >> one.seconds_of_frames >> seen.build.wall_ms >> seen.frames >> seen.digest;
+            text >> result.seconds_of_frames >> seen.build.wall_ms >> seen.frames >> seen.digest;
             for (phases* const took : {&seen.first, &seen.rest})
                 text >> took->update.wall_ms >> took->search.wall_ms >> took->detect.wall_ms;
             seen.digests.push_back(seen.digest);
@@ -126,17 +126,17 @@ attempt attempt_from(const work_apart& played) {
             for (int what = 0; text >> what;) seen.left_out.push_back({static_cast<aabb::absence>(what)});
         }
     }
-    return one;
+    return result;
 }
 
-void tell_play(scene_play& scene, const contender& who, std::size_t frames, const telling& tell) {
+void tell_play(scene_play& scene, const contender& candidate, std::size_t frames, const telling& tell) {
     const auto begin = std::chrono::steady_clock::now();
     const auto each = [&](const observation& so_far) {
         tell(line_of(so_far, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     };
-    const observation seen = observe(scene, who, {.frames = frames, .each = each});
+    const observation seen = observe(scene, candidate, {.frames = frames, .each = each});
     std::string last = fmt::format("{} {}", last_line, seen.bytes);
-    for (const aabb::omission& one : seen.left_out) last += fmt::format(" {}", static_cast<int>(one.what));
+    for (const aabb::omission& absent : seen.left_out) last += fmt::format(" {}", static_cast<int>(absent.what));
     tell(last + "\n");
 }
 
@@ -149,12 +149,12 @@ work_apart done_apart(const std::function<void(const telling&)>& work, double se
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return result;
     const auto begin = clock::now();
-    // More would not fit the clock.
+    // A longer limit would overflow the clock.
     const auto end =
         begin + std::chrono::duration_cast<clock::duration>(std::chrono::duration<double>(std::min(seconds, 1e7)));
     const pid_t child = fork();
     if (child == 0) {
-        // It does not outlive this process, however that ends.
+        // The child must not outlive its parent, even if that is killed.
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         close(ends[0]);
         tell_all(ends[1], work);
@@ -179,28 +179,29 @@ work_apart staged_scene::apart(const std::function<void(scene_play&, const telli
     return done_apart(
         [&](const telling& tell) {
             if (scene_.meshes()) return work(scene_, tell);
-            // Of a file that is open in this process too, copies of it would read on where the last one stopped.
+            // Children share the offset of an open file: each would read on where the previous one stopped.
             scene_play own(choice_);
             work(own, tell);
         },
         seconds);
 }
 
-attempt staged_scene::play(const contender& who, std::size_t frames, double seconds, double left) {
-    attempt one = attempt_from(apart(
-        [&](scene_play& scene, const telling& tell) { tell_play(scene, who, frames, tell); }, std::min(seconds, left)));
-    one.is_out_of_time = one.end == ending::stopped && left <= seconds;
-    return one;
+attempt staged_scene::play(const contender& candidate, std::size_t frames, double seconds, double left) {
+    attempt result =
+        attempt_from(apart([&](scene_play& scene, const telling& tell) { tell_play(scene, candidate, frames, tell); },
+                           std::min(seconds, left)));
+    result.is_out_of_time = result.end == ending::stopped && left <= seconds;
+    return result;
 }
 
-std::string text_of(const attempt& one) {
-    const std::string where = one.seen.frames > 0 ? fmt::format(", in frame {}", one.seen.frames) : "";
-    const std::string after = fmt::format("after {:.2g} s{}", one.seconds, where);
-    switch (one.end) {
+std::string text_of(const attempt& run) {
+    const std::string where = run.seen.frames > 0 ? fmt::format(", in frame {}", run.seen.frames) : "";
+    const std::string after = fmt::format("after {:.2g} s{}", run.seconds, where);
+    switch (run.end) {
         case ending::done: return "played to its end";
-        case ending::stopped: return one.seconds > 0 ? "stopped " + after : "not played: no time was left";
+        case ending::stopped: return run.seconds > 0 ? "stopped " + after : "not played: no time was left";
         case ending::out_of_memory: return "out of memory " + after;
-        case ending::refused: return "refused " + after + ": " + one.reason;
+        case ending::refused: return "refused " + after + ": " + run.reason;
         case ending::failed: break;
     }
     return "failed " + after;

@@ -1,5 +1,5 @@
-/// Everything that is tried: who plays which scene, what is asked and what is seen of that; exact or not, in turn, in a
-/// copy of this process where it may take too long, and into a folder that can be resumed.
+/// Runs of candidates on scenes: queries and observations, validation against the ground truth, interleaved rounds,
+/// isolated child processes for runs that may exceed their time or memory, and result folders that can be resumed.
 export module aabblab.trials;
 
 import aabb.digest;
@@ -16,51 +16,51 @@ export import :rounds;
 
 export namespace aabblab {
 
-// Scenes and those who play them.
+// Scenes and candidates.
 
-/// What an external engine says that it took for a frame.
+/// The times that an external engine reports for one frame.
 struct told_times {
     double update_ms = 0;
     double search_ms = 0;
 };
 
-/// An external engine that took longer than it may, and was killed: nobody else is to suffer for that.
+/// An external engine exceeded its timeout and was killed; a type of its own, so that the other candidates still run.
 class engine_timeout : public aabb::input_error {
 public:
     using input_error::input_error;
 };
 
-/// A composition of ours or a reference system, ready to be made anew for each time it plays.
+/// A composition or a reference engine, with factories that create fresh stages for every run.
 struct contender {
     contender_name name;
     std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
     std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
-    /// The times of an external engine, by frame, once `make_global` has run it; null for all others, which are timed.
+    /// The times that an external engine reports, by frame, once `make_global` has run it; null if it is timed here.
     std::shared_ptr<const std::vector<told_times>> told;
-    bool whole_boxes =
-        true;  ///< false where global search sees parts of objects: its pairs are not held against theirs
-    bool exact_boxes = true;  ///< a difference from the exact pairs of boxes is a failure, not a measurement
-    bool exact = true;        ///< the same of contacts
+    /// False where the broad phase sees parts of objects, whose pairs cannot be compared with pairs of whole objects.
+    bool whole_boxes = true;
+    bool exact_boxes = true;  ///< any false negative or positive among box pairs is a failure, not a measurement
+    bool exact = true;        ///< the same for contacts
 };
 
-/// A scene from its first frame to its last, of boxes or of meshes.
+/// Iterates over the frames of a scene of boxes or of meshes.
 class scene_play {
 public:
-    /// @throws aabb::input_error where the scene cannot be made.
+    /// @throws aabb::input_error if the scene cannot be created.
     explicit scene_play(const scene_choice& choice);
     explicit scene_play(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
-    /// @param file that its poses stand in, for messages; empty where they do not
+    /// @param file the source of its poses, for messages; empty if they are generated
     explicit scene_play(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {})
         : meshes_(std::move(scene)), file_(std::move(file)) {}
 
     [[nodiscard]] std::size_t objects() const { return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects(); }
     [[nodiscard]] std::size_t frames() const { return meshes_ ? meshes_->frames() : box_scene_->frames(); }
-    /// Goes to the next frame; false after the last.
+    /// Advances to the next frame; false after the last.
     bool next();
-    /// Tells the scene what was found in this frame, both sorted, before it goes to the next; contacts are of meshes.
+    /// Passes the sorted results of this frame to the scene, which may react to them; contacts exist only for meshes.
     void tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
-    /// Does something with this frame. What is wrong with poses is found by whoever takes them: where they stand in a
-    /// file, the sentence begins with file and frame.
+    /// Runs work on this frame. Invalid poses are detected only when they are used: if they come from a file, the
+    /// message is prefixed with file and frame.
     template <class Work>
     void in_frame(Work work) const {
         try {
@@ -70,11 +70,11 @@ public:
             throw aabb::input_error(file_ + ": frame " + std::to_string(played_ - 1) + ": " + error.what());
         }
     }
-    /// Null in a scene of boxes.
+    /// Null for a scene of boxes.
     [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
     [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }
     [[nodiscard]] std::span<const aabb::pose> poses() const { return poses_; }
-    /// Objects of a scene of boxes that are in this frame and were not in the one before, and the other way round.
+    /// Objects of a scene of boxes that appear in this frame, and objects that disappear in it.
     [[nodiscard]] std::span<const std::uint32_t> arrivals() const { return arrivals_; }
     [[nodiscard]] std::span<const std::uint32_t> departures() const { return departures_; }
 
@@ -83,8 +83,8 @@ private:
 
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
-    std::string file_;        // of poses
-    std::size_t played_ = 0;  // frames
+    std::string file_;        // the source of the poses
+    std::size_t played_ = 0;  // frames so far
     std::vector<aabb::box> boxes_;
     std::vector<aabb::pose> poses_;
     std::vector<std::uint8_t> present_;  // by object
@@ -92,57 +92,56 @@ private:
     std::vector<std::uint32_t> departures_;
 };
 
-/// What plays a scene, once.
+/// The stages of one run.
 struct stages {
-    std::unique_ptr<aabb::global_stage> global;  ///< null in a scene of meshes: every two objects are candidates
+    std::unique_ptr<aabb::global_stage> global;  ///< null for meshes if every two objects are candidates
     std::unique_ptr<aabb::local_stage> local;    ///< null in a scene of boxes
 };
 
-/// A contender in a scene: its stages, with the trees built. The scene must outlive it.
+/// A candidate on a scene: its stages, with their trees built. The scene must outlive it.
 class player {
 public:
-    player(const contender& who, const scene_play& scene, aabb::instrumentation counted);
-    player(stages made, const scene_play& scene);
+    player(const contender& candidate, const scene_play& scene, aabb::instrumentation counted);
+    player(stages run_stages, const scene_play& scene);
 
-    /// One frame, in steps that can be timed apart.
-    /// @throws aabb::input_error with file and frame where poses that stand in a file are refused.
+    /// The phases of a frame, which are timed separately.
+    /// @throws aabb::input_error with file and frame if poses from a file are rejected.
     void update();
     void search();
     void detect();
 
-    /// Of the time of the last search, what went into work of an update (`aabb::global_stage`).
+    /// The share of the last search that belongs to the update (`aabb::global_stage`).
     [[nodiscard]] double share_of_update() const { return made_.global ? made_.global->share_of_update() : 0; }
 
-    /// In place of `detect`, in scenes of meshes: any one contact of the frame, how many there are.
+    /// Replace `detect` for meshes: any one contact of the frame, and the number of contacts.
     [[nodiscard]] std::optional<aabb::contact> first_contact() { return pipeline_->first_contact(); }
     [[nodiscard]] std::uint64_t count_contacts() { return pipeline_->count_contacts(); }
-    /// Hands over the pairs of intersecting triangles a < b of one mesh of the scene, which is not divided, with
-    /// itself, in no particular order.
+    /// Reports the pairs a < b of intersecting triangles of one undivided mesh with itself, in no particular order.
     void each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take) {
         made_.local->each_self_pair(mesh, take);
     }
 
-    /// Of the frame, by object; by piece where meshes are divided; empty without global search.
+    /// The boxes of the frame, by object, or by piece if meshes are divided; empty without a broad phase.
     [[nodiscard]] std::span<const aabb::box> boxes() const { return pipeline_ ? pipeline_->boxes() : scene_.boxes(); }
-    /// Of the frame, sorted; duplicates stay.
+    /// The sorted results of the frame; duplicates are kept.
     [[nodiscard]] const std::vector<aabb::index_pair>& sorted_pairs();
     [[nodiscard]] const std::vector<aabb::contact>& sorted_contacts();
 
-    /// Over all frames so far.
+    /// Summed over all frames so far.
     [[nodiscard]] aabb::work_counters counters() const;
     [[nodiscard]] std::vector<aabb::part_bytes> global_bytes() const;
     [[nodiscard]] std::vector<aabb::part_bytes> local_bytes() const;
     [[nodiscard]] std::size_t buffer_bytes() const { return pipeline_ ? pipeline_->bytes() : aabb::bytes_of(pairs_); }
-    /// Of all parts but the meshes, which every composition reads.
+    /// The bytes of all parts except the meshes, which every composition reads.
     [[nodiscard]] std::size_t held_bytes() const;
-    /// What the global search planned from what it saw.
+    /// The plans that the broad phase derived from earlier frames.
     [[nodiscard]] std::vector<aabb::stage_plan> plans() const {
         return made_.global ? made_.global->plans() : std::vector<aabb::stage_plan>{};
     }
     [[nodiscard]] std::vector<aabb::omission> left_out() const {
         return left_out_by(made_.global.get(), made_.local.get());
     }
-    /// The mean over the models of the tree's; empty where there is no tree to be seen.
+    /// The mean over the models of the inflation of their trees; empty for stages without trees.
     [[nodiscard]] std::optional<double> box_inflation() const;
 
 private:
@@ -153,11 +152,11 @@ private:
     std::vector<aabb::contact> contacts_;
 };
 
-/// What the phases of a frame took, or of several.
+/// Times of the phases of one frame, or their sums over several frames.
 struct phases {
     elapsed update;
     elapsed search;
-    elapsed detect;  ///< the query that is asked
+    elapsed detect;  ///< the query that the experiment asks
 
     phases& operator+=(const phases& other) {
         update += other.update;
@@ -169,32 +168,32 @@ struct phases {
     [[nodiscard]] double cpu_ms() const { return update.cpu_ms + search.cpu_ms + detect.cpu_ms; }
 };
 
-/// A frame that was played.
+/// The times and results of one frame.
 struct played_frame {
     std::uint32_t number;
     phases took;
-    std::span<const aabb::index_pair> pairs;  ///< of boxes, sorted; duplicates stay
-    std::span<const aabb::contact> contacts;  ///< the same; empty in a scene of boxes
+    std::span<const aabb::index_pair> pairs;  ///< sorted pairs of boxes; duplicates are kept
+    std::span<const aabb::contact> contacts;  ///< likewise; empty for a scene of boxes
 
     [[nodiscard]] double ms() const { return took.wall_ms(); }
 };
 
-/// Detects the contacts of a frame, and says how long the query took that is asked: the detection itself, or another.
+/// Detects the contacts of a frame and returns the time of the query that the experiment asks, which may be another.
 using detecting = std::function<elapsed(player&)>;
-[[nodiscard]] elapsed detect_in(player& who);
+[[nodiscard]] elapsed detect_in(player& p);
 
-/// Plays what is left of a scene, or so many frames of it. Each frame is handed over, then the scene is told what was
-/// found in it.
-void play(scene_play& scene, player& who, const std::function<void(const played_frame&)>& each,
+/// Runs the remaining frames of a scene, at most `most` of them. `each` receives every frame before the scene reacts to
+/// the results.
+void play(scene_play& scene, player& p, const std::function<void(const played_frame&)>& each,
           std::size_t most = std::numeric_limits<std::size_t>::max(), const detecting& detect = detect_in);
 
-/// Number and digest of what is found, frame by frame.
+/// Accumulates the number and the digest of results, frame by frame.
 class tally {
 public:
-    /// @param meshes the digest is of contacts, not of pairs of boxes
+    /// @param meshes whether the digest covers contacts instead of pairs of boxes
     explicit tally(bool meshes) : meshes_(meshes) {}
 
-    /// A frame: both sorted; contacts are empty in a scene of boxes.
+    /// Adds the sorted results of a frame; contacts are empty for a scene of boxes.
     void add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
 
     [[nodiscard]] std::uint64_t candidates() const { return candidates_; }
@@ -211,105 +210,104 @@ private:
     aabb::digest digest_;
 };
 
-// One trial: who plays a scene, how it is asked, and what is seen of that.
+// A single run of a candidate.
 
-/// A scene played once from a fresh start, or its first frames.
+/// One run of a scene, or of its first frames, with fresh stages.
 struct observation {
-    elapsed build;  ///< making the stages, taking the objects, building the trees
+    elapsed build;  ///< creating the stages, inserting the objects, building the trees
     phases first;   ///< frame 0
-    phases rest;    ///< all frames after it
+    phases rest;    ///< all further frames
     std::size_t frames = 0;
     std::string digest;
-    std::vector<std::string> digests;      ///< up to each frame, of who played in a copy of this process
-    std::string wrong;                     ///< what is answered otherwise than by the digest; empty where all is right
-    std::uint64_t bytes = 0;               ///< held after the last of these frames
-    aabb::work_counters work;              ///< over all frames
-    std::vector<aabb::omission> left_out;  ///< by the stages, after the last of these frames
+    std::vector<std::string> digests;      ///< cumulative, by frame; only of runs in a child process
+    std::string wrong;                     ///< how the query contradicts the detected contacts; empty if it agrees
+    std::uint64_t bytes = 0;               ///< held after the last frame
+    aabb::work_counters work;              ///< summed over all frames
+    std::vector<aabb::omission> left_out;  ///< by the stages, after the last frame
 
-    /// Wall time of all frames that were played.
+    /// The wall time of the whole run.
     [[nodiscard]] double whole_ms() const { return build.wall_ms + first.wall_ms() + rest.wall_ms(); }
-    /// Of a frame after frame 0.
+    /// The mean over the frames after frame 0.
     [[nodiscard]] double steady_ms() const { return frames > 1 ? rest.wall_ms() / static_cast<double>(frames - 1) : 0; }
-    /// The same, or of frame 0 where it is alone.
+    /// Likewise, or the time of frame 0 if it is the only one.
     [[nodiscard]] double frame_ms() const { return frames > 1 ? steady_ms() : first.wall_ms(); }
-    /// Of so many frames, the further ones as fast as those that were played.
+    /// Extrapolates to `all_frames` frames at the steady rate.
     [[nodiscard]] double over(double all_frames) const {
         return build.wall_ms + first.wall_ms() + (all_frames > 1 ? (all_frames - 1) * steady_ms() : 0);
     }
 };
 
-/// What columns of these times include, for the lines below a table.
+/// Explain the columns of these times below a table.
 inline constexpr const char* build_ms_text =
     "build ms: the stages are made, with the trees of all meshes, before frame 0.";
 inline constexpr const char* ms_a_frame_text =
     "ms/frame: update, search and detection of a frame, the mean of those after frame 0; of frame 0 where it is alone.";
 
-/// How a scene is played.
 struct protocol {
     asking asked = {};
     std::size_t frames = std::numeric_limits<std::size_t>::max();  ///< at most
     aabb::instrumentation counted = aabb::instrumentation::none;
-    /// Takes what is seen so far, after each frame.
+    /// Receives the observation so far, after each frame.
     std::function<void(const observation&)> each = nullptr;
 };
 
-/// Plays a scene from its first frame on; it is told what is found. Of an external engine times are what it says of
-/// itself, of wall time alone.
-[[nodiscard]] observation observe(scene_play& scene, const contender& who, const protocol& how = {});
-[[nodiscard]] observation observe(const scene_choice& scene, const contender& who, const protocol& how = {});
+/// Runs a scene from its first frame; the scene reacts to the results. The times of an external engine are those that
+/// it reports itself, which are wall times only.
+[[nodiscard]] observation observe(scene_play& scene, const contender& candidate, const protocol& how = {});
+[[nodiscard]] observation observe(const scene_choice& scene, const contender& candidate, const protocol& how = {});
 
-// Trials in copies of this process, which may take too long or too much memory.
+// Runs in child processes, since they may exceed their time or memory.
 
-/// How work ended that was done apart.
+/// How work in a child process ended.
 enum class ending : std::uint8_t {
     done,
-    stopped,        ///< it took longer than it may
-    out_of_memory,  ///< or was killed by somebody else, as the kernel does where memory runs out
-    refused,        ///< by an aabb::input_error
+    stopped,        ///< at its time limit
+    out_of_memory,  ///< or killed from outside, as the kernel does if memory runs out
+    refused,        ///< with an aabb::input_error
     failed
 };
 
 struct work_apart {
     ending end = ending::stopped;
-    std::string told;    ///< up to that end
-    std::string reason;  ///< the sentence of a refusal
-    double seconds = 0;  ///< that it took
+    std::string told;    ///< the output up to that end
+    std::string reason;  ///< the message of the input_error
+    double seconds = 0;  ///< of wall time
 };
 
-/// Takes what the work has to tell, as it comes: that is there also where the work does not end.
+/// Sends output of the work to the parent at once, so that it survives work that does not finish.
 using telling = std::function<void(std::string_view)>;
 
-/// Does the work in a copy of this process, which is killed after so many seconds. Where memory runs out the kernel
-/// kills the copy first.
-/// @param seconds without any, nothing is begun
+/// Does the work in a forked child process, which is killed at its time limit. If memory runs out, the kernel kills the
+/// child first.
+/// @param seconds the limit; nothing is started unless it is positive
 [[nodiscard]] work_apart done_apart(const std::function<void(const telling&)>& work, double seconds);
 
-/// A play in a copy of this process.
+/// A run in a child process.
 struct attempt {
     ending end = ending::stopped;
-    observation seen;              ///< of the frames that it came to the end of
-    std::string reason;            ///< the sentence of a refusal
-    double seconds = 0;            ///< in all, with reading, and sorting what was found
-    double seconds_of_frames = 0;  ///< up to the end of the last of those frames
-    bool is_out_of_time = false;   ///< it was stopped since no more time was left, not for being slow
+    observation seen;              ///< of the frames that it finished
+    std::string reason;            ///< the message of the input_error
+    double seconds = 0;            ///< in total, including reading and sorting the results
+    double seconds_of_frames = 0;  ///< up to the end of the last finished frame
+    bool is_out_of_time = false;   ///< the overall time was over: the candidate is not necessarily slow
 };
 
 /// "stopped after 2.1 s, in frame 3", "not played: no time was left"
-[[nodiscard]] std::string text_of(const attempt& one);
+[[nodiscard]] std::string text_of(const attempt& run);
 
-/// A scene that is read once and played by many, each in a copy of this process, which is not played itself.
+/// A scene that is read once and then run in child processes, each of which starts at its first frame.
 class staged_scene {
 public:
-    /// @throws aabb::input_error where the scene cannot be made.
+    /// @throws aabb::input_error if the scene cannot be created.
     explicit staged_scene(const scene_choice& choice) : choice_(choice), scene_(choice) {}
 
     [[nodiscard]] const scene_choice& choice() const { return choice_; }
     [[nodiscard]] const scene_play& scene() const { return scene_; }
-    /// Plays the first frames, for so many seconds at most.
-    /// @param left seconds that are left for all
-    [[nodiscard]] attempt play(const contender& who, std::size_t frames, double seconds,
+    /// Runs the first frames, for at most `seconds`.
+    /// @param left seconds that remain for all runs together
+    [[nodiscard]] attempt play(const contender& candidate, std::size_t frames, double seconds,
                                double left = std::numeric_limits<double>::infinity());
-    /// Does something else with the scene from its first frame on.
+    /// Does other work on the scene, from its first frame.
     [[nodiscard]] work_apart apart(const std::function<void(scene_play&, const telling&)>& work, double seconds);
 
 private:
@@ -317,76 +315,76 @@ private:
     scene_play scene_;
 };
 
-// Playing in turn.
+// Interleaved runs.
 
-/// What came of playing in turn, by contender.
+/// The outcome of interleaved runs, indexed by candidate.
 struct turns {
-    std::size_t frames = 0;  ///< in each play: as many as there was time for
+    std::size_t frames = 0;  ///< per run; fewer than the scene has if time was short
     std::size_t rounds = 0;
-    std::vector<std::vector<observation>> times;     ///< of whole plays, by round
-    std::vector<std::optional<attempt>> broken_off;  ///< whose first play did not end
-    std::vector<bool> hopeless;                      ///< who took, or would have taken, `hopeless_ratio` times as long
+    std::vector<std::vector<observation>> times;     ///< of finished runs, by round
+    std::vector<std::optional<attempt>> broken_off;  ///< the first run, if it did not finish
+    std::vector<bool> hopeless;                      ///< slower than the first candidate by `hopeless_ratio`
 };
 
-/// Plays the first frames of the scene with all in turn, round after round, until time is over; who is hopeless beside
-/// the first plays in one round only. Without the first, whose first frame may take too long, nobody else plays.
-[[nodiscard]] turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::size_t frames,
+/// Runs all candidates on the first frames in interleaved rounds, until time is over. A candidate that is hopelessly
+/// slower than the first, the baseline, stops after one round. If the baseline finishes no frame, no other runs.
+[[nodiscard]] turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, std::size_t frames,
                                  std::size_t rounds, const time_limits& limits);
 
-/// Those of them, by place, who find other pairs than the first in as many frames.
+/// The indices of the candidates whose pairs differ from those of the first.
 [[nodiscard]] std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times);
 
-/// By round.
+/// Times per frame, by round.
 [[nodiscard]] std::vector<double> frame_ms_of(std::span<const observation> times);
 
-// Who there is, and whole scenes.
+// Candidates of an experiment, and whole scenes.
 
 /// "insertion + none + one_axis + canonical + exact", "cgal".
 [[nodiscard]] std::string text_of(const contender_name& name);
 
 [[nodiscard]] contender contender_of(const aabb::composition& c, bool meshes);
-/// What is selected for the scene beside what is named.
+/// Keeps the named strategies and selects the others for the scene.
 [[nodiscard]] contender contender_of(const aabb::named_strategies& named, const scene_play& scene);
-/// What `auto` may know of a scene that has not begun.
+/// What `auto` may know of a scene before its first frame.
 [[nodiscard]] aabb::scene_outlook outlook_of(const scene_play& scene);
-/// An engine that does one stage only gets the default composition for the other; empty for one that has no part in the
-/// scene.
+/// Combines an engine that implements one stage with the default composition of the other; empty if the engine cannot
+/// run the scene.
 [[nodiscard]] std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes);
 
-/// Who plays a scene of the experiment: its compositions, then its engines, then, where it is of boxes, its external
+/// The candidates of a scene: the compositions of the experiment, then its engines, then, for boxes, its external
 /// engines.
 [[nodiscard]] std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene);
 
-/// A contender that played a scene beside the exact answer, untimed: its row with all that a run may record of that.
+/// The untimed result of a candidate compared with the ground truth: a row with everything that a run may record.
 struct validated_row : row {
-    std::string failure;  ///< the first difference where the contender must be exact, or that it took too long
+    std::string failure;                  ///< the first difference of a candidate that must be exact, or its timeout
     std::vector<difference> differences;  ///< by class
 };
 
 struct scene_validation {
     std::uint64_t objects = 0;
     std::uint64_t frames = 0;
-    std::string exact_by;  ///< what gave the exact answer
-    std::string digest;    ///< of the exact answer
+    std::string exact_by;  ///< the source of the ground truth
+    std::string digest;    ///< of the ground truth
     std::vector<validated_row> contenders;
 };
 
-/// Plays all contenders in step with the exact answer and compares whole sets, frame by frame. Work is counted on the
-/// way. The scene is told the exact answer.
+/// Runs all candidates in lockstep with the ground truth, compares the result sets frame by frame, and counts their
+/// work. The scene reacts to the ground truth.
 [[nodiscard]] scene_validation validate_scene(const scene_choice& scene, std::span<const contender> contenders);
-/// The same of a scene that is made already, from its first frame on.
-/// @param choice what it is, for messages
+/// Validates a scene that exists already and is at its first frame.
+/// @param choice its description, for messages
 [[nodiscard]] scene_validation validate_scene(const scene_choice& choice, scene_play& scene,
                                               std::span<const contender> contenders);
 
-/// The experiment as its results keep it.
+/// The part of the experiment that is stored with its results.
 [[nodiscard]] experiment_record record_of(const experiment& e);
 
-/// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the contenders, and
-/// adds a row for each. What the folder has already is not played again; later processes take what the first one
-/// validated as known, and compare the digest of every repeat with it.
+/// Validates a scene, then times the repeats of one of the experiment's processes, interleaved over the candidates, and
+/// adds a row for each. Rows that the folder already has are not run again. Later processes reuse the validation of the
+/// first one, and compare the digest of every repeat with it.
 /// @param process from 0; each takes an equal share of the repeats, in order
-/// @returns a sentence for each contender that is wrong; it gets no row.
+/// @returns a sentence for each candidate that is wrong; it gets no row.
 [[nodiscard]] std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                                  std::span<const contender> contenders, results_folder& results,
                                                  std::size_t process = 0);

@@ -7,32 +7,32 @@ namespace aabblab {
 
 namespace {
 
-/// Of the time that is left nobody takes more, unless that is less than twice what the first takes.
+/// A run may use this share of the remaining time, or more if it stays within twice the time of the baseline.
 constexpr double greatest_share = 0.25;
-/// So long in all that it matters.
+/// A run shorter than this is never hopeless: it costs too little to matter.
 constexpr double hopeless_ms = 100;
 
-bool is_hopeless(const observation& time, const observation& first) {
-    return time.whole_ms() > hopeless_ms && time.frame_ms() > hopeless_ratio * first.frame_ms();
+bool is_hopeless(const observation& time, const observation& baseline) {
+    return time.whole_ms() > hopeless_ms && time.frame_ms() > hopeless_ratio * baseline.frame_ms();
 }
 
-/// The first of all plays as many frames as there is time for.
-attempt first_play(staged_scene& scene, const contender& who, std::size_t frames, const time_limits& limits) {
-    attempt first = scene.play(who, frames, greatest_share * limits.to_play());
+/// Runs the baseline, on fewer frames if there is no time for all of them.
+attempt first_play(staged_scene& scene, const contender& candidate, std::size_t frames, const time_limits& limits) {
+    attempt first = scene.play(candidate, frames, greatest_share * limits.to_play());
     if (first.end != ending::stopped || first.seen.frames == 0) return first;
-    // What is held and left out only a play tells that comes to its end.
-    return scene.play(who, first.seen.frames, 2 * greatest_share * limits.to_play());
+    // Bytes and omissions are reported only by a run that finishes.
+    return scene.play(candidate, first.seen.frames, 2 * greatest_share * limits.to_play());
 }
 
 }  // namespace
 
-turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::size_t frames, std::size_t rounds,
+turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, std::size_t frames, std::size_t rounds,
                    const time_limits& limits) {
-    progress shown("plays", rounds * all.size());
-    turns played{frames, 0, std::vector<std::vector<observation>>(all.size()),
-                 std::vector<std::optional<attempt>>(all.size()), std::vector<bool>(all.size())};
+    progress shown("plays", rounds * contenders.size());
+    turns played{frames, 0, std::vector<std::vector<observation>>(contenders.size()),
+                 std::vector<std::optional<attempt>>(contenders.size()), std::vector<bool>(contenders.size())};
     const double before_first = limits.to_play();
-    attempt of_first = first_play(scene, all[0], frames, limits);
+    attempt of_first = first_play(scene, contenders[0], frames, limits);
     const double first = before_first - limits.to_play();
     if (of_first.end != ending::done) {
         played.broken_off[0] = std::move(of_first);
@@ -40,39 +40,39 @@ turns play_in_turn(staged_scene& scene, std::span<const contender> all, std::siz
     }
     played.frames = of_first.seen.frames;
     played.times[0].push_back(std::move(of_first.seen));
-    std::vector<std::size_t> running(all.size());
+    std::vector<std::size_t> running(contenders.size());
     std::iota(running.begin(), running.end(), std::size_t{0});
     std::size_t done = 0;
-    const auto play = [&](std::size_t one, std::size_t round) {
+    const auto play = [&](std::size_t index, std::size_t round) {
         shown.at(done++);
-        if (one == 0 && round == 0) return;
+        if (index == 0 && round == 0) return;
         const double left = limits.to_play();
         const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * left, .margin = 2};
-        attempt tried = scene.play(all[one], played.frames, rule.longest(first), left);
+        attempt tried = scene.play(contenders[index], played.frames, rule.longest(first), left);
         if (tried.end == ending::stopped && !tried.is_out_of_time && rule.longest(first) >= rule.hopeless_after(first))
-            played.hopeless[one] = true;
+            played.hopeless[index] = true;
         if (tried.end == ending::done)
-            played.times[one].push_back(std::move(tried.seen));
-        else if (played.times[one].empty())
-            played.broken_off[one] = std::move(tried);
+            played.times[index].push_back(std::move(tried.seen));
+        else if (played.times[index].empty())
+            played.broken_off[index] = std::move(tried);
     };
     const auto give_up = [&](std::size_t round) {
-        for (const std::size_t one : running)
-            if (!played.times[one].empty() && is_hopeless(played.times[one][0], played.times[0][0]))
-                played.hopeless[one] = true;
+        for (const std::size_t index : running)
+            if (!played.times[index].empty() && is_hopeless(played.times[index][0], played.times[0][0]))
+                played.hopeless[index] = true;
         std::erase_if(running,
-                      [&](std::size_t one) { return played.hopeless[one] || played.times[one].size() <= round; });
-        done = (round + 1) * all.size();
+                      [&](std::size_t index) { return played.hopeless[index] || played.times[index].size() <= round; });
+        done = (round + 1) * contenders.size();
     };
     played.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_play(); }}, play, give_up);
     return played;
 }
 
 std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times) {
-    std::vector<std::size_t> all;
+    std::vector<std::size_t> disagreeing;
     for (std::size_t i = 1; i < times.size(); ++i)
-        if (!times[i].empty() && times[i].front().digest != times[0].front().digest) all.push_back(i);
-    return all;
+        if (!times[i].empty() && times[i].front().digest != times[0].front().digest) disagreeing.push_back(i);
+    return disagreeing;
 }
 
 std::vector<double> frame_ms_of(std::span<const observation> times) {

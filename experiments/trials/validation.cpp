@@ -15,7 +15,7 @@ std::string text_of(const aabb::contact& c) {
            std::to_string(c.triangle_a) + " " + std::to_string(c.triangle_b);
 }
 
-/// Says the first one; empty where there is none.
+/// Describes the first difference; empty if there is none.
 template <class T>
 std::string first_of(const aabb::set_difference<T>& d) {
     if (d.missing.empty() && d.invented.empty()) return {};
@@ -25,31 +25,31 @@ std::string first_of(const aabb::set_difference<T>& d) {
            (d.repeated ? " is reported more than once" : " is reported, but is not in the exact answer");
 }
 
-/// Compares one contender with the exact answer.
+/// Compares one candidate with the ground truth.
 class validated_player {
 public:
-    validated_player(const contender& who, const scene_choice& choice, const scene_play& scene)
-        : who_(who),
+    validated_player(const contender& candidate, const scene_choice& choice, const scene_play& scene)
+        : candidate_(candidate),
           choice_(choice),
           scene_(scene),
-          player_(who, scene, aabb::instrumentation::counters),
-          found_(scene.meshes() != nullptr) {}
+          player_(candidate, scene, aabb::instrumentation::counters),
+          tally_(scene.meshes() != nullptr) {}
 
     void play(std::size_t frame, const aabb::exact_answer& exact) {
         player_.update();
         player_.search();
         player_.detect();
         if (frame == 0) first_frame_ = player_.counters();
-        found_.add(player_.sorted_pairs(), player_.sorted_contacts());
-        if (who_.whole_boxes) {
+        tally_.add(player_.sorted_pairs(), player_.sorted_contacts());
+        if (candidate_.whole_boxes) {
             const aabb::set_difference boxes(exact.pairs(), player_.sorted_pairs());
-            if (who_.exact_boxes) note(frame, first_of(boxes));
+            if (candidate_.exact_boxes) note(frame, first_of(boxes));
             boxes_missing_ += boxes.missing.size();
             boxes_invented_ += boxes.invented.size();
         }
         if (!scene_.meshes()) return;
         const aabb::set_difference contacts(exact.contacts(), player_.sorted_contacts());
-        if (who_.exact) note(frame, first_of(contacts));
+        if (candidate_.exact) note(frame, first_of(contacts));
         contacts_missing_ += contacts.missing.size();
         contacts_invented_ += contacts.invented.size();
         classify(contacts);
@@ -60,11 +60,11 @@ public:
         v.scene = choice_;
         v.objects = scene_.objects();
         v.frames = scene_.frames();
-        v.name = who_.name;
+        v.name = candidate_.name;
         v.failure = failure_;
-        v.candidates = found_.candidates();
-        v.contacts = found_.contacts();
-        v.digest = found_.digest();
+        v.candidates = tally_.candidates();
+        v.contacts = tally_.contacts();
+        v.digest = tally_.digest();
         v.missing = scene_.meshes() ? contacts_missing_ : boxes_missing_;
         v.invented = scene_.meshes() ? contacts_invented_ : boxes_invented_;
         add_differences(v.differences, "missing", boxes_missing_, classes_.missing);
@@ -76,13 +76,13 @@ public:
             v.box_inflation = player_.box_inflation();
         }
         take_counts(v);
-        // What an external engine holds nobody knows.
-        if (!who_.told) take_bytes(v);
+        // The memory of an external engine is unknown.
+        if (!candidate_.told) take_bytes(v);
         return v;
     }
 
 private:
-    /// Engines count nothing.
+    /// Leaves the counts empty if they are all 0, since engines have no counters.
     void take_counts(row& r) const {
         aabb::work_counters work = player_.counters();
         if (scene_.frames() > 1)
@@ -103,16 +103,16 @@ private:
 
     void note(std::size_t frame, const std::string& difference) {
         if (!failure_.empty() || difference.empty()) return;
-        failure_ = text_of(who_.name) + " is wrong on " + choice_.kind + " (" + parameters_text(choice_) + "), frame " +
-                   std::to_string(frame) + ": " + difference;
+        failure_ = text_of(candidate_.name) + " is wrong on " + choice_.kind + " (" + parameters_text(choice_) +
+                   "), frame " + std::to_string(frame) + ": " + difference;
     }
 
-    /// By class, pair of objects by pair of objects.
+    /// Classifies the differences of each pair of objects.
     void classify(const aabb::set_difference<aabb::contact>& contacts) {
-        struct both {
+        struct triangle_pairs {
             std::vector<aabb::index_pair> missing, invented;
         };
-        std::map<aabb::index_pair, both> by_objects;
+        std::map<aabb::index_pair, triangle_pairs> by_objects;
         for (const aabb::contact& c : contacts.missing)
             by_objects[{c.a, c.b}].missing.push_back({c.triangle_a, c.triangle_b});
         for (const aabb::contact& c : contacts.invented) {
@@ -127,20 +127,21 @@ private:
                 meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
     }
 
-    void add_differences(std::vector<difference>& all, std::string_view what, std::uint64_t boxes,
+    void add_differences(std::vector<difference>& differences, std::string_view what, std::uint64_t boxes,
                          std::span<const std::size_t> classes) const {
         const auto add = [&](std::string_view kind, std::uint64_t count) {
-            if (count > 0) all.push_back({choice_, who_.name, std::string(what), std::string(kind), count});
+            if (count > 0)
+                differences.push_back({choice_, candidate_.name, std::string(what), std::string(kind), count});
         };
         add("boxes", boxes);
         for (std::size_t i = 0; i < classes.size(); ++i) add(aabb::difference_class_names[i], classes[i]);
     }
 
-    const contender& who_;
+    const contender& candidate_;
     const scene_choice& choice_;
     const scene_play& scene_;
     player player_;
-    tally found_;
+    tally tally_;
     std::string failure_;
     aabb::work_counters first_frame_;
     std::uint64_t boxes_missing_ = 0;
@@ -162,7 +163,7 @@ scene_validation validate_scene(const scene_choice& choice, scene_play& scene, s
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<validated_player> players;
     std::vector<validated_row> results(contenders.size());
-    std::vector<std::size_t> places;  // of the players among the contenders
+    std::vector<std::size_t> places;  // indices of the players among the contenders
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         try {
             players.emplace_back(contenders[i], choice, scene);
