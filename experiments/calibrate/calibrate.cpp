@@ -15,51 +15,51 @@ namespace aabblab {
 
 namespace {
 
-/// Costs that are fitted together, since the same plays tell them.
+/// Costs that are fitted together, since the same runs determine them.
 enum class cost_group : unsigned char { lists, cut, columns, median, sah, queries };
 
-/// A part of a play whose work is all of one group.
+/// A part of a run whose work belongs to one group.
 struct piece {
     cost_group group;
-    std::vector<double> work;  ///< of a play in which it is counted
-    double ns;                 ///< of one in which it is not
+    std::vector<double> work;  ///< valid if the run counts it
+    double ns;                 ///< valid if the run does not count
 };
 
-/// One way to play one scene.
+/// One scene with one composition.
 struct trial {
     std::string scene;
-    bool held_out;  ///< not fitted to, but to check
+    bool held_out;  ///< used to check the fit, not for it
     std::function<std::vector<piece>(aabb::instrumentation)> play;
     std::vector<std::pair<cost_group, timed_work>> seen = {};  ///< by piece
 };
 
 using box_frames = std::shared_ptr<const std::vector<std::vector<aabb::box>>>;
 
-/// They are made once, so that making them takes no time later.
+/// Generates all frames in advance, so that this takes no time during measurements.
 box_frames frames_of(const scene_choice& choice) {
     const auto scene = make_box_scene(choice);
-    std::vector<std::vector<aabb::box>> all;
+    std::vector<std::vector<aabb::box>> frames;
     std::vector<aabb::box> boxes;
-    while (scene->next(boxes)) all.push_back(boxes);
-    return std::make_unique<const std::vector<std::vector<aabb::box>>>(std::move(all));
+    while (scene->next(boxes)) frames.push_back(boxes);
+    return std::make_unique<const std::vector<std::vector<aabb::box>>>(std::move(frames));
 }
 
-/// Other costs to plan by, for a while.
-class costs_for_a_while {
+/// Makes strategies plan by other costs, until it is destroyed.
+class costs_in_scope {
 public:
-    explicit costs_for_a_while(const aabb::cost_model& costs) : before_(aabb::machine_costs()) {
+    explicit costs_in_scope(const aabb::cost_model& costs) : before_(aabb::machine_costs()) {
         aabb::set_machine_costs(costs);
     }
-    costs_for_a_while(const costs_for_a_while&) = delete;
-    costs_for_a_while& operator=(const costs_for_a_while&) = delete;
-    ~costs_for_a_while() { aabb::set_machine_costs(before_); }
+    costs_in_scope(const costs_in_scope&) = delete;
+    costs_in_scope& operator=(const costs_in_scope&) = delete;
+    ~costs_in_scope() { aabb::set_machine_costs(before_); }
 
 private:
     aabb::cost_model before_;
 };
 
-/// What a frame took, in one pass or the other.
-struct frame_seen {
+/// Measurements of a frame, or their means over several frames.
+struct frame_sample {
     double ns = 0;
     double pairs = 0;
     aabb::work_counters work;
@@ -73,44 +73,44 @@ struct box_play {
     aabb::cost_model planned_by;
 };
 
-std::vector<frame_seen> frames_seen(const box_play& what, aabb::instrumentation counted) {
-    const costs_for_a_while costs(what.planned_by);
-    scene_play scene(std::make_unique<aabb::known_boxes>(*what.frames));
-    player p(contender_of(what.composed, false), scene, counted);
+std::vector<frame_sample> sample_frames(const box_play& run, aabb::instrumentation counted) {
+    const costs_in_scope costs(run.planned_by);
+    scene_play scene(std::make_unique<aabb::known_boxes>(*run.frames));
+    player p(contender_of(run.composed, false), scene, counted);
     aabb::work_counters before;
-    std::vector<frame_seen> all;
+    std::vector<frame_sample> samples;
     play(scene, p, [&](const played_frame& frame) {
-        frame_seen seen{
+        frame_sample sample{
             1e6 * (frame.took.update.cpu_ms + frame.took.search.cpu_ms), static_cast<double>(frame.pairs.size()), {}};
-        const aabb::work_counters now = p.counters();
-        for (std::size_t k = 0; k < now.counts.size(); ++k) seen.work.counts[k] = now.counts[k] - before.counts[k];
-        before = now;
-        all.push_back(seen);
+        const aabb::work_counters work = p.counters();
+        for (std::size_t k = 0; k < work.counts.size(); ++k) sample.work.counts[k] = work.counts[k] - before.counts[k];
+        before = work;
+        samples.push_back(sample);
     });
-    return all;
+    return samples;
 }
 
-/// Frames before this one are not like the others: nothing is sorted, planned or kept yet.
+/// Earlier frames are not representative: nothing is sorted, planned or kept between frames yet.
 constexpr std::size_t first_usual = 2;
 
 /// The means over every `step`-th frame from `first` on.
-frame_seen mean_of(const std::vector<frame_seen>& frames, std::size_t first, std::size_t step) {
-    frame_seen sum;
+frame_sample mean_of(const std::vector<frame_sample>& frames, std::size_t first, std::size_t step) {
+    frame_sample mean;
     std::uint64_t count = 0;
     for (std::size_t i = first; i < frames.size(); i += step, ++count) {
-        sum.ns += frames[i].ns;
-        sum.pairs += frames[i].pairs;
-        for (std::size_t k = 0; k < sum.work.counts.size(); ++k) sum.work.counts[k] += frames[i].work.counts[k];
+        mean.ns += frames[i].ns;
+        mean.pairs += frames[i].pairs;
+        for (std::size_t k = 0; k < mean.work.counts.size(); ++k) mean.work.counts[k] += frames[i].work.counts[k];
     }
-    sum.ns /= static_cast<double>(count);
-    sum.pairs /= static_cast<double>(count);
-    for (std::uint64_t& k : sum.work.counts) k /= count;
-    return sum;
+    mean.ns /= static_cast<double>(count);
+    mean.pairs /= static_cast<double>(count);
+    for (std::uint64_t& k : mean.work.counts) k /= count;
+    return mean;
 }
 
-/// A scene whose frames are made.
-struct made_scene {
-    made_scene(const scene_choice& choice, bool is_held_out)
+/// A scene with frames that are generated in advance.
+struct generated_scene {
+    generated_scene(const scene_choice& choice, bool is_held_out)
         : name(choice.kind + " " + settings_text(choice)),
           held_out(is_held_out),
           frames(frames_of(choice)),
@@ -122,52 +122,52 @@ struct made_scene {
     double n;  // objects
 };
 
-/// Work of a mean frame: what there are costs for, then what no strategy plans by, and that it is one frame.
-using work_of_frame = std::function<std::vector<double>(const frame_seen&)>;
+/// The work of a mean frame: first the kinds with a cost, then kinds that no strategy plans by, with a constant 1.
+using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
-trial usual_frames(const made_scene& scene, cost_group group, const aabb::composition& c,
+trial usual_frames(const generated_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
     return {
         scene.name, scene.held_out,
-        [group, what = box_play{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
-            const frame_seen seen = mean_of(frames_seen(what, counted), first_usual, 1);
-            return std::vector{piece{group, work(seen), seen.ns}};
+        [group, run = box_play{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
+            const frame_sample mean = mean_of(sample_frames(run, counted), first_usual, 1);
+            return std::vector{piece{group, work(mean), mean.ns}};
         }};
 }
 
-/// A list that is made anew in every other frame: in those with an even number it is made, in the others it serves.
-trial made_and_served(const made_scene& scene) {
+/// A Verlet list that is rebuilt in every even frame and reused in every odd one.
+trial built_and_reused(const generated_scene& scene) {
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
     return {scene.name, scene.held_out,
-            [n = scene.n, what = box_play{scene.frames, c, {}}](aabb::instrumentation counted) {
-                const std::vector<frame_seen> all = frames_seen(what, counted);
-                const frame_seen made = mean_of(all, first_usual, 2);
-                const frame_seen served = mean_of(all, first_usual + 1, 2);
-                // That a list serves takes a test of each of its pairs, and no search.
+            [n = scene.n, run = box_play{scene.frames, c, {}}](aabb::instrumentation counted) {
+                const std::vector<frame_sample> samples = sample_frames(run, counted);
+                const frame_sample built = mean_of(samples, first_usual, 2);
+                const frame_sample reused = mean_of(samples, first_usual + 1, 2);
+                // Reuse of a list tests each of its pairs and does not search.
                 assert(counted == aabb::instrumentation::none ||
-                       (made.work[aabb::work::subsets] > 0 && served.work[aabb::work::subsets] == 0));
-                const double listed = served.count(aabb::work::box_tests);
-                return std::vector{piece{cost_group::lists, {n, listed, n, n, listed}, made.ns},
-                                   piece{cost_group::lists, {0, 0, 0, n, listed}, served.ns}};
+                       (built.work[aabb::work::subsets] > 0 && reused.work[aabb::work::subsets] == 0));
+                const double listed = reused.count(aabb::work::box_tests);
+                return std::vector{piece{cost_group::lists, {n, listed, n, n, listed}, built.ns},
+                                   piece{cost_group::lists, {0, 0, 0, n, listed}, reused.ns}};
             }};
 }
 
-void add_list_trials(std::vector<trial>& all, const made_scene& scene) {
-    all.push_back(usual_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_seen& seen) {
+void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
+    trials.push_back(usual_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& seen) {
         return std::vector<double>{n, seen.pairs, 0, 0, 0};
     }));
-    all.push_back(made_and_served(scene));
+    trials.push_back(built_and_reused(scene));
 }
 
-/// @param lists that are sorted: of the axes cut, and of the one that is swept
-void add_cut_trial(std::vector<trial>& all, const made_scene& scene, const std::string& sort,
+/// @param lists the number of sorted lists: one per cut axis, and one for the sweep
+void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, const std::string& sort,
                    const aabb::strategy_choice& partition, double lists) {
     aabb::composition c;
     c[aabb::strategy_kind::sort] = {sort, {}};
     c[aabb::strategy_kind::partition] = partition;
     c[aabb::strategy_kind::sweep] = {"one_axis", {}};
-    all.push_back(usual_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_seen& seen) {
+    trials.push_back(usual_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& seen) {
         return std::vector<double>{listed,
                                    seen.count(aabb::work::subset_copies),
                                    seen.count(aabb::work::subsets),
@@ -177,25 +177,25 @@ void add_cut_trial(std::vector<trial>& all, const made_scene& scene, const std::
     }));
 }
 
-void add_cut_trials(std::vector<trial>& all, const made_scene& scene) {
+void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     const auto cut = [](const char* axes, const char* segments) {
         return aabb::strategy_choice{"axial_cut", {{"axes", axes}, {"segments", segments}}};
     };
-    add_cut_trial(all, scene, "std", {"none", {}}, 1);
-    add_cut_trial(all, scene, "radix", {"none", {}}, 1);
-    add_cut_trial(all, scene, "std", cut("1", "24"), 2);
-    add_cut_trial(all, scene, "radix", cut("2", "8"), 3);
-    add_cut_trial(all, scene, "std", cut("2", "24"), 3);
-    add_cut_trial(all, scene, "radix", cut("3", "4"), 3);
-    add_cut_trial(all, scene, "radix", cut("3", "16"), 3);
+    add_cut_trial(trials, scene, "std", {"none", {}}, 1);
+    add_cut_trial(trials, scene, "radix", {"none", {}}, 1);
+    add_cut_trial(trials, scene, "std", cut("1", "24"), 2);
+    add_cut_trial(trials, scene, "radix", cut("2", "8"), 3);
+    add_cut_trial(trials, scene, "std", cut("2", "24"), 3);
+    add_cut_trial(trials, scene, "radix", cut("3", "4"), 3);
+    add_cut_trial(trials, scene, "radix", cut("3", "16"), 3);
 }
 
-void add_column_trial(std::vector<trial>& all, const made_scene& scene, const char* axes,
+void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, const char* axes,
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
     c[aabb::strategy_kind::partition] = {"columns", {{"axes", axes}}};
-    all.push_back(usual_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_seen& seen) {
-        // Copies are not counted where there is one column.
+    trials.push_back(usual_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& seen) {
+        // Copies are not counted if there is a single column.
         return std::vector<double>{std::max(n, seen.count(aabb::work::subset_copies)),
                                    seen.count(aabb::work::subsets),
                                    seen.count(aabb::work::box_tests) / double{aabb::simd::width},
@@ -206,18 +206,18 @@ void add_column_trial(std::vector<trial>& all, const made_scene& scene, const ch
 }
 
 /// Adds trials with more and with fewer columns than are optimal, so that the fit can separate their costs.
-void add_column_trials(std::vector<trial>& all, const made_scene& scene) {
+void add_column_trials(std::vector<trial>& trials, const generated_scene& scene) {
     constexpr double many_times = 8;
     aabb::cost_model more;
     more.column_test *= many_times;
     aabb::cost_model fewer;
     fewer.column_entry *= many_times;
     fewer.column *= many_times;
-    add_column_trial(all, scene, "2", {});
-    add_column_trial(all, scene, "2", more);
-    add_column_trial(all, scene, "2", fewer);
-    add_column_trial(all, scene, "1", {});
-    add_column_trial(all, scene, "0", {});
+    add_column_trial(trials, scene, "2", {});
+    add_column_trial(trials, scene, "2", more);
+    add_column_trial(trials, scene, "2", fewer);
+    add_column_trial(trials, scene, "1", {});
+    add_column_trial(trials, scene, "0", {});
 }
 
 scene_choice moving(const char* kind, std::size_t objects, const char* displacement, std::size_t frames) {
@@ -231,47 +231,47 @@ std::size_t frames_for(std::size_t objects) {
     return objects < 1000 ? 41 : objects < 10'000 ? 17 : 9;
 }
 
-void add_trial(std::vector<trial>& all, const scene_choice& choice, bool held_out, const std::string& build,
+void add_trial(std::vector<trial>& trials, const scene_choice& choice, bool held_out, const std::string& build,
                cost_group group) {
     const auto triangles = static_cast<double>(outlook_of(scene_play(choice)).triangles);
     aabb::composition c;
     c[aabb::strategy_kind::build] = {build, {}};
-    all.push_back({choice.kind + " " + settings_text(choice), held_out, [=](aabb::instrumentation counted) {
-                       const observation seen = observe(choice, contender_of(c, true), {.counted = counted});
-                       const auto visits = static_cast<double>(seen.work[aabb::work::node_visits]);
-                       const double queries = seen.first.detect.cpu_ms + seen.rest.detect.cpu_ms;
-                       return std::vector{piece{group, {triangles}, 1e6 * seen.build.cpu_ms},
-                                          piece{cost_group::queries, {visits}, 1e6 * queries}};
-                   }});
+    trials.push_back({choice.kind + " " + settings_text(choice), held_out, [=](aabb::instrumentation counted) {
+                          const observation seen = observe(choice, contender_of(c, true), {.counted = counted});
+                          const auto visits = static_cast<double>(seen.work[aabb::work::node_visits]);
+                          const double queries = seen.first.detect.cpu_ms + seen.rest.detect.cpu_ms;
+                          return std::vector{piece{group, {triangles}, 1e6 * seen.build.cpu_ms},
+                                             piece{cost_group::queries, {visits}, 1e6 * queries}};
+                      }});
 }
 
-/// Two meshes, one of which passes through the other.
-void add_trials(std::vector<trial>& all, const std::string& standing, const std::string& passing, std::size_t triangles,
-                bool held_out) {
-    const std::string of = ":triangles=" + std::to_string(triangles);
-    const scene_choice choice{"mesh_pair", {{"frames", "10"}}, {standing + of, passing + of}};
-    add_trial(all, choice, held_out, "median", cost_group::median);
-    add_trial(all, choice, held_out, "sah", cost_group::sah);
+/// Adds trials of two meshes, one of which passes through the other.
+void add_trials(std::vector<trial>& trials, const std::string& standing, const std::string& passing,
+                std::size_t triangles, bool held_out) {
+    const std::string size = ":triangles=" + std::to_string(triangles);
+    const scene_choice choice{"mesh_pair", {{"frames", "10"}}, {standing + size, passing + size}};
+    add_trial(trials, choice, held_out, "median", cost_group::median);
+    add_trial(trials, choice, held_out, "sah", cost_group::sah);
 }
 
 std::vector<trial> box_trials(calibration_size size) {
     using sizes = std::vector<std::size_t>;
     const bool quick = size == calibration_size::quick;
-    std::vector<trial> all;
+    std::vector<trial> trials;
     const auto add_lists = [&](const std::vector<const char*>& kinds, const sizes& objects,
                                const std::vector<const char*>& displacements, bool held_out) {
         for (const char* kind : kinds)
             for (const std::size_t n : objects)
                 for (const char* displacement : displacements)
-                    add_list_trials(all, {moving(kind, n, displacement, frames_for(n)), held_out});
+                    add_list_trials(trials, {moving(kind, n, displacement, frames_for(n)), held_out});
     };
     const auto add_searches = [&](const std::vector<const char*>& kinds, const sizes& objects, bool held_out) {
         constexpr std::size_t few_frames = 6;
         for (const char* kind : kinds)
             for (const std::size_t n : objects) {
-                const made_scene scene(moving(kind, n, "0.05", few_frames), held_out);
-                add_cut_trials(all, scene);
-                add_column_trials(all, scene);
+                const generated_scene scene(moving(kind, n, "0.05", few_frames), held_out);
+                add_cut_trials(trials, scene);
+                add_column_trials(trials, scene);
             }
     };
     add_lists({"brownian", "mixed_sizes", "needles", "clustered"}, quick ? sizes{100, 2000} : sizes{100, 1000, 10'000},
@@ -280,27 +280,27 @@ std::vector<trial> box_trials(calibration_size size) {
     add_searches({"brownian", "mixed_sizes", "clustered"}, quick ? sizes{1000, 5000} : sizes{1000, 5000, 20'000},
                  false);
     add_searches({"needles", "hollow_sphere"}, quick ? sizes{2000} : sizes{2000, 10'000}, true);
-    return all;
+    return trials;
 }
 
 std::vector<trial> mesh_trials(calibration_size size) {
     using sizes = std::vector<std::size_t>;
     const bool quick = size == calibration_size::quick;
-    std::vector<trial> all;
+    std::vector<trial> trials;
     for (const std::size_t triangles : quick ? sizes{3000, 20'000} : sizes{3000, 20'000, 80'000}) {
-        add_trials(all, "noise_sphere", "torus_knot", triangles, false);
-        add_trials(all, "icosphere", "noise_sphere", triangles, false);
+        add_trials(trials, "noise_sphere", "torus_knot", triangles, false);
+        add_trials(trials, "icosphere", "noise_sphere", triangles, false);
     }
     for (const std::size_t triangles : quick ? sizes{8000} : sizes{8000, 40'000})
-        add_trials(all, "torus_knot", "icosphere", triangles, true);
-    return all;
+        add_trials(trials, "torus_knot", "icosphere", triangles, true);
+    return trials;
 }
 
 using m = aabb::cost_model;
 
 struct cost_group_info {
     std::string_view name;
-    std::vector<double m::*> costs;  ///< the first kinds of work; others are fitted beside them
+    std::vector<double m::*> costs;  ///< of the first kinds of work; further kinds are fitted as well
 };
 
 const std::array<cost_group_info, 6> cost_groups{
@@ -311,36 +311,36 @@ const std::array<cost_group_info, 6> cost_groups{
      {"trees by sah", {&m::sah_triangle}},
      {"queries", {&m::node_visit}}}};
 
-/// What was seen of a group, in scenes to fit to and in others.
+/// The observations of a group, of scenes used for the fit and of held-out scenes.
 struct group_observations {
     std::vector<timed_work> fitted;
     std::vector<timed_work> held_out;
 };
 
-/// Counts, then times round after round, every trial once in each, until the time is over.
+/// Counts the work of every trial, then times all trials in interleaved rounds until the time is over.
 std::vector<group_observations> counted_and_timed(std::vector<trial> trials, double seconds) {
     constexpr std::size_t fewest_repeats = 3;
     constexpr std::size_t most_repeats = 25;
-    const auto left = [seconds, began = std::chrono::steady_clock::now()] {
+    const auto remaining = [seconds, began = std::chrono::steady_clock::now()] {
         return seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     };
-    for (trial& one : trials)
-        for (piece& p : one.play(aabb::instrumentation::counters))
-            one.seen.emplace_back(p.group, timed_work{one.scene, std::move(p.work), {}});
+    for (trial& t : trials)
+        for (piece& p : t.play(aabb::instrumentation::counters))
+            t.seen.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
     progress shown("seconds of measuring", static_cast<std::size_t>(seconds));
-    const auto time = [&](trial& one, std::size_t) {
-        const std::vector<piece> timed = one.play(aabb::instrumentation::none);
-        for (std::size_t p = 0; p < timed.size(); ++p) one.seen[p].second.ns.push_back(timed[p].ns);
-        shown.at(static_cast<std::size_t>(seconds - std::max(0.0, left())));
+    const auto time = [&](trial& t, std::size_t) {
+        const std::vector<piece> timed = t.play(aabb::instrumentation::none);
+        for (std::size_t p = 0; p < timed.size(); ++p) t.seen[p].second.ns.push_back(timed[p].ns);
+        shown.at(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };
-    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .left = left}, time, [](std::size_t) {});
-    std::vector<group_observations> all(cost_groups.size());
-    for (trial& one : trials)
-        for (auto& [group, seen] : one.seen) {
-            group_observations& of_group = all[static_cast<std::size_t>(group)];
-            (one.held_out ? of_group.held_out : of_group.fitted).push_back(std::move(seen));
+    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .left = remaining}, time, [](std::size_t) {});
+    std::vector<group_observations> by_group(cost_groups.size());
+    for (trial& t : trials)
+        for (auto& [group, seen] : t.seen) {
+            group_observations& of_group = by_group[static_cast<std::size_t>(group)];
+            (t.held_out ? of_group.held_out : of_group.fitted).push_back(std::move(seen));
         }
-    return all;
+    return by_group;
 }
 
 }  // namespace
@@ -349,21 +349,21 @@ calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));
     const std::vector<group_observations> seen = counted_and_timed(std::move(trials), seconds);
-    // What seems to be free was lost in noise.
+    // A cost of nearly 0 means that noise hid it: nothing is free.
     constexpr double least_share = 0.01;
-    calibration all;
+    calibration result;
     for (std::size_t g = 0; g < seen.size(); ++g) {
         const cost_group_info& group = cost_groups[g];
         std::vector<estimate> costs = fit_costs(seen[g].fitted);
         for (std::size_t k = 0; k < group.costs.size(); ++k) {
             costs[k].value = std::max(costs[k].value, least_share * (aabb::cost_model{}.*group.costs[k]));
-            all.costs.*group.costs[k] = costs[k].value;
+            result.costs.*group.costs[k] = costs[k].value;
             const auto info = std::ranges::find(aabb::cost_infos, group.costs[k], &aabb::cost_info::value);
-            all.estimates[static_cast<std::size_t>(info - aabb::cost_infos.begin())] = costs[k];
+            result.estimates[static_cast<std::size_t>(info - aabb::cost_infos.begin())] = costs[k];
         }
-        all.checks.push_back({group.name, accuracy_of(seen[g].held_out, costs)});
+        result.checks.push_back({group.name, accuracy_of(seen[g].held_out, costs)});
     }
-    return all;
+    return result;
 }
 
 }  // namespace aabblab

@@ -1,5 +1,5 @@
-/// What elementary work takes on this machine. Strategies play generated scenes, once with their work counted and
-/// several times against the clock, and costs are fitted to what both passes say.
+/// Calibrates the cost model to this machine. Strategies run generated scenes, once with their work counted and several
+/// times against the clock, and the cost of each kind of elementary work is fitted to counts and times.
 export module aabblab.calibrate;
 
 import aabb.costs;
@@ -8,20 +8,19 @@ import aabblab.statistics;
 
 export namespace aabblab {
 
-/// How much work of each kind a piece of play takes, and how long that took.
+/// Counts and times of the same part of a run.
 struct timed_work {
-    std::string scene;         ///< pieces of one scene are no evidence of each other
-    std::vector<double> work;  ///< times of each kind of work that there is a cost for
-    std::vector<double> ns;    ///< of each repeat; all observations have as many
+    std::string scene;         ///< observations of one scene are not independent
+    std::vector<double> work;  ///< by kind of work, the number of times that it is done
+    std::vector<double> ns;    ///< by repeat; all observations have the same number
 };
 
-/// The costs, none below 0, whose sums of work times cost come nearest to the times, by least squares of the relative
-/// error; those far off count less (Huber, "Robust estimation of a location parameter", 1964). How far a cost may be
-/// off is bootstrapped over scenes and repeats.
-/// @param seen not empty; all with the same kinds of work
+/// Fits non-negative costs to the times, by least squares of the relative error; outliers are weighted down (Huber,
+/// "Robust estimation of a location parameter", 1964). Confidence intervals are bootstrapped over scenes and repeats.
+/// @param seen not empty; all observations have the same kinds of work
 [[nodiscard]] std::vector<estimate> fit_costs(std::span<const timed_work> seen);
 
-/// How many times too long, or too short, times are that costs predict.
+/// The factors, at least 1, by which predicted times are too long or too short.
 struct accuracy {
     std::size_t observations = 0;
     double median = 1;
@@ -31,7 +30,7 @@ struct accuracy {
 
 enum class calibration_size : unsigned char { quick, full };
 
-/// What the costs of one group predict of scenes that they were not fitted to.
+/// The accuracy of the costs of one group on held-out scenes.
 struct group_check {
     std::string_view group;
     accuracy found;
@@ -39,11 +38,11 @@ struct group_check {
 
 struct calibration {
     aabb::cost_model costs;
-    std::array<estimate, aabb::cost_infos.size()> estimates;  ///< of each cost
+    std::array<estimate, aabb::cost_infos.size()> estimates;  ///< by cost
     std::vector<group_check> checks;
 };
 
-/// @param seconds about how long to measure, once scenes are made and work is counted; three rounds at least
+/// @param seconds the approximate time of the timed rounds, of which at least three run
 [[nodiscard]] calibration calibrate(calibration_size size, double seconds);
 
 }  // namespace aabblab

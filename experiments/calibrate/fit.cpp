@@ -11,12 +11,12 @@ Eigen::Map<const Eigen::VectorXd> work_of(const timed_work& o) {
     return {o.work.data(), static_cast<Eigen::Index>(o.work.size())};
 }
 
-/// The normal equations of a least-squares problem: sums over observations of products of work, and of work.
+/// The normal equations of a least-squares problem, accumulated over observations.
 struct normal_equations {
     explicit normal_equations(Eigen::Index count)
         : products(Eigen::MatrixXd::Zero(count, count)), sums(Eigen::VectorXd::Zero(count)) {}
 
-    /// That the work took so long.
+    /// Adds an observation; dividing by its time makes the residual relative.
     void add(const timed_work& o, double ns, double weight) {
         const Eigen::VectorXd share = work_of(o) / ns;
         products += weight * share * share.transpose();
@@ -27,24 +27,24 @@ struct normal_equations {
     Eigen::VectorXd sums;
 };
 
-/// Least squares with none below 0, by going down along one cost after the other from where they are.
+/// Solves non-negative least squares by coordinate descent, starting from the given costs.
 void descend(const normal_equations& equations, Eigen::VectorXd& costs) {
     constexpr int most_rounds = 20'000;
     constexpr double near_enough = 1e-12;
     for (int round = 0; round < most_rounds; ++round) {
         double change = 0;
-        double all = 0;
+        double norm = 0;
         for (Eigen::Index i = 0; i < costs.size(); ++i) {
             const double curvature = equations.products(i, i);
             if (!(curvature > 0)) continue;
             const double slope = equations.sums[i] - equations.products.col(i).dot(costs);
             const double next = std::max(0.0, costs[i] + slope / curvature);
-            // By how much the prediction changes, whatever the unit of the work.
+            // Weighting by curvature measures the change of the prediction, independent of the units of work.
             change += (next - costs[i]) * (next - costs[i]) * curvature;
-            all += next * next * curvature;
+            norm += next * next * curvature;
             costs[i] = next;
         }
-        if (change <= near_enough * near_enough * all) return;
+        if (change <= near_enough * near_enough * norm) return;
     }
 }
 
@@ -52,20 +52,20 @@ double median_of(std::vector<double> values) {
     return quartiles_of(std::move(values)).median;
 }
 
-/// How much each observation counts: less, the further it is off, once that is more than is usual.
+/// The Huber weight of each observation: 1 for usual residuals, smaller for outliers.
 std::vector<double> weights_of(std::span<const timed_work> seen, const Eigen::VectorXd& costs) {
-    constexpr double usual = 1.345;  // deviations: 95 % as efficient as least squares where errors are normal
-    constexpr double deviations_a_median = 1.4826;
+    constexpr double usual = 1.345;  // standard deviations: 95 % efficient for normal errors
+    constexpr double deviations_per_median = 1.4826;
     constexpr double least_scale = 1e-9;
-    std::vector<double> off;
-    for (const timed_work& o : seen) off.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
-    const double reach = usual * std::max(least_scale, deviations_a_median * median_of(off));
+    std::vector<double> residuals;
+    for (const timed_work& o : seen) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
+    const double threshold = usual * std::max(least_scale, deviations_per_median * median_of(residuals));
     std::vector<double> weights;
-    for (const double one : off) weights.push_back(one <= reach ? 1 : reach / one);
+    for (const double r : residuals) weights.push_back(r <= threshold ? 1 : threshold / r);
     return weights;
 }
 
-/// The same as sums that are drawn anew. Scenes stand in the place of processes: what is drawn together.
+/// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
 class drawn_equations {
 public:
     drawn_equations(std::span<const timed_work> seen, std::span<const double> weights)
@@ -91,13 +91,13 @@ public:
 
     [[nodiscard]] const sample_size& size() const { return size_; }
     [[nodiscard]] normal_equations draw(const resample& drawn) const {
-        normal_equations all(count_);
+        normal_equations equations(count_);
         for (Eigen::Index i = 0; i < count_; ++i) {
-            all.sums[i] = drawn.mean_of(sums_[static_cast<std::size_t>(i)]);
+            equations.sums[i] = drawn.mean_of(sums_[static_cast<std::size_t>(i)]);
             for (Eigen::Index j = 0; j <= i; ++j)
-                all.products(i, j) = all.products(j, i) = drawn.mean_of(products_[place(i, j)]);
+                equations.products(i, j) = equations.products(j, i) = drawn.mean_of(products_[place(i, j)]);
         }
-        return all;
+        return equations;
     }
 
 private:
@@ -108,7 +108,7 @@ private:
     Eigen::Index count_;
     sample_size size_{};
     std::vector<cells> sums_;
-    std::vector<cells> products_;  // below the diagonal, and on it
+    std::vector<cells> products_;  // on and below the diagonal
 };
 
 }  // namespace
@@ -125,16 +125,16 @@ std::vector<estimate> fit_costs(std::span<const timed_work> seen) {
         weights = weights_of(seen, costs);
     }
     const drawn_equations equations(seen, weights);
-    std::vector<estimate> all;
+    std::vector<estimate> estimates;
     for (Eigen::Index k = 0; k < count; ++k) {
-        all.push_back(bootstrap(equations.size(), [&](const resample& drawn) {
-            Eigen::VectorXd found = costs;
-            descend(equations.draw(drawn), found);
-            return found[k];
+        estimates.push_back(bootstrap(equations.size(), [&](const resample& drawn) {
+            Eigen::VectorXd resampled = costs;
+            descend(equations.draw(drawn), resampled);
+            return resampled[k];
         }));
-        all.back().value = costs[k];
+        estimates.back().value = costs[k];
     }
-    return all;
+    return estimates;
 }
 
 accuracy accuracy_of(std::span<const timed_work> seen, std::span<const estimate> costs) {

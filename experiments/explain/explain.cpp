@@ -16,8 +16,8 @@ namespace aabblab {
 
 namespace {
 
-std::string text_of(std::string_view stage, const std::string& made_of, const std::vector<aabb::part_bytes>& parts) {
-    std::string text = fmt::format("    {}{}{}\n", stage, made_of.empty() ? "" : ": ", made_of);
+std::string text_of(std::string_view stage, const std::string& strategies, const std::vector<aabb::part_bytes>& parts) {
+    std::string text = fmt::format("    {}{}{}\n", stage, strategies.empty() ? "" : ": ", strategies);
     for (const aabb::part_bytes& part : parts)
         text += fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes));
     return text;
@@ -27,16 +27,16 @@ std::string indented(std::string_view before, const std::string& paragraph) {
     return hanging(before, paragraph) + "\n";
 }
 
-std::string indented_all(std::string_view of, const std::vector<std::string>& sentences) {
-    std::string text = sentences.empty() ? "" : fmt::format("    {}\n", of);
+std::string indented_all(std::string_view heading, const std::vector<std::string>& sentences) {
+    std::string text = sentences.empty() ? "" : fmt::format("    {}\n", heading);
     for (const std::string& sentence : sentences) text += indented("      ", sentence);
     return text;
 }
 
-/// Of the time that is left, what one part of the explanation may take of it.
+/// The share of the remaining time that one part of the explanation may use.
 constexpr double share_of_part = 0.25;
 
-/// Why there is nothing to be said, where work did not come to its end.
+/// Why work did not finish, in place of its output.
 std::string reason_of(const work_apart& work) {
     return text_of(attempt{work.end, {}, work.reason, work.seconds});
 }
@@ -46,35 +46,36 @@ std::string text_of(const contender_name& name, aabb::stage stage) {
     return text.empty() ? name.engine : text;
 }
 
-/// So that buffers have grown and what is kept between frames is there.
+/// Two frames, so that buffers have grown and data that is kept between frames exists.
 constexpr std::size_t explained_frames = 2;
 
-std::string explained(scene_play& scene, const contender& who) {
-    player p(who, scene, aabb::instrumentation::none);
+std::string explained(scene_play& scene, const contender& candidate) {
+    player p(candidate, scene, aabb::instrumentation::none);
     play(scene, p, [](const played_frame&) {}, explained_frames);
-    const contender_name& name = who.name;
+    const contender_name& name = candidate.name;
     std::string text = text_of("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes())
         text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     std::vector<std::string> planned;
-    for (const aabb::stage_plan& one : p.plans()) planned.push_back(to_text(one.told));
+    for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.told));
     text += indented_all("planned from what was seen", planned);
     std::vector<std::string> left_out;
-    for (const aabb::omission& one : omissions_of(name, p.left_out())) left_out.push_back(to_text(one));
+    for (const aabb::omission& absent : omissions_of(name, p.left_out())) left_out.push_back(to_text(absent));
     return text + indented_all("left out", left_out);
 }
 
-void explain_contender(staged_scene& scene, const contender& who, const time_limits& limits) {
-    const work_apart work = scene.apart([&](scene_play& play, const telling& tell) { tell(explained(play, who)); },
-                                        share_of_part * limits.to_play());
-    // What cannot be played is bad input.
+void explain_contender(staged_scene& scene, const contender& candidate, const time_limits& limits) {
+    const work_apart work =
+        scene.apart([&](scene_play& play, const telling& tell) { tell(explained(play, candidate)); },
+                    share_of_part * limits.to_play());
+    // A candidate rejects only invalid input.
     if (work.end == ending::refused) throw aabb::input_error(work.reason);
-    print(indented("  ", text_of(who.name)));
+    print(indented("  ", text_of(candidate.name)));
     print(work.end == ending::done ? work.told : indented("    ", "its bytes and plans: " + reason_of(work)));
 }
 
-/// Parts of the config that a scene has no use for.
+/// Lists parts of the config that do not apply to the scene.
 void explain_unused(const experiment& e, const scene_choice& scene) {
     for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
     if (has_meshes(scene)) return;
@@ -84,7 +85,7 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
     print("  " + kinds + " have no part in this scene: it has no meshes\n");
 }
 
-/// What the scene is and what it is like; nothing is said of one that cannot be played.
+/// Prints the scene and its measures, unless its input is invalid.
 void explain_measures(staged_scene& scene, const time_limits& limits) {
     const work_apart work = scene.apart(
         [](scene_play& play, const telling& tell) { tell(to_text(told(measure_scene(play)), output_width())); },
@@ -100,20 +101,20 @@ void explain_measures(staged_scene& scene, const time_limits& limits) {
 
 void print_selected(const std::vector<aabb::selected_strategy>& selected) {
     table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
-    for (const aabb::selected_strategy& one : selected)
-        t.rows.push_back({std::string(name_of(one.kind)), to_text(one.choice), one.rule});
+    for (const aabb::selected_strategy& s : selected)
+        t.rows.push_back({std::string(name_of(s.kind)), to_text(s.choice), s.rule});
     print_broken(t, 2);
 }
 
-/// What is selected and why, what comes of it, and what it saves.
-/// @returns whether all that was played finds the same
+/// Explains the selection and what it saves.
+/// @returns whether the results of all runs agree
 bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named, const time_limits& limits) {
     const bool meshes = scene.scene().meshes() != nullptr;
     std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene.scene()));
     const aabb::composition c = composed_of(selected);
     if (!meshes)
-        std::erase_if(selected, [](const aabb::selected_strategy& one) {
-            return info_of(one.kind).stage == aabb::stage::local_detection;
+        std::erase_if(selected, [](const aabb::selected_strategy& s) {
+            return info_of(s.kind).stage == aabb::stage::local_detection;
         });
     print_selected(selected);
     explain_contender(scene, contender_of(c, meshes), limits);
@@ -134,13 +135,13 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
         same &= explain_automatic(scene, named, limits);
         print("\n");
     }
-    const std::vector<contender> all = contenders_for(e, scene.choice());
-    for (const contender& who : all) {
-        if (who.name.is_automatic()) continue;
-        explain_contender(scene, who, limits);
+    const std::vector<contender> contenders = contenders_for(e, scene.choice());
+    for (const contender& candidate : contenders) {
+        if (candidate.name.is_automatic()) continue;
+        explain_contender(scene, candidate, limits);
         flush_output();
     }
-    if (all.size() > e.automatic.size()) print("\n");
+    if (contenders.size() > e.automatic.size()) print("\n");
     return same;
 }
 
@@ -158,7 +159,7 @@ int explain(const explain_request& request) {
     bool same = true;
     for (const scene_choice& choice : e.scenes) {
         time_limits limits(request.seconds);
-        // What cannot be made is said before anything else.
+        // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
         limits.scene_is_read();
         if (&choice == e.scenes.data()) print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");

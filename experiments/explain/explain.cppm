@@ -1,4 +1,4 @@
-/// What a scene is like, which composition serves it and why, its bytes, what is left out, and what each choice saves.
+/// Explains a scene: its measures, the selected composition with its reasons, bytes and omissions, and what it saves.
 export module aabblab.explain;
 
 import aabb.pipeline;
@@ -11,30 +11,29 @@ import aabblab.trials;
 export namespace aabblab {
 
 struct explain_request {
-    std::vector<std::string> what;  ///< a config, for what it composes, or what names a scene, for `auto`
-    double seconds = 60;            ///< for which each scene is played
+    std::vector<std::string> what;  ///< a config, or the arguments that name a scene, for `auto`
+    double seconds = 60;            ///< budget of each scene
 };
 
-/// Prints it.
-/// @returns the exit status: 1 where not all that was played in a scene finds the same
+/// @returns the exit status: 1 if the results of a scene differ
 [[nodiscard]] int explain(const explain_request& request);
 
 }  // namespace aabblab
 
-// What the parts of the module share.
+// Internals of the module.
 namespace aabblab {
 
-/// What a configuration leaves out, in its stages and its strategies.
-/// @param by_stages what its stages say of themselves
-[[nodiscard]] std::vector<aabb::omission> omissions_of(const contender_name& who,
+/// All omissions of a configuration.
+/// @param by_stages the omissions that its stages report
+[[nodiscard]] std::vector<aabb::omission> omissions_of(const contender_name& name,
                                                        std::vector<aabb::omission> by_stages);
 
-/// Prints what each strategy of a composition saves in the scene, and all that it leaves out: it is played beside
-/// others, of which one kind or its settings differ, and beside itself with its work counted. Says who had no time.
-/// @returns whether all of them find the same
+/// Prints what each strategy of a composition saves in the scene, and its omissions. The composition runs interleaved
+/// with variants in which one strategy or its settings differ, and with itself with counters. Lists unfinished runs.
+/// @returns whether the results of all agree
 [[nodiscard]] bool print_savings(staged_scene& scene, const aabb::composition& selected, const time_limits& limits);
 
-/// Prints a table that fits the output, since the cells of one column are broken into lines.
+/// Prints a table with the cells of one column wrapped, so that it fits the width of the output.
 void print_broken(const table& t, std::size_t column);
 
 }  // namespace aabblab

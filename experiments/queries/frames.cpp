@@ -92,11 +92,11 @@ frames_result search_frames(scene_play& scene, search_method& method, number_tab
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;
     result.objects = scene.objects();
-    std::optional<player> who;
-    result.build_ms = milliseconds_of([&] { who.emplace(std::move(method.made), scene); });
+    std::optional<player> searcher;
+    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(method.made), scene); });
     progress shown("frames searched", scene.frames());
-    tally found(meshes);
-    play(scene, *who, [&](const played_frame& frame) {
+    tally results(meshes);
+    play(scene, *searcher, [&](const played_frame& frame) {
         result.ms.push_back(whole_nanoseconds(frame.ms()));
         const std::string where = fmt::format("{}, frame {}", method.name, frame.number);
         if (meshes) {
@@ -107,14 +107,14 @@ frames_result search_frames(scene_play& scene, search_method& method, number_tab
             if (rows)
                 for (const auto [a, b] : frame.pairs) rows->add({frame.number, a, b});
         }
-        found.add(frame.pairs, frame.contacts);
+        results.add(frame.pairs, frame.contacts);
         result.object_pairs += count_object_pairs(frame.contacts);
         shown.at(frame.number + 1);
     });
     if (rows) rows->commit();
-    result.pairs = found.candidates();
-    result.contacts = found.contacts().value_or(0);
-    result.digest = found.digest();
+    result.pairs = results.candidates();
+    result.contacts = results.contacts().value_or(0);
+    result.digest = results.digest();
     return result;
 }
 

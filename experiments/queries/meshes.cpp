@@ -8,7 +8,7 @@ namespace aabblab {
 
 namespace {
 
-/// The vertices that triangles use, in the order of their coordinates: any other may be no number.
+/// The vertices that triangles use, sorted by coordinates. Unused vertices may be NaN, which has no order.
 std::vector<std::uint32_t> used_vertices(const aabb::mesh& m) {
     std::vector<bool> is_used(m.vertices.size());
     for (const auto& corners : m.triangles)
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> used_vertices(const aabb::mesh& m) {
     return used;
 }
 
-/// Which triangles share a vertex: have one where another has one, whatever its number.
+/// Finds triangles that share a vertex, compared by position, since meshes may repeat vertices.
 class mesh_neighbours {
 public:
     explicit mesh_neighbours(const aabb::mesh& m) : mesh_(m), place_of_(m.vertices.size()) {
@@ -44,7 +44,7 @@ public:
             for (const std::uint32_t vertex : m.triangles[t]) triangles_[end[place_of_[vertex]]++] = t;
     }
 
-    /// The neighbours with greater numbers, ascending, until the next call.
+    /// The neighbours with greater indices, ascending; valid until the next call.
     [[nodiscard]] std::span<const std::uint32_t> after(std::uint32_t triangle) {
         neighbours_.clear();
         for (const std::uint32_t vertex : mesh_.triangles[triangle]) {
@@ -55,20 +55,20 @@ public:
                            around.end(), std::back_inserter(merged_));
             neighbours_.swap(merged_);
         }
-        // A triangle with two corners at one place stands there twice.
+        // A triangle with two corners at one place is listed there twice.
         neighbours_.erase(std::ranges::unique(neighbours_).begin(), neighbours_.end());
         return neighbours_;
     }
 
 private:
     const aabb::mesh& mesh_;
-    std::vector<std::uint32_t> place_of_;   // by vertex; those at one place have the same
-    std::vector<std::size_t> begin_;        // by place, and the end of the last
-    std::vector<std::uint32_t> triangles_;  // around the first place, then the next, ascending
+    std::vector<std::uint32_t> place_of_;   // by vertex; equal for vertices at the same position
+    std::vector<std::size_t> begin_;        // offsets by place, with the end of the last
+    std::vector<std::uint32_t> triangles_;  // grouped by place, ascending
     std::vector<std::uint32_t> neighbours_, merged_;
 };
 
-/// How many vertices of one triangle lie where one of the other does.
+/// The number of vertices of one triangle that coincide with a vertex of the other.
 std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
     const aabb::triangle3f s = m.triangle(pair.a);
     const aabb::triangle3f t = m.triangle(pair.b);
@@ -78,16 +78,16 @@ std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
 }
 
 bool share_vertex(const aabb::mesh& m, aabb::index_pair pair) {
-    // Mostly by its number.
+    // Comparing indices is cheaper, and usually sufficient.
     for (const std::uint32_t vertex : m.triangles[pair.a])
         if (std::ranges::find(m.triangles[pair.b], vertex) != m.triangles[pair.b].end()) return true;
     return shared_vertices(m, pair) > 0;
 }
 
-/// Merges all pairs a < b of triangles that share a vertex into others; never more than those of one are held.
+/// Merges all pairs a < b of triangles that share a vertex into others, with the pairs of only one triangle in memory.
 /// @param others sorted pairs that share no vertex
-/// @param take gets the pairs of each triangle in turn, sorted
-/// @returns how many pairs share a vertex
+/// @param take receives the sorted pairs of each triangle in turn
+/// @returns the number of pairs that share a vertex
 std::uint64_t for_each_with_neighbours(const aabb::mesh& m, std::span<const aabb::index_pair> others,
                                        const std::function<void(std::span<const aabb::index_pair>)>& take) {
     mesh_neighbours neighbours(m);
@@ -105,14 +105,14 @@ std::uint64_t for_each_with_neighbours(const aabb::mesh& m, std::span<const aabb
     return count;
 }
 
-/// Meshes where they are told to be, each an object; the second, frame by frame, at each pose, as often as is repeated.
+/// A scene of one object per mesh, in which the second one takes all poses frame by frame, once per repeat.
 class posed_meshes final : public aabb::mesh_scene {
 public:
-    /// @param of_b at least one, also where there is no second mesh
-    posed_meshes(std::vector<aabb::mesh> given, const aabb::pose& of_a, std::vector<aabb::pose> of_b,
+    /// @param of_b at least one pose, even without a second mesh
+    posed_meshes(std::vector<aabb::mesh> objects, const aabb::pose& of_a, std::vector<aabb::pose> of_b,
                  std::size_t repeats)
         : of_a_(of_a), of_b_(std::move(of_b)), frames_(repeats * of_b_.size()) {
-        meshes = std::move(given);
+        meshes = std::move(objects);
         for (std::uint32_t object = 0; object < meshes.size(); ++object) mesh_of.push_back(object);
     }
 
@@ -131,55 +131,55 @@ private:
     std::size_t frame_ = 0;
 };
 
-struct answer {
-    std::uint64_t count = 0;              ///< of a mesh with itself those that share no vertex
-    std::uint64_t neighbours = 0;         ///< those that do
-    std::vector<aabb::index_pair> pairs;  ///< that are kept, but those that `detect` leaves with the player
+struct query_result {
+    std::uint64_t count = 0;              ///< within one mesh, of pairs that share no vertex
+    std::uint64_t neighbours = 0;         ///< within one mesh, of pairs that share a vertex
+    std::vector<aabb::index_pair> pairs;  ///< the stored pairs, without those that `detect` leaves in the player
 };
 
-/// @param stored neighbours are kept among the pairs
-answer answer_of(player& who, const mesh_query& query, const aabb::mesh& m, bool stored) {
-    answer found;
+/// @param stored whether pairs that share a vertex are stored
+query_result result_of(player& p, const mesh_query& query, const aabb::mesh& m, bool stored) {
+    query_result result;
     if (query.self) {
-        who.each_self_pair(0, [&](aabb::index_pair pair) {
+        p.each_self_pair(0, [&](aabb::index_pair pair) {
             const bool neighbours = share_vertex(m, pair);
-            ++(neighbours ? found.neighbours : found.count);
-            if (neighbours ? stored : query.ask != question::count) found.pairs.push_back(pair);
+            ++(neighbours ? result.neighbours : result.count);
+            if (neighbours ? stored : query.ask != question::count) result.pairs.push_back(pair);
         });
-        return found;
+        return result;
     }
     switch (query.ask) {
-        case question::count: found.count = who.count_contacts(); break;
-        case question::pairs: who.detect(); break;
+        case question::count: result.count = p.count_contacts(); break;
+        case question::pairs: p.detect(); break;
         case question::first:
-            if (const auto c = who.first_contact()) found.pairs.push_back({c->triangle_a, c->triangle_b});
+            if (const auto c = p.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
             break;
     }
-    return found;
+    return result;
 }
 
-/// Takes the pairs of each pose: in order, with what their triangles have in common, once each.
+/// Records the pairs of each pose in order, with the intersections of their triangles, and rejects duplicates.
 class pair_record {
 public:
-    /// @param rows null where they are not wanted
+    /// @param rows may be null
     pair_record(const mesh_query& query, const scene_play& scene, mesh_result& result, number_table* rows)
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
-    /// @param stored neighbours are among the pairs
-    void take(std::uint32_t pose, answer found, bool stored) {
+    /// @param stored whether the pairs include those that share a vertex
+    void take(std::uint32_t pose, query_result of_pose, bool stored) {
         pose_ = pose;
-        sort_rows(found.pairs);
-        require_each_once(found.pairs, method_.name);
+        sort_rows(of_pose.pairs);
+        require_each_once(of_pose.pairs, method_.name);
         const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
         if (method_.geometry)
             method_.geometry->take(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
         if (query_.ask == question::first) result_.first.emplace_back();
-        if (!query_.neighbours || stored) return take_sorted(found.pairs);
+        if (!query_.neighbours || stored) return take_sorted(of_pose.pairs);
         const std::uint64_t neighbours = for_each_with_neighbours(
-            meshes.front(), found.pairs, [&](std::span<const aabb::index_pair> some) { take_sorted(some); });
-        if (neighbours != found.neighbours)
+            meshes.front(), of_pose.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
+        if (neighbours != of_pose.neighbours)
             throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, and there are {}",
-                                     method_.name, found.neighbours, neighbours));
+                                     method_.name, of_pose.neighbours, neighbours));
     }
     [[nodiscard]] std::string digest() const { return digest_.text(); }
 
@@ -188,18 +188,18 @@ private:
         digest_.add(pose_, pairs);
         if (!rows_ && !method_.geometry && query_.ask != question::first) return;
         for (const aabb::index_pair pair : pairs) {
-            found_pair found{pair, {}};
-            if (method_.geometry) found.common = (*method_.geometry)(pair);
-            if (rows_) add_row(found);
-            if (query_.ask == question::first) result_.first.back() = found;
+            found_pair row{pair, {}};
+            if (method_.geometry) row.common = (*method_.geometry)(pair);
+            if (rows_) add_row(row);
+            if (query_.ask == question::first) result_.first.back() = row;
         }
     }
 
-    void add_row(const found_pair& found) {
-        const auto [a, b] = found.triangles;
-        const std::string cells = found.common ? to_cells(*found.common) : "";
+    void add_row(const found_pair& pair) {
+        const auto [a, b] = pair.triangles;
+        const std::string cells = pair.common ? to_cells(*pair.common) : "";
         if (query_.neighbours)
-            rows_->add({a, b, shared_vertices(scene_.meshes()->meshes.front(), found.triangles)}, cells);
+            rows_->add({a, b, shared_vertices(scene_.meshes()->meshes.front(), pair.triangles)}, cells);
         else if (query_.by_pose)
             rows_->add({pose_, a, b}, cells);
         else
@@ -215,7 +215,7 @@ private:
     std::uint32_t pose_ = 0;
 };
 
-/// Bytes of the trees a triangle; empty for an engine that does not say.
+/// Bytes of the trees per triangle; empty for an engine that does not report them.
 std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
     std::optional<std::size_t> trees;
     for (const aabb::part_bytes& part : result.bytes)
@@ -233,37 +233,38 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     const std::size_t poses = of_b.poses.size();
     scene_play scene(std::make_unique<posed_meshes>(std::move(meshes), of_a, std::move(of_b.poses), query.repeats));
     aabb::scene_outlook outlook = outlook_of(scene);
-    outlook.frames = 1;  // each query is timed for itself: none leaves anything to the next
+    outlook.frames = 1;  // every query is timed on its own: nothing is reused between them
     mesh_result result;
     result.method = method_of(choice, outlook);
-    std::optional<player> who;
-    result.build_ms = milliseconds_of([&] { who.emplace(std::move(result.method.made), scene); });
+    std::optional<player> searcher;
+    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(result.method.made), scene); });
     for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
-    // Of a mesh with itself, pairs that share a vertex may be by far the most: around one of n triangles there are
-    // n²/2. They are stored only where they are wanted and an inexact method may have missed some; an exact one has
-    // found them all, so that they follow from the mesh.
+    // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
+    // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
+    // follow from the mesh.
     const bool stored = query.neighbours && !result.method.exact && query.ask != question::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
-        answer found;
+        query_result of_pose;
         try {
-            who->update();
-            who->search();
-            const auto ask = [&] { found = answer_of(*who, query, scene.meshes()->meshes.front(), stored); };
+            searcher->update();
+            searcher->search();
+            const auto ask = [&] { of_pose = result_of(*searcher, query, scene.meshes()->meshes.front(), stored); };
             result.query_ms.push_back(milliseconds_of(ask));
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(fmt::format("{}{}: {}", of_b.place_of(frame % poses), query.between, error.what()));
         }
         if (frame >= poses) continue;
-        if (query.self) result.neighbours = found.neighbours;
+        if (query.self) result.neighbours = of_pose.neighbours;
         if (!query.self && query.ask != question::count) {
-            for (const aabb::contact& c : who->sorted_contacts()) found.pairs.push_back({c.triangle_a, c.triangle_b});
-            found.count = found.pairs.size();
+            for (const aabb::contact& c : searcher->sorted_contacts())
+                of_pose.pairs.push_back({c.triangle_a, c.triangle_b});
+            of_pose.count = of_pose.pairs.size();
         }
-        result.counts.push_back(found.count);
-        if (query.ask != question::count) record.take(frame, std::move(found), stored);
+        result.counts.push_back(of_pose.count);
+        if (query.ask != question::count) record.take(frame, std::move(of_pose), stored);
     }
-    result.bytes = who->local_bytes();
+    result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);
     if (query.ask != question::count) result.digest = record.digest();
     return result;

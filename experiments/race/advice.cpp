@@ -10,46 +10,45 @@ namespace aabblab {
 namespace {
 
 /// "takes 1.31 times as long (1.25-1.36)"
-std::string beside_winner(const racer& one) {
-    if (!one.has_range())
-        return fmt::format("takes {:.2f} times as long, in {}, too few to say how sure that is", one.ratio(),
-                           counted(one.times.size(), "play"));
-    const auto [low, high] = one.ratio_range();
+std::string beside_winner(const racer& r) {
+    if (!r.has_range())
+        return fmt::format("takes {:.2f} times as long, in {}, too few to say how sure that is", r.ratio(),
+                           counted(r.times.size(), "play"));
+    const auto [low, high] = r.ratio_range();
     const std::string range = fmt::format("({:.2f}-{:.2f})", low, high);
-    return low > 1 ? fmt::format("takes {:.2f} times as long {}", one.ratio(), range)
-                   : fmt::format("is as fast, as far as {} plays tell {}", one.times.size(), range);
+    return low > 1 ? fmt::format("takes {:.2f} times as long {}", r.ratio(), range)
+                   : fmt::format("is as fast, as far as {} plays tell {}", r.times.size(), range);
 }
 
-/// How auto does, where it is neither first nor second, which is told already.
+/// Describes `auto`, unless it is first or second and therefore described already.
 std::string of_automatic(const race_result& race) {
-    const auto is_automatic = [](const racer& one) { return one.who.name.is_automatic(); };
+    const auto is_automatic = [](const racer& r) { return r.who.name.is_automatic(); };
     if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
         return ended - race.finalists.begin() < 2 ? "" : ended->name + " " + beside_winner(*ended) + ".";
-    const auto out = std::ranges::find_if(race.dropped, is_automatic);
-    if (out == race.dropped.end()) return "";
-    if (out->broken_off) return fmt::format("{}: {}.", out->name, text_of(*out->broken_off));
-    return fmt::format("{} was dropped after {}: {:.2f} times as long as the fastest.", out->name,
-                       counted(out->last->frames, "frame"), out->behind);
+    const auto dropped = std::ranges::find_if(race.dropped, is_automatic);
+    if (dropped == race.dropped.end()) return "";
+    if (dropped->broken_off) return fmt::format("{}: {}.", dropped->name, text_of(*dropped->broken_off));
+    return fmt::format("{} was dropped after {}: {:.2f} times as long as the fastest.", dropped->name,
+                       counted(dropped->last->frames, "frame"), dropped->behind);
 }
 
-/// The median over the repeats of what `value` is more of one than of the other; none where it may be either way.
+/// The median over the repeats of the difference in `value`; empty if its confidence interval contains 0.
 template <class Value>
-std::optional<double> shown_difference(const racer& one, const racer& other, Value value) {
+std::optional<double> shown_difference(const racer& r, const racer& other, Value value) {
     cells differences(1, 1);
-    for (std::size_t i = 0; i < one.times.size(); ++i)
-        differences.add(0, 0, value(one.times[i]) - value(other.times[i]));
+    for (std::size_t i = 0; i < r.times.size(); ++i) differences.add(0, 0, value(r.times[i]) - value(other.times[i]));
     const estimate difference = bootstrap(differences);
     const auto [low, high] = difference.range();
     return low > 0 || high < 0 ? std::optional(difference.value) : std::nullopt;
 }
 
-/// Of how many frames two take equally long.
+/// The number of frames for which two candidates take equally long.
 struct crossing {
     double frames;
-    bool sooner;  ///< the other is faster below
+    bool sooner;  ///< the other candidate is faster for fewer frames
 };
 
-/// None where the repeats do not show it.
+/// The crossing of two candidates; empty if the repeats do not show one.
 std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
     if (!other.has_range()) return std::nullopt;
     const auto begin = shown_difference(other, winner, [](const observation& t) { return t.over(1); });
@@ -58,7 +57,7 @@ std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
     return crossing{1 - *begin / *steady, *begin < 0};
 }
 
-/// As the commands take it; what they take by themselves is not named.
+/// The options that select a candidate; none for `auto`, which is the default.
 std::string options_of(const contender_name& name) {
     if (name.is_automatic()) return "";
     std::string text;
@@ -74,11 +73,11 @@ std::string frames_text(const race_result& race) {
                        counted(race.frames, "frame"));
 }
 
-/// From how many frames on, or below how many, somebody else is faster than the winner: the first to overtake it.
+/// The numbers of frames nearest to the current one, above and below, for which another candidate is faster.
 std::vector<std::string> what_would_change_it(const race_result& race) {
     if (race.final_frames < 2 || race.finalists.size() < 2 || !race.finalists.front().has_range()) return {};
     const auto frames = static_cast<double>(race.final_frames);
-    double below = 1.5;  // fewer than two would be one
+    double below = 1.5;  // fewer than 2 frames would be a single one
     double above = 1e6;
     const racer* with_fewer = nullptr;
     const racer* with_more = nullptr;
@@ -104,11 +103,11 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
     return parts;
 }
 
-/// What there was no time for, or was not compared with the exact pairs.
+/// Caveats: what did not run for lack of time, or was not compared with the ground truth.
 std::vector<std::string> what_was_left(const race_result& race) {
     std::vector<std::string> sentences;
-    const auto not_played = std::ranges::count_if(
-        race.dropped, [](const racer& one) { return one.broken_off && one.broken_off->seconds == 0; });
+    const auto not_played =
+        std::ranges::count_if(race.dropped, [](const racer& r) { return r.broken_off && r.broken_off->seconds == 0; });
     if (not_played > 0)
         sentences.push_back(fmt::format("There was no time for {}; increase --seconds.",
                                         counted(static_cast<std::size_t>(not_played), "other")));
@@ -138,8 +137,8 @@ std::vector<std::string> advice_of(const race_result& race) {
     std::vector<std::string> sentences{use + "."};
     if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
     if (std::string options = options_of(winner.who.name); !options.empty()) sentences.push_back(std::move(options));
-    for (const racer& one : race.wrong)
-        sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", one.name));
+    for (const racer& r : race.wrong)
+        sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", r.name));
     for (std::string& sentence : what_was_left(race)) sentences.push_back(std::move(sentence));
     return sentences;
 }

@@ -20,27 +20,26 @@ constexpr std::size_t first_frames = 4;
 constexpr std::size_t most_finalists = 6;
 constexpr std::size_t fewest_finalists = 2;
 constexpr std::size_t most_repeats = 15;
-/// Who takes so many times as long as the fastest, in the whole and a frame, is dropped; less in every round.
+/// A candidate beyond this ratio to the fastest, in total and per frame, is dropped. The margin shrinks every round.
 constexpr double first_margin = 2;
 constexpr double last_margin = 1.25;
-/// Of the time to play, what the first round may take, so that there is some for repeats.
+/// The share of the time that the first round may use, so that some remains for repeats.
 constexpr double share_of_first_round = 2.0 / 3;
 
-/// The logarithms of one's time over the other's in the same repeat, which the machine's slow and fast moments leave
-/// alone.
-cells log_ratios(const racer& one, const racer& other) {
+/// Logarithms of the ratio of two times within the same repeat, which cancels slow and fast phases of the machine.
+cells log_ratios(const racer& r, const racer& other) {
     cells ratios(1, 1);
-    for (std::size_t i = 0; i < one.times.size(); ++i)
-        ratios.add(0, 0, std::log(one.times[i].whole_ms() / other.times[i].whole_ms()));
+    for (std::size_t i = 0; i < r.times.size(); ++i)
+        ratios.add(0, 0, std::log(r.times[i].whole_ms() / other.times[i].whole_ms()));
     return ratios;
 }
 
-/// How far the nearest of the others is behind, in the median; below 0 where one is ahead.
-double lead_of(const racer& one, const std::vector<racer>& all) {
+/// The median log-ratio by which the closest rival is behind; negative if a rival is ahead.
+double lead_of(const racer& r, const std::vector<racer>& finalists) {
     const resample as_measured(1, 1, level::none, 0);
     double least = std::numeric_limits<double>::infinity();
-    for (const racer& other : all)
-        if (&other != &one) least = std::min(least, as_measured.mean_of(log_ratios(other, one)));
+    for (const racer& other : finalists)
+        if (&other != &r) least = std::min(least, as_measured.mean_of(log_ratios(other, r)));
     return least;
 }
 
@@ -52,8 +51,8 @@ observation median_of(std::vector<observation> times) {
 
 class race {
 public:
-    race(staged_scene& scene, std::vector<racer> all, const time_limits& limits)
-        : scene_(scene), limits_(limits), whole_(limits.to_play()), running_(std::move(all)) {
+    race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits)
+        : scene_(scene), limits_(limits), whole_(limits.to_play()), running_(std::move(candidates)) {
         result_.objects = scene.scene().objects();
         result_.frames = scene.scene().frames();
         result_.of = result_.frames * running_.size();
@@ -73,58 +72,58 @@ public:
              running_.pop_back())
             result_.dropped.push_back(std::move(running_.back()));
         play_final();
-        hold_against_cgal();
+        compare_with_cgal();
         rank(running_);
         std::ranges::reverse(result_.dropped);
         result_.finalists = std::move(running_);
-        for (const std::vector<racer>* some : {&result_.finalists, &result_.dropped, &result_.wrong})
-            for (const racer& r : *some) result_.played += r.frames;
+        for (const std::vector<racer>* group : {&result_.finalists, &result_.dropped, &result_.wrong})
+            for (const racer& r : *group) result_.played += r.frames;
         return std::move(result_);
     }
 
 private:
     [[nodiscard]] double left() const { return limits_.to_play(); }
 
-    /// For how long one may play frames that the fastest so far takes so many seconds for; the first of all has more.
+    /// The time limit of a run, given the seconds `least` of the fastest so far; the very first run gets more.
     [[nodiscard]] double longest(double least, double margin) const {
         const stopping_rule rule{.grace = std::min(1.0, whole_ / 20), .share = whole_ / 16, .margin = margin};
         return std::isfinite(least) ? rule.longest(least) : rule.grace + whole_ / 4;
     }
 
-    /// One plays the first frames; it is out where it does not come to their end, unless all time is over.
-    /// @returns whether it did
-    bool plays(racer& one, std::size_t frames, double seconds, double time_left) {
-        attempt tried = scene_.play(one.who, frames, seconds, time_left);
-        if (tried.end != ending::done) {
-            one.frames = std::max(one.frames, tried.seen.frames);
-            one.broken_off = std::move(tried);
+    /// Runs a candidate on the first frames and records the outcome.
+    /// @returns whether it finished
+    bool plays(racer& r, std::size_t frames, double seconds, double time_left) {
+        attempt outcome = scene_.play(r.who, frames, seconds, time_left);
+        if (outcome.end != ending::done) {
+            r.frames = std::max(r.frames, outcome.seen.frames);
+            r.broken_off = std::move(outcome);
             return false;
         }
-        one.last = std::move(tried.seen);
-        one.seconds = tried.seconds;
-        one.frames = frames;
+        r.last = std::move(outcome.seen);
+        r.seconds = outcome.seconds;
+        r.frames = frames;
         return true;
     }
 
-    /// All play the first frames; who takes far longer than the fastest so far is stopped. Where those of the first
-    /// round take too long, those are raced over that the first who came to the end of any came to the end of.
-    /// @returns whether anybody came to their end
+    /// Runs all candidates on the first frames, with early stopping relative to the fastest so far. If the first round
+    /// has too many frames, it continues with the number that the first successful candidate finished.
+    /// @returns whether any candidate finished
     bool play_all(std::size_t& frames, double margin, bool is_first_round) {
         progress shown("racing over " + counted(frames, "frame"), running_.size());
         const double kept = is_first_round ? (1 - share_of_first_round) * whole_ : 0;
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
-        for (racer& one : running_) {
-            bool ends = plays(one, frames, longest(least, margin), left() - kept);
-            if (!ends && is_first_round && !std::isfinite(least) && one.broken_off->end == ending::stopped &&
-                one.frames > 0) {
-                frames = one.frames;
-                one.seconds = one.broken_off->seconds_of_frames;
-                one.last = std::move(one.broken_off->seen);
-                one.broken_off.reset();
+        for (racer& r : running_) {
+            bool ends = plays(r, frames, longest(least, margin), left() - kept);
+            if (!ends && is_first_round && !std::isfinite(least) && r.broken_off->end == ending::stopped &&
+                r.frames > 0) {
+                frames = r.frames;
+                r.seconds = r.broken_off->seconds_of_frames;
+                r.last = std::move(r.broken_off->seen);
+                r.broken_off.reset();
                 ends = true;
             }
-            if (ends) least = std::min(least, one.seconds);
+            if (ends) least = std::min(least, r.seconds);
             shown.at(++done);
         }
         return std::isfinite(least);
@@ -132,7 +131,7 @@ private:
 
     void play_first_round(std::size_t& frames, double margin) {
         if (!play_all(frames, margin, true)) {
-            // Pairs that nobody found need not be compared: that time is the first one's, for a frame.
+            // There are no results to validate, so the first candidate gets that time too, for a single frame.
             frames = 1;
             racer& first = running_.front();
             first.broken_off.reset();
@@ -141,7 +140,7 @@ private:
         finish_round(frames, margin);
     }
 
-    /// Nobody came to the end of any frame.
+    /// Reports that no candidate finished any frame.
     [[noreturn]] void refuse_all() const {
         for (const racer& r : running_)
             if (r.broken_off->end == ending::refused) throw aabb::input_error(r.broken_off->reason);
@@ -151,8 +150,8 @@ private:
                                             first.broken_off->end == ending::stopped ? "; increase --seconds" : ""));
     }
 
-    /// Where all time is over before all have played, or none finishes, the round does not count.
-    /// @returns whether it does
+    /// Discards the round if time is over before all candidates have run, or if none finishes.
+    /// @returns whether the round counts
     bool play_round(std::size_t frames, double margin) {
         const std::vector<racer> before = running_;
         const bool any_ends = play_all(frames, margin, false);
@@ -182,7 +181,7 @@ private:
         for (racer& r : running_) r.behind = r.last ? whole(r) / least : 0;
     }
 
-    /// One play may have been disturbed: of two, the faster counts for who is behind, but not far.
+    /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed.
     void play_again(std::size_t frames, double margin) {
         constexpr double far = 2;
         for (racer& r : running_) {
@@ -193,7 +192,7 @@ private:
         set_behind();
     }
 
-    /// Drops who did not come to the end, and who is behind both over the whole scene and a frame.
+    /// Drops candidates that did not finish, or are behind both in total and per frame.
     void judge(double margin) {
         double least_steady = std::numeric_limits<double>::infinity();
         for (const racer& r : running_)
@@ -214,7 +213,7 @@ private:
         running_.erase(first_out, running_.end());
     }
 
-    /// About how many seconds a play takes: what is not timed, as reading and sorting, takes as long in each frame.
+    /// Estimates the seconds of a run; untimed work, as reading and sorting, is assumed to be constant per frame.
     [[nodiscard]] static double seconds_of(const racer& r, std::size_t frames) {
         const double share = static_cast<double>(frames) / static_cast<double>(r.last->frames);
         return r.last->over(static_cast<double>(frames)) / 1000 +
@@ -229,24 +228,24 @@ private:
         return fewest_repeats * seconds_of_repeat(frames) <= left();
     }
 
-    /// All frames in turn, or as many as there is time for, as often as there is. Who fails, or takes far longer than
-    /// it seemed, is dropped. Where there is no time for any repeat, or nobody ends one, the last round counts as one.
+    /// Repeats interleaved runs of the finalists on as many frames, and as often, as time allows. Finalists that fail
+    /// or far exceed their estimate are dropped. Without any finished repeat, the last round counts as one.
     void play_final() {
         std::size_t frames = result_.frames;
         while (frames > result_.final_frames && !final_fits(frames))
             frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
         progress shown("racing to the end", most_repeats);
         const std::vector<racer> before = running_;
-        bool is_cut = false;  // all time is over within a repeat, of which nothing is kept
+        bool is_cut = false;  // time is over within a repeat, which is discarded
         const auto play = [&](racer& r, std::size_t) {
-            attempt tried = scene_.play(r.who, frames, longest(seconds_of(r, frames), last_margin), left());
-            if (tried.is_out_of_time) {
+            attempt outcome = scene_.play(r.who, frames, longest(seconds_of(r, frames), last_margin), left());
+            if (outcome.is_out_of_time) {
                 is_cut = true;
-            } else if (tried.end == ending::done) {
-                r.times.push_back(std::move(tried.seen));
+            } else if (outcome.end == ending::done) {
+                r.times.push_back(std::move(outcome.seen));
                 r.frames = frames;
             } else {
-                r.broken_off = std::move(tried);
+                r.broken_off = std::move(outcome);
             }
         };
         const auto drop = [&](std::size_t repeat) {
@@ -268,7 +267,7 @@ private:
         for (racer& r : running_) r.times.push_back(*r.last);
     }
 
-    /// Those whom the final dropped, where all were only too slow.
+    /// Restores all finalists if they were dropped only for exceeding their limits.
     void take_back(std::vector<racer> before) {
         const auto finalists = std::span(result_.dropped).last(before.size());
         if (std::ranges::any_of(finalists, [](const racer& r) { return r.broken_off->end != ending::stopped; }))
@@ -277,15 +276,15 @@ private:
         running_ = std::move(before);
     }
 
-    /// A frame that is wrong is so for all.
+    /// Rejects the scene if all candidates reject it: its input is invalid.
     void require_any_unrefused() const {
         if (std::ranges::all_of(running_,
                                 [](const racer& r) { return r.broken_off && r.broken_off->end == ending::refused; }))
             throw aabb::input_error(running_.front().broken_off->reason);
     }
 
-    /// Who is wrong is no answer to what to use, however fast. CGAL's first frames tell something too.
-    void hold_against_cgal() {
+    /// Removes finalists whose results differ from those of CGAL, on the first frames if CGAL does not finish in time.
+    void compare_with_cgal() {
         const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
         const attempt exact = scene_.play(*contender_of(*cgal, scene_.scene().meshes() != nullptr),
                                           result_.final_frames, limits_.to_end());
@@ -312,14 +311,13 @@ private:
 
 void rank(std::vector<racer>& finalists) {
     if (finalists.empty()) return;
-    const auto first =
-        std::ranges::max_element(finalists, {}, [&](const racer& one) { return lead_of(one, finalists); });
+    const auto first = std::ranges::max_element(finalists, {}, [&](const racer& r) { return lead_of(r, finalists); });
     std::rotate(finalists.begin(), first, first + 1);
-    for (racer& one : finalists) {
-        one.last = median_of(one.times);
-        one.log_ratio = bootstrap(log_ratios(one, finalists.front()));
-        // Three may be ahead of each other in a circle: none is then.
-        one.log_ratio->value = std::max(one.log_ratio->value, 0.0);
+    for (racer& r : finalists) {
+        r.last = median_of(r.times);
+        r.log_ratio = bootstrap(log_ratios(r, finalists.front()));
+        // Pairwise medians need not be transitive, so a finalist may seem ahead of the winner.
+        r.log_ratio->value = std::max(r.log_ratio->value, 0.0);
     }
     std::stable_sort(finalists.begin() + 1, finalists.end(),
                      [](const racer& a, const racer& b) { return a.log_ratio->value < b.log_ratio->value; });
@@ -327,30 +325,31 @@ void rank(std::vector<racer>& finalists) {
 
 std::vector<racer> starters(const scene_play& scene) {
     const bool meshes = scene.meshes() != nullptr;
-    std::vector<racer> all;
-    const auto add = [&](contender who, std::string name) {
-        racer& one = all.emplace_back();
-        one.who = std::move(who);
-        one.name = std::move(name);
+    std::vector<racer> candidates;
+    const auto add = [&](contender candidate, std::string name) {
+        racer& r = candidates.emplace_back();
+        r.who = std::move(candidate);
+        r.name = std::move(name);
     };
     const auto automatic = contender_of(select_composition({}, outlook_of(scene)), meshes).name;
     add(contender_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");
-    // Whoever may find other pairs is no answer to what to use.
+    // An inexact engine cannot be recommended.
     for (const aabb::engine_info& engine : aabb::engines())
         if (engine.exact && (meshes ? engine.collides_meshes : engine.searches_boxes))
-            if (const auto who = contender_of(engine, meshes)) add(*who, text_of(who->name));
+            if (const auto candidate = contender_of(engine, meshes)) add(*candidate, text_of(candidate->name));
     const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
     for (const aabb::composition& c : aabb::every_composition(stage)) {
         if (!is_exact(c, stage) || (!meshes && !needs_meshes(c).empty())) continue;
-        // It is the same twice.
-        if (contender who = contender_of(c, meshes); who.name != automatic) add(who, text_of(who.name));
+        // `auto` already is this composition.
+        if (contender candidate = contender_of(c, meshes); candidate.name != automatic)
+            add(candidate, text_of(candidate.name));
     }
-    std::shuffle(all.begin() + 1, all.end(), std::mt19937_64(1));
-    return all;
+    std::shuffle(candidates.begin() + 1, candidates.end(), std::mt19937_64(1));
+    return candidates;
 }
 
-race_result run_race(staged_scene& scene, std::vector<racer> all, const time_limits& limits) {
-    return race(scene, std::move(all), limits).run();
+race_result run_race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits) {
+    return race(scene, std::move(candidates), limits).run();
 }
 
 }  // namespace aabblab

@@ -35,7 +35,7 @@ table table_of(const race_result& race) {
     return t;
 }
 
-/// Of a dropped racer: how far behind it was, or how its play ended.
+/// How far behind a dropped candidate was, or how its run ended.
 std::string fate_of(const racer& r) {
     return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.behind);
 }
@@ -47,7 +47,7 @@ table dropped_table_of(const race_result& race) {
     return t;
 }
 
-/// Those whose play did not end; none of those that were not played at all.
+/// Unfinished runs, without candidates that never ran.
 table unfinished_table_of(const race_result& race) {
     table t{{{"not finished", false}, {"", false}}, {}};
     for (const racer& r : race.dropped)
@@ -68,22 +68,22 @@ std::string origin() {
 }
 
 std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
-    page out(scene);
-    out.title(scene);
-    out.paragraph(fmt::format("{}", fmt::join(advice_of(race), " ")));
-    out.add(table_of(race));
-    out.paragraph(fmt::format("{}", fmt::join(legend(), " ")));
-    out.add_html(measured);
-    out.add(dropped_table_of(race));
-    out.paragraph(
+    page report(scene);
+    report.title(scene);
+    report.paragraph(fmt::format("{}", fmt::join(advice_of(race), " ")));
+    report.add(table_of(race));
+    report.paragraph(fmt::format("{}", fmt::join(legend(), " ")));
+    report.add_html(measured);
+    report.add(dropped_table_of(race));
+    report.paragraph(
         "Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in those "
         "after the first; or how a play ended that did not come to its end. Strategies play with their default "
         "parameters.");
-    out.paragraph(origin());
-    return out.html();
+    report.paragraph(origin());
+    return report.html();
 }
 
-/// As a page has it: what the scene is like, or that there was no time to find out.
+/// The measures of the scene as HTML, or a note that there was no time for them.
 std::string measures_page(staged_scene& scene, double seconds) {
     const work_apart measured =
         scene.apart([](scene_play& play, const telling& tell) { tell(to_html(told(measure_scene(play)))); }, seconds);
@@ -121,8 +121,8 @@ int recommend(const recommend_request& request) {
         page->write(page_of(name, race, measures_page(scene, limits.to_end())));
         page->commit();
     }
-    const std::string& answer = race.finalists.front().last->digest;
-    const bool agree = std::ranges::all_of(race.finalists, [&](const racer& r) { return r.last->digest == answer; });
+    const std::string& digest = race.finalists.front().last->digest;
+    const bool agree = std::ranges::all_of(race.finalists, [&](const racer& r) { return r.last->digest == digest; });
     return race.wrong.empty() && agree ? 0 : 1;
 }
 
