@@ -16,39 +16,39 @@ constexpr std::size_t frames_measured = 4;
 constexpr std::array of_motion{&motion_measures::displacement, &motion_measures::relative, &motion_measures::at_rest,
                                &motion_measures::inversions};
 
-struct seen_frame {
+struct recorded_frame {
     std::vector<aabb::box> boxes;
     std::vector<bool> present;
 
-    [[nodiscard]] std::vector<aabb::box> there() const {
-        std::vector<aabb::box> some;
+    [[nodiscard]] std::vector<aabb::box> present_boxes() const {
+        std::vector<aabb::box> result;
         for (std::size_t id = 0; id < boxes.size(); ++id)
-            if (present[id]) some.push_back(boxes[id]);
-        return some;
+            if (present[id]) result.push_back(boxes[id]);
+        return result;
     }
 };
 
-/// Of those who are there in both frames.
-void add_motion(scene_measures& m, seen_frame before, seen_frame now, std::size_t axis) {
+/// Adds the motion of the objects that are present in both frames.
+void add_motion(scene_measures& m, recorded_frame before, recorded_frame after, std::size_t axis) {
     for (std::size_t id = 0; id < before.present.size(); ++id)
-        before.present[id] = now.present[id] = before.present[id] && now.present[id];
-    const motion_measures one = measure_motion(before.there(), now.there(), axis);
+        before.present[id] = after.present[id] = before.present[id] && after.present[id];
+    const motion_measures motion = measure_motion(before.present_boxes(), after.present_boxes(), axis);
     if (!m.motion) m.motion = motion_measures{0, 0, 0, 0};
-    for (const auto member : of_motion) *m.motion.*member += one.*member;
+    for (const auto member : of_motion) *m.motion.*member += motion.*member;
 }
 
-/// Pairs of intervals that overlap: all but those of which one ends before the other begins.
+/// Counts overlapping pairs of intervals, as the complement of the pairs in which one ends before the other begins.
 double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
     std::ranges::sort(lower);
     std::ranges::sort(upper);
     const auto n = static_cast<double>(lower.size());
-    double apart = 0;
+    double disjoint = 0;
     std::size_t ended = 0;
     for (const float begin : lower) {
         while (ended < upper.size() && upper[ended] < begin) ++ended;
-        apart += static_cast<double>(ended);
+        disjoint += static_cast<double>(ended);
     }
-    return n * (n - 1) / 2 - apart;
+    return n * (n - 1) / 2 - disjoint;
 }
 
 double longest_edge(const aabb::box& b) {
@@ -66,7 +66,7 @@ std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {
     return *median > 0 ? std::optional(longest / *median) : std::nullopt;
 }
 
-/// An object: pairs in the order of the frame before that stand in the wrong order now.
+/// Inversions per object: pairs whose order along the axis differs from that of the previous frame.
 double inversions_of(std::span<const aabb::box> before, std::span<const aabb::box> after, int axis) {
     std::vector<std::uint32_t> order(before.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -108,7 +108,7 @@ motion_measures measure_motion(std::span<const aabb::box> before, std::span<cons
     motion_measures m;
     if (before.empty()) return m;
     const auto n = static_cast<double>(before.size());
-    double ways = 0;
+    double displacements = 0;
     double moved = 0;
     std::vector<double> squares(before.size());
     for (int k = 0; k < 3; ++k) {
@@ -124,10 +124,10 @@ motion_measures measure_motion(std::span<const aabb::box> before, std::span<cons
         m.relative = std::max(m.relative, (most - least) / 2);
     }
     for (std::size_t i = 0; i < before.size(); ++i) {
-        ways += std::sqrt(squares[i]);
+        displacements += std::sqrt(squares[i]);
         moved += before[i] == after[i] ? 0 : 1;
     }
-    m.displacement = ways / n;
+    m.displacement = displacements / n;
     m.at_rest = 1 - moved / n;
     m.inversions = inversions_of(before, after, static_cast<int>(axis));
     return m;
@@ -143,33 +143,33 @@ scene_measures measure_scene(scene_play& scene) {
     m.objects = scene.objects();
     m.frames = scene.frames();
     if (scene.meshes()) m.triangles = outlook_of(scene).triangles;
-    player who(contender_of(aabb::composition(), scene.meshes() != nullptr), scene, aabb::instrumentation::none);
-    seen_frame before;
+    player p(contender_of(aabb::composition(), scene.meshes() != nullptr), scene, aabb::instrumentation::none);
+    recorded_frame before;
     std::size_t axis = 0;
     double changes = 0;
     std::size_t followed = 0;
     play(
-        scene, who,
+        scene, p,
         [&](const played_frame& frame) {
-            seen_frame now{{who.boxes().begin(), who.boxes().end()}, before.present};
-            now.present.resize(now.boxes.size(), scene.meshes() != nullptr);
-            for (const std::uint32_t id : scene.arrivals()) now.present[id] = true;
-            for (const std::uint32_t id : scene.departures()) now.present[id] = false;
+            recorded_frame current{{p.boxes().begin(), p.boxes().end()}, before.present};
+            current.present.resize(current.boxes.size(), scene.meshes() != nullptr);
+            for (const std::uint32_t id : scene.arrivals()) current.present[id] = true;
+            for (const std::uint32_t id : scene.departures()) current.present[id] = false;
             if (frame.number == 0) {
-                const std::vector<aabb::box> there = now.there();
-                m.boxes = measure_boxes(there);
-                m.present = there.size();
+                const std::vector<aabb::box> boxes = current.present_boxes();
+                m.boxes = measure_boxes(boxes);
+                m.present = boxes.size();
                 m.pairs_an_object = static_cast<double>(frame.pairs.size()) /
-                                    static_cast<double>(std::max<std::size_t>(there.size(), 1));
+                                    static_cast<double>(std::max<std::size_t>(boxes.size(), 1));
                 m.clustering =
                     m.boxes.expected_pairs > 0 ? static_cast<double>(frame.pairs.size()) / m.boxes.expected_pairs : 0;
                 axis = static_cast<std::size_t>(std::ranges::min_element(m.boxes.overlaps) - m.boxes.overlaps.begin());
             } else {
-                add_motion(m, before, now, axis);
+                add_motion(m, before, current, axis);
                 changes += static_cast<double>(scene.arrivals().size() + scene.departures().size());
                 ++followed;
             }
-            before = std::move(now);
+            before = std::move(current);
         },
         frames_measured);
     if (followed > 0) {
@@ -180,8 +180,8 @@ scene_measures measure_scene(scene_play& scene) {
 }
 
 table told(const scene_measures& m) {
-    table all = empty_table({"measured", ""});
-    const auto add = [&](const char* name, const std::string& value) { all.rows.push_back({name, value}); };
+    table measured = empty_table({"measured", ""});
+    const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };
     add("objects", grouped(m.objects));
     add("frames", m.frames > frames_measured
                       ? fmt::format("{}, of which the first {} are measured", grouped(m.frames), frames_measured)
@@ -197,15 +197,16 @@ table told(const scene_measures& m) {
         (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") + ", longest edge over the median one");
     add("density", fmt::format("{:.3g} overlapping pairs an object", m.pairs_an_object));
     add("clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering));
-    if (!m.motion) return all;
+    if (!m.motion) return measured;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
-    const char* of = m.boxes.typical_extent > 0 ? "typical extents" : "units";
-    add("displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, of));
-    add("relative", fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, of));
+    const char* unit_name = m.boxes.typical_extent > 0 ? "typical extents" : "units";
+    add("displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, unit_name));
+    add("relative",
+        fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, unit_name));
     add("inversions", fmt::format("{:.3g} an object and frame", m.motion->inversions));
     add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));
     if (m.turnover > 0) add("turnover", fmt::format("{:.3g} % of the objects come or go in a frame", 100 * m.turnover));
-    return all;
+    return measured;
 }
 
 std::string heading_of(const scene_choice& scene) {

@@ -1,4 +1,4 @@
-/// What a scene is like: numbers that decide which composition serves it.
+/// Measures of a scene that decide which composition is fast.
 export module aabblab.measures;
 
 import aabb.geometry;
@@ -9,47 +9,46 @@ import aabblab.tables;
 
 export namespace aabblab {
 
-/// Of the boxes of one frame.
 struct box_measures {
-    double typical_extent = 0;  ///< mean over the axes, and the boxes that are not by far longer than others
-    /// The longest edge of any box over the median of the boxes' longest edges; empty where that is 0 or of no box.
+    double typical_extent = 0;  ///< mean over axes and boxes, without boxes far longer than the others
+    /// The longest edge of any box over the median of the longest edges; empty if that is 0 or there are no boxes.
     std::optional<double> size_ratio;
-    std::array<double, 3> overlaps{};  ///< by axis: of how many others a box overlaps the projection, a mean
-    double expected_pairs = 0;         ///< if boxes of the mean extents lay evenly spread over the bounds of all
+    std::array<double, 3> overlaps{};  ///< by axis: the mean number of other boxes whose projection a box overlaps
+    double expected_pairs = 0;         ///< of boxes with the mean extents, uniformly spread over the bounds
 };
 [[nodiscard]] box_measures measure_boxes(std::span<const aabb::box> boxes);
 
-/// Of the same boxes in two frames, one after the other.
+/// Measures of the motion of the same boxes between two consecutive frames.
 struct motion_measures {
-    double displacement = 0;  ///< mean way of a box's centre
-    double relative = 0;      ///< greatest way of any box, on any axis, beyond what all move alike
-    double at_rest = 1;       ///< share of boxes that are equal
-    double inversions = 0;    ///< an object, on the axis on which boxes overlap least
+    double displacement = 0;  ///< mean displacement of the centres
+    double relative = 0;      ///< largest displacement along any axis, minus the common motion
+    double at_rest = 1;       ///< share of unchanged boxes
+    double inversions = 0;    ///< per object, along the axis of least overlap
 };
-/// @param axis on which inversions are counted
+/// @param axis along which inversions are counted
 [[nodiscard]] motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after,
                                              std::size_t axis);
 
-/// Of a scene: means over its first frames.
+/// Measures of a scene; motion is the mean over its first frames.
 struct scene_measures {
     std::size_t objects = 0;
     std::size_t frames = 0;
-    std::size_t present = 0;                ///< objects that are there in frame 0
-    std::optional<std::size_t> triangles;   ///< of all meshes; empty in scenes of boxes
+    std::size_t present = 0;                ///< objects in frame 0
+    std::optional<std::size_t> triangles;   ///< of all meshes; empty for boxes
     box_measures boxes;                     ///< of frame 0
-    double pairs_an_object = 0;             ///< of boxes that overlap, in frame 0
-    double clustering = 0;                  ///< pairs of frame 0 over those expected
-    std::optional<motion_measures> motion;  ///< empty where there is one frame
-    double turnover = 0;                    ///< share of the objects that come or go in a frame
+    double pairs_an_object = 0;             ///< overlapping pairs per object in frame 0
+    double clustering = 0;                  ///< pairs of frame 0 over `expected_pairs`
+    std::optional<motion_measures> motion;  ///< empty for a single frame
+    double turnover = 0;                    ///< share of the objects that appear or disappear per frame
 };
 
-/// Plays the first frames of the scene.
-/// @throws aabb::input_error where the scene cannot be made or played.
+/// Measures the first frames of the scene.
+/// @throws aabb::input_error if the scene cannot be created or run.
 [[nodiscard]] scene_measures measure_scene(const scene_choice& scene);
-/// The same of a scene that is made already, from its first frame on.
+/// Measures a scene that exists already and is at its first frame.
 [[nodiscard]] scene_measures measure_scene(scene_play& scene);
 
-/// As it is printed: "displacement", "0.031 of a mean extent a frame".
+/// The rows that are printed: "displacement", "0.031 of a mean extent a frame".
 [[nodiscard]] table told(const scene_measures& m);
 
 /// "brownian (objects=1000, …)"

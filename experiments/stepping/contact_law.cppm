@@ -5,48 +5,49 @@ import aabb.std;
 
 export namespace aabblab {
 
-/// How two bodies push each other, from nothing but the triangles that were found to intersect, so that forces hang on
-/// what is found. A pair that was invented adds a vertex that springs reach, but no segment to a curve.
+/// The geometry of a contact force, computed only from the detected pairs of triangles, so that forces depend on the
+/// quality of detection. A false positive may add a vertex with a spring, but no segment of an intersection curve.
 enum class contact_geometry : std::uint8_t {
-    /// A linear spring and dashpot, which may pull too, on the depth of the deepest vertex of the second body's
-    /// triangles below the plane of the first's that each intersects, along its normal. One force for two bodies.
+    /// One linear spring and dashpot per pair of bodies, which may also pull, at the deepest vertex of the second
+    /// body's
+    /// triangles below the plane of the intersected triangle of the first, along the normal of that plane.
     deepest_vertex,
-    /// The same for each vertex of the second body, with springs that reach `rest` above the plane, and share a load.
+    /// Likewise for each such vertex of the second body; springs begin `rest` above the plane and share the load.
     each_vertex,
     /// A pressure on the surface of the second body inside the first. By Stokes' theorem the integral of its normal is
-    /// ½ ∮ r × dr around the curve where the meshes cross, of which every pair of triangles has a segment: the force is
-    /// the negative gradient of stiffness times the volume that the two share.
+    /// ½ ∮ r × dr along the intersection curve, of which every pair of triangles contributes a segment: the force is
+    /// the negative gradient of stiffness times the shared volume.
     shared_volume
 };
 
 struct contact_law {
     contact_geometry geometry = contact_geometry::deepest_vertex;
-    double stiffness = 0;  ///< N/m; of a shared volume a pressure, N/m²
-    double damping = 0;    ///< N s/m; of a shared volume N s/m³
-    double rest = 0;       ///< by which a spring is compressed when its vertex touches, m
+    double stiffness = 0;  ///< N/m; for a shared volume a pressure, N/m²
+    double damping = 0;    ///< N s/m; for a shared volume N s/m³
+    double rest = 0;       ///< compression of a spring whose vertex just touches the plane, m
 };
 
-/// A mesh where it is: vertex x at R x + t.
+/// A mesh with its pose, which maps a vertex x to R x + t.
 struct placed_mesh {
     const aabb::mesh* mesh;
     aabb::pose pose;
 
-    /// In double, as it is written.
+    /// The triangle in world coordinates, computed in double precision.
     [[nodiscard]] aabb::triangle3d triangle(std::uint32_t index) const;
 };
 
 struct contact_force {
     aabb::vec3d force = {0, 0, 0};  ///< on the second body, N; the first gets the opposite
-    double energy = 0;              ///< in springs, J; 0 of a shared volume, which only `overlap_volume` knows
+    double energy = 0;              ///< of springs, J; 0 for a shared volume, whose energy needs `overlap_volume`
 };
 
 /// @param contacts of these two bodies, sorted
-/// @param approach velocity of the second relative to the first, m/s
+/// @param approach velocity of the second body relative to the first, m/s
 [[nodiscard]] contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts,
                                      const placed_mesh& first, const placed_mesh& second, const aabb::vec3d& approach);
 
-/// The volume that two convex meshes share, m³; outward normals. A floor counts as all below its first triangle.
-/// @param is_floor the first is one
+/// The volume shared by two convex meshes with outward normals, m³. A floor is all space below its first triangle.
+/// @param is_floor whether the first mesh is a floor
 [[nodiscard]] double overlap_volume(const placed_mesh& first, bool is_floor, const placed_mesh& second);
 
 }  // namespace aabblab

@@ -4,23 +4,23 @@ import :contact_law;
 
 export namespace aabblab {
 
-/// A rigid body that moves without turning: contacts have no friction, and its moment of inertia is taken for infinite.
+/// A rigid body that translates only: its moment of inertia is assumed to be infinite, and contacts are frictionless.
 struct body {
     std::uint32_t mesh = 0;
     aabb::vec3d position = {0, 0, 0};                              ///< of the mesh's origin, m
     aabb::vec3d velocity = {0, 0, 0};                              ///< m/s
-    double mass = std::numeric_limits<double>::infinity();         ///< kg; one without end stands still
-    std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major, from the mesh's frame
+    double mass = std::numeric_limits<double>::infinity();         ///< kg; infinite for a fixed body
+    std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major, from mesh to world
 };
 
-/// Where all bodies are: three numbers a body.
+/// Positions and velocities of all bodies, with three components per body.
 struct motion_state {
     std::vector<double> position;  ///< m
     std::vector<double> velocity;  ///< m/s
     double time = 0;               ///< s
 };
 
-/// Bodies under gravity that push each other.
+/// Bodies under gravity with contact forces.
 struct stepped_world {
     std::vector<aabb::mesh> meshes;
     std::vector<body> bodies;
@@ -29,23 +29,22 @@ struct stepped_world {
 
     [[nodiscard]] motion_state start() const;
     [[nodiscard]] std::vector<std::uint32_t> mesh_of() const;
-    /// Where the bodies stand with these positions.
     void place(std::span<const double> position, std::vector<aabb::pose>& poses) const;
 };
 
-/// What acts on the bodies of a world, given what was found to intersect.
+/// Computes the accelerations of bodies from the detected contacts.
 class dynamics {
 public:
     explicit dynamics(const stepped_world& world) : world_(world) {}
 
-    /// @param contacts found where the bodies are, sorted
+    /// @param contacts detected at these positions, sorted
     void accelerate(std::span<const double> position, std::span<const double> velocity,
                     std::span<const aabb::contact> contacts, std::span<double> acceleration);
 
-    /// In springs at the last call, J.
+    /// The energy of springs at the last call of `accelerate`, J.
     [[nodiscard]] double spring_energy() const { return spring_energy_; }
 
-    /// Of motion and height, J, above z = 0.
+    /// Kinetic energy and potential energy above z = 0, J.
     [[nodiscard]] double mechanical_energy(const motion_state& state) const;
 
 private:
@@ -54,11 +53,11 @@ private:
     double spring_energy_ = 0;
 };
 
-/// x'' = a(x, v): takes position and velocity, sets the acceleration. Every call is one detection.
+/// x'' = a(x, v): sets the acceleration for a position and a velocity. Every call detects contacts once.
 using acceleration_of = std::function<void(const std::vector<double>& position, const std::vector<double>& velocity,
                                            std::vector<double>& acceleration)>;
 
-/// Follows one trajectory: after the first call the state is the one that it left, and the acceleration the same.
+/// Integrates one trajectory: later calls must pass the state that the previous one left, and the same acceleration.
 class integrator {
 public:
     integrator() = default;
@@ -66,25 +65,25 @@ public:
     integrator& operator=(const integrator&) = delete;
     virtual ~integrator() = default;
 
-    /// From the state's time on by `step`, s; one that chooses its own steps takes as many as it needs.
-    /// @throws aabb::input_error where it cannot.
+    /// Advances the state by `step`, s; an adaptive integrator divides it into steps of its own choice.
+    /// @throws aabb::input_error if it fails.
     virtual void advance(const acceleration_of& acceleration, motion_state& state, double step) = 0;
 };
 
 struct integrator_info {
     std::string_view name;
     std::string_view summary;
-    bool adaptive;  ///< it chooses its own steps, after a tolerance
+    bool adaptive;  ///< chooses its own steps, by a tolerance
     int order;
-    /// The greatest step times angular frequency with which an undamped oscillation does not grow; or infinite.
+    /// The limit of step times angular frequency below which an undamped oscillation does not grow; may be infinite.
     double stable_below;
-    std::unique_ptr<integrator> (*make)(double tolerance);  ///< the tolerance is of adaptive ones
+    std::unique_ptr<integrator> (*make)(double tolerance);  ///< only adaptive ones use the tolerance
 };
 
 [[nodiscard]] std::span<const integrator_info> integrators();
-/// Those that this build lacks, because their library was not there.
+/// Integrators that this build lacks, since their library was not found.
 [[nodiscard]] std::span<const std::string_view> left_out_integrators();
-/// Null where this build has none of this name.
+/// Null if this build has no integrator of this name.
 [[nodiscard]] const integrator_info* integrator_named(std::string_view name);
 
 }  // namespace aabblab

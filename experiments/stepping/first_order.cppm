@@ -1,5 +1,5 @@
-/// The same motion as a system of first order, twice as large: ways since some moment, then velocities. Ways, since
-/// solvers change each value by a share of it, and a contact's depth can be a billionth of a position.
+/// The motion as a system of first order, twice as large: displacements since the start, then velocities. Displacements
+/// keep precision: solvers perturb values relatively, and a contact's depth can be a billionth of a position.
 module aabblab.stepping:first_order;
 
 import :dynamics;
@@ -18,7 +18,7 @@ public:
         both_.insert(both_.end(), state.velocity.begin(), state.velocity.end());
     }
 
-    /// The derivative of ways and velocities.
+    /// The derivative of displacements and velocities.
     void operator()(const std::vector<double>& both, std::vector<double>& change, double /*time*/) {
         const auto half = static_cast<std::ptrdiff_t>(position_.size());
         std::transform(both.begin(), both.begin() + half, origin_.begin(), position_.begin(), std::plus());

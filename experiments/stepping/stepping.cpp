@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using corners = std::array<Vector3d, 3>;
 
-/// Of a triangle where its mesh is.
+/// The corners of a triangle in world coordinates.
 corners corners_of(const placed_mesh& m, std::uint32_t triangle) {
     const auto t = m.triangle(triangle);
     return {in_eigen(t[0]), in_eigen(t[1]), in_eigen(t[2])};
@@ -23,18 +23,17 @@ Vector3d normal_of(const corners& t) {
     return (t[1] - t[0]).cross(t[2] - t[0]);
 }
 
-/// A vertex below a plane.
 struct depth_of_vertex {
     std::uint32_t vertex;
     double depth;
     Vector3d normal;  // of length 1
 };
 
-/// Every vertex of a reported triangle of the second body below the plane of the triangle of the first, at it, or no
-/// further above it than springs reach; a vertex that several pairs report as often.
+/// Vertices of the second body's reported triangles that lie below the plane of the intersected triangle of the first
+/// body, or at most `rest` above it. A vertex that several pairs report is repeated.
 std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, const placed_mesh& first,
                                        const placed_mesh& second, double rest) {
-    std::vector<depth_of_vertex> all;
+    std::vector<depth_of_vertex> depths;
     for (const aabb::contact& c : contacts) {
         const corners plane = corners_of(first, c.triangle_a);
         const Vector3d normal = normal_of(plane);
@@ -43,29 +42,29 @@ std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, 
         const corners t = corners_of(second, c.triangle_b);
         for (std::size_t i = 0; i < 3; ++i)
             if (const double depth = -dot(normal, t[i] - plane[0]) / length; depth >= -rest)
-                all.push_back({second.mesh->triangles[c.triangle_b][i], depth, normal * (1 / length)});
+                depths.push_back({second.mesh->triangles[c.triangle_b][i], depth, normal * (1 / length)});
     }
-    return all;
+    return depths;
 }
 
-/// Leaves of what several pairs say of a vertex the deepest.
-void keep_deepest_of_each(std::vector<depth_of_vertex>& all) {
-    std::ranges::sort(all, [](const depth_of_vertex& a, const depth_of_vertex& b) {
+/// Keeps the greatest depth of each vertex.
+void keep_deepest_of_each(std::vector<depth_of_vertex>& depths) {
+    std::ranges::sort(depths, [](const depth_of_vertex& a, const depth_of_vertex& b) {
         return a.vertex != b.vertex ? a.vertex < b.vertex : a.depth > b.depth;
     });
-    const auto repeated = std::ranges::unique(all, {}, &depth_of_vertex::vertex);
-    all.erase(repeated.begin(), repeated.end());
+    const auto repeated = std::ranges::unique(depths, {}, &depth_of_vertex::vertex);
+    depths.erase(repeated.begin(), repeated.end());
 }
 
-void keep_deepest(std::vector<depth_of_vertex>& all) {
-    const auto deepest = std::ranges::max_element(all, {}, &depth_of_vertex::depth);
-    if (deepest != all.end()) all = {*deepest};
+void keep_deepest(std::vector<depth_of_vertex>& depths) {
+    const auto deepest = std::ranges::max_element(depths, {}, &depth_of_vertex::depth);
+    if (deepest != depths.end()) depths = {*deepest};
 }
 
-contact_force springs_at(const contact_law& law, std::span<const depth_of_vertex> all, const Vector3d& approach) {
+contact_force springs_at(const contact_law& law, std::span<const depth_of_vertex> depths, const Vector3d& approach) {
     Vector3d force = Vector3d::Zero();
     double energy = 0;
-    for (const depth_of_vertex& at : all) {
+    for (const depth_of_vertex& at : depths) {
         const double compressed = at.depth + law.rest;
         force += at.normal * (law.stiffness * compressed - law.damping * dot(at.normal, approach));
         energy += law.stiffness * compressed * compressed / 2;
@@ -108,12 +107,13 @@ half_space below(const corners& t) {
 }
 
 std::vector<half_space> half_spaces_of(const placed_mesh& m, std::uint32_t most) {
-    std::vector<half_space> all;
-    for (std::uint32_t t = 0; t < std::min(most, m.mesh->triangle_count()); ++t) all.push_back(below(corners_of(m, t)));
-    return all;
+    std::vector<half_space> half_spaces;
+    for (std::uint32_t t = 0; t < std::min(most, m.mesh->triangle_count()); ++t)
+        half_spaces.push_back(below(corners_of(m, t)));
+    return half_spaces;
 }
 
-/// What of a convex polygon is inside (Sutherland and Hodgman 1974).
+/// Clips a convex polygon by a half-space (Sutherland and Hodgman 1974).
 polygon clipped(const polygon& p, const half_space& h) {
     polygon kept;
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -129,27 +129,27 @@ polygon clipped(const polygon& p, const half_space& h) {
     return kept;
 }
 
-/// Six times the volume of the cone from the origin over what is left of the triangles.
+/// Clips all triangles, and returns six times the signed volume of the cones from the origin over them.
 double cones_over(const placed_mesh& m, std::span<const half_space> inside, const Vector3d& origin) {
     double sum = 0;
     for (std::uint32_t t = 0; t < m.mesh->triangle_count(); ++t) {
-        polygon left;
-        for (const Vector3d& corner : corners_of(m, t)) left.emplace_back(corner - origin);
+        polygon part;
+        for (const Vector3d& corner : corners_of(m, t)) part.emplace_back(corner - origin);
         for (const half_space& h : inside) {
-            left = clipped(left, {h.normal, h.offset - dot(h.normal, origin)});
-            if (left.size() < 3) break;
+            part = clipped(part, {h.normal, h.offset - dot(h.normal, origin)});
+            if (part.size() < 3) break;
         }
-        for (std::size_t i = 2; i < left.size(); ++i) sum += dot(left[0], left[i - 1].cross(left[i]));
+        for (std::size_t i = 2; i < part.size(); ++i) sum += dot(part[0], part[i - 1].cross(part[i]));
     }
     return sum;
 }
 
-/// Of a body among all, three numbers each.
-auto vector_at(std::span<const double> all, std::size_t body) {
-    return Eigen::Map<const Eigen::Vector3d>(all.subspan(3 * body, 3).data());
+/// The three components of a body.
+auto vector_at(std::span<const double> values, std::size_t body) {
+    return Eigen::Map<const Eigen::Vector3d>(values.subspan(3 * body, 3).data());
 }
-auto vector_at(std::span<double> all, std::size_t body) {
-    return Eigen::Map<Eigen::Vector3d>(all.subspan(3 * body, 3).data());
+auto vector_at(std::span<double> values, std::size_t body) {
+    return Eigen::Map<Eigen::Vector3d>(values.subspan(3 * body, 3).data());
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ contact_force force_of(const contact_law& law, std::span<const aabb::contact> co
 }
 
 double overlap_volume(const placed_mesh& first, bool is_floor, const placed_mesh& second) {
-    // Seen from a point of the floor, what lies in its plane has no volume.
+    // With the origin on the floor, cones over its plane have no volume.
     const Vector3d origin = corners_of(first, 0)[0];
     double sum = cones_over(second, half_spaces_of(first, is_floor ? 1 : first.mesh->triangle_count()), origin);
     if (!is_floor) sum += cones_over(first, half_spaces_of(second, second.mesh->triangle_count()), origin);
@@ -215,12 +215,12 @@ void dynamics::accelerate(std::span<const double> position, std::span<const doub
         const std::uint32_t a = from->a;
         const std::uint32_t b = from->b;
         const auto to = std::find_if(from, contacts.end(), [&](const auto& c) { return c.a != a || c.b != b; });
-        const contact_force found = force_of(world_.law, {from, to}, {&world_.meshes[bodies[a].mesh], poses_[a]},
-                                             {&world_.meshes[bodies[b].mesh], poses_[b]},
-                                             from_eigen(vector_at(velocity, b) - vector_at(velocity, a)));
-        vector_at(acceleration, a) -= in_eigen(found.force) / bodies[a].mass;
-        vector_at(acceleration, b) += in_eigen(found.force) / bodies[b].mass;
-        spring_energy_ += found.energy;
+        const contact_force contact = force_of(world_.law, {from, to}, {&world_.meshes[bodies[a].mesh], poses_[a]},
+                                               {&world_.meshes[bodies[b].mesh], poses_[b]},
+                                               from_eigen(vector_at(velocity, b) - vector_at(velocity, a)));
+        vector_at(acceleration, a) -= in_eigen(contact.force) / bodies[a].mass;
+        vector_at(acceleration, b) += in_eigen(contact.force) / bodies[b].mass;
+        spring_energy_ += contact.energy;
         from = to;
     }
 }

@@ -1,4 +1,4 @@
-/// Stepping in time through detection: bodies that push each other where their meshes were found to intersect.
+/// Time integration with collision detection: contact forces act on bodies whose meshes are found to intersect.
 export module aabblab.stepping;
 
 import aabb.std;

@@ -14,7 +14,7 @@ namespace aabblab {
 
 namespace {
 
-/// CVODE's solver of one system, from the first call of `advance` on.
+/// Wraps CVODE for one system, which the first call of `advance` fixes.
 class bdf final : public integrator {
 public:
     explicit bdf(double tolerance) : tolerance_(tolerance) {
@@ -30,7 +30,7 @@ public:
         }
         failure_ = nullptr;
         double reached = state.time;
-        // It may not look beyond: what lies there may be another contact's.
+        // CVODE must not overstep the end, since contacts may differ there.
         const double end = state.time + step;
         CVodeSetStopTime(memory_.get(), end);
         const int status = CVode(memory_.get(), end, values_.get(), &reached, CV_NORMAL);
@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    // Handles of SUNDIALS, let go in the reverse order.
+    // Handles of SUNDIALS, released in reverse order.
     template <auto Free>
     struct freed_by {
         template <class T>
@@ -74,17 +74,17 @@ private:
     }
 
     static int derivative(double time, N_Vector values, N_Vector change, void* self) {
-        bdf& me = *static_cast<bdf*>(self);
+        bdf& solver = *static_cast<bdf*>(self);
         try {
             const auto size = static_cast<std::size_t>(N_VGetLength(values));
-            me.from_.assign(N_VGetArrayPointer(values), N_VGetArrayPointer(values) + size);
-            me.to_.resize(size);
-            (*me.system_)(me.from_, me.to_, time);
-            std::ranges::copy(me.to_, N_VGetArrayPointer(change));
+            solver.from_.assign(N_VGetArrayPointer(values), N_VGetArrayPointer(values) + size);
+            solver.to_.resize(size);
+            (*solver.system_)(solver.from_, solver.to_, time);
+            std::ranges::copy(solver.to_, N_VGetArrayPointer(change));
             return 0;
         } catch (...) {
-            // Nothing may be thrown through C.
-            me.failure_ = std::current_exception();
+            // Exceptions must not pass through C code.
+            solver.failure_ = std::current_exception();
             return -1;
         }
     }

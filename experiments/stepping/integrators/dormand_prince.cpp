@@ -15,7 +15,7 @@ class dormand_prince final : public integrator {
 public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         first_order_system system(acceleration, state);
-        // Its first stage is the last one of the step before, from which nothing has moved the state.
+        // First same as last: the stepper reuses the last stage of the previous step, which left this state.
         stepper_.do_step(system, system.both(), state.time, step);
         system.store(state);
         state.time += step;

@@ -10,7 +10,7 @@ namespace {
 class symplectic_euler final : public integrator {
 public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
-        // The velocity is that of the step's begin until the stepper has the acceleration.
+        // The stepper changes the velocity only after this call, so forces see the velocity at the start.
         const auto momentum = [&](const std::vector<double>& position, std::vector<double>& change) {
             acceleration(position, state.velocity, change);
         };
